@@ -1,0 +1,28 @@
+# What Glint stands on; all of it Debian 12's packages (see ./dev, which installs them).
+find_package(Threads REQUIRED)
+find_package(Torch REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+
+# Torch as one target whose headers are system headers, so that warnings-as-errors stays ours.
+add_library(glint_torch INTERFACE)
+target_include_directories(glint_torch SYSTEM INTERFACE ${TORCH_INCLUDE_DIRS})
+target_link_libraries(glint_torch INTERFACE ${TORCH_LIBRARIES})
+target_compile_options(glint_torch INTERFACE ${TORCH_CXX_FLAGS})
+
+if(NOT GLINT_TRAINER_ONLY)
+  find_package(Eigen3 REQUIRED NO_MODULE)
+  find_package(Ceres REQUIRED)
+  find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs calib3d aruco)
+  find_package(OpenImageIO REQUIRED)
+  find_package(spdlog REQUIRED)
+  find_package(tomlplusplus REQUIRED)
+  find_package(PkgConfig REQUIRED)
+  pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
+endif()
+if(GLINT_TESTS AND NOT GLINT_TRAINER_ONLY)
+  find_package(GTest REQUIRED)
+endif()
+if(GLINT_BENCHMARKS AND NOT GLINT_TRAINER_ONLY)
+  find_package(benchmark REQUIRED)
+endif()

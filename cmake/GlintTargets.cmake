@@ -1,0 +1,50 @@
+include(GoogleTest)
+
+# glint_library(NAME SOURCES a.cc … [DEPENDS glint_x …] [USES Ceres::ceres …])
+#   DEPENDS  Glint libraries and header-light packages that public headers show
+#   USES     packages that only the .cc files see
+function(glint_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;USES" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PUBLIC glint_compile_options ${ARG_DEPENDS} PRIVATE ${ARG_USES})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE glint_compile_options ${ARG_DEPENDS})
+  endif()
+endfunction()
+
+# glint_program(glint-calib SOURCES main_calib.cc DEPENDS …): a program in build/bin
+function(glint_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE glint_compile_options ${ARG_DEPENDS})
+  target_compile_definitions(${name} PRIVATE GLINT_VERSION="${PROJECT_VERSION}")
+endfunction()
+
+# glint_test(test_x SOURCES … DEPENDS …): one GoogleTest binary, its cases known to ctest.
+function(glint_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE glint_compile_options ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
+  target_compile_definitions(${name} PRIVATE
+    GLINT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" GLINT_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+  # One process per binary and not per case: starting torch or OpenCV costs more than most cases.
+  add_test(NAME ${name} COMMAND ${name})
+endfunction()
+
+# glint_benchmark(bench_x SOURCES … DEPENDS …): a program that prints the ratio of two sides.
+function(glint_benchmark name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  if(GLINT_BENCHMARKS)
+    add_executable(${name} ${ARG_SOURCES})
+    target_link_libraries(${name} PRIVATE glint_compile_options ${ARG_DEPENDS})
+  endif()
+endfunction()
+
+# add_subdirectory for a folder that holds a CMakeLists.txt; others are passed over.
+function(glint_add_folder folder)
+  if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/CMakeLists.txt)
+    add_subdirectory(${folder})
+  endif()
+endfunction()
