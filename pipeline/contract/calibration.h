@@ -1,0 +1,33 @@
+// What `calib` writes and `rectify` reads: cameras, poses and lights.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calib/camera/camera_model.h"
+#include "calib/camera/rigid3.h"
+#include "pipeline/contract/json.h"
+
+namespace glint {
+
+struct CalibratedPhoto {
+  std::string photo;      // relative to the capture's folder
+  int camera = 0;         // index into Calibration::cameras
+  Rigid3 camera_from_sample;
+  Eigen::Vector3d light_in_camera_mm{0, 0, 0};  // flash position in the camera frame
+  double rms_px = 0;      // reprojection error of its inlier corners
+  int corners = 0, inliers = 0;
+};
+
+struct Calibration {
+  std::vector<Camera> cameras;
+  std::vector<CalibratedPhoto> photos;  // accepted flash photographs, in capture order
+};
+
+Json ToJson(const Calibration& calibration);
+// Reads the manifest of stage "calib". Throws UserError.
+Calibration ReadCalibration(const std::filesystem::path& manifest_file);
+
+}  // namespace glint

@@ -1,0 +1,65 @@
+// Images in memory and on disk, through OpenImageIO.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// float32, planar: channel c is the contiguous block [c·H·W, (c+1)·H·W), rows top to bottom.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::string> channels;  // "R", "G", "B", "mask.Y", "normal.X" …
+  std::vector<float> samples;
+
+  Image() = default;
+  Image(int width_in, int height_in, std::vector<std::string> channels_in)
+      : width(width_in),
+        height(height_in),
+        channels(std::move(channels_in)),
+        samples(channels.size() * static_cast<size_t>(width) * height, 0.0f) {}
+
+  size_t pixels() const { return static_cast<size_t>(width) * height; }
+  std::span<float> channel(int c) { return {samples.data() + c * pixels(), pixels()}; }
+  std::span<const float> channel(int c) const { return {samples.data() + c * pixels(), pixels()}; }
+  // Index of a channel by name; −1: absent.
+  int ChannelIndex(const std::string& name) const;
+};
+
+// Largest image that is read (pixels); larger ones are refused before they are allocated.
+inline constexpr std::size_t kMaxPixels = 512u << 20;
+
+// float32 scan-line EXR, ZIP, linear Rec.709 chromaticities, no time stamp: identical inputs give
+// identical bytes. `attributes` become string attributes "glint:<name>". Throws EnvironmentError.
+void WriteExr(const std::filesystem::path& file, const Image& image,
+              const std::map<std::string, std::string>& attributes = {});
+
+// Any EXR; channels in file order. Throws UserError.
+Image ReadExr(const std::filesystem::path& file,
+              std::map<std::string, std::string>* attributes = nullptr);
+
+// 8 or 16 bit PNG (1, 3 or 4 channels), values clamped to [0, 1] and rounded. Throws EnvironmentError.
+void WritePng(const std::filesystem::path& file, const Image& image, int bits = 8);
+
+// What a camera wrote: samples as stored (8/16 bit divided by 255/65535; float as is), EXIF
+// orientation applied, alpha dropped, grey widened to RGB.
+struct Photo {
+  Image image;          // R, G, B; not linearised
+  int bits = 8;         // 8, 16, or 32 for float
+  bool is_float() const { return bits == 32; }
+  double focal_length_35mm = 0;  // EXIF; 0: absent
+  double exposure_time_s = 0, iso = 0, f_number = 0;
+  std::string camera_model;      // EXIF make and model
+};
+
+// JPEG, PNG, TIFF, EXR, HEIC, RAW… Throws UserError (missing, empty, truncated, not an image, too
+// large, NaN).
+Photo ReadPhoto(const std::filesystem::path& file);
+
+// Width and height as ReadPhoto would give them, from the header alone.
+std::pair<int, int> PhotoSize(const std::filesystem::path& file);
+
+}  // namespace glint

@@ -1,0 +1,39 @@
+// The front end that all programs share: options, help, version, threads, seed, logging, --json,
+// and errors turned into exit codes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "pipeline/contract/json.h"
+#include "pipeline/contract/options.h"
+
+namespace glint {
+
+struct CommonOptions {
+  int threads = 0;          // resolved: at least 1
+  std::uint64_t seed = 0;   // enters the manifest
+  std::string log_level = "info";
+  bool json = false;        // the result on stdout as JSON
+};
+
+// What a program leaves on stdout: `text` for a person, or `json` with --json.
+struct ProgramResult {
+  std::string text;
+  Json json;
+};
+
+struct ProgramInfo {
+  std::string name;         // "glint-calib"
+  std::string description;  // first paragraph of --help
+  std::string version;      // GLINT_VERSION
+  std::string footer;       // examples, shown after the options
+};
+
+// Parses, runs `body`, prints its result, and returns the exit code. Messages go to stderr as
+// "glint-calib: error: …".
+int RunProgram(int argc, char** argv, const ProgramInfo& info, OptionSet* options,
+               const std::function<ProgramResult(const CommonOptions&)>& body);
+
+}  // namespace glint

@@ -1,0 +1,54 @@
+// What `rectify` and `glint-import` write and all later stages read: linear top views of the sample
+// with the geometry of camera and light.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fitting/reflectance/view.h"
+#include "pipeline/contract/json.h"
+#include "pipeline/contract/manifest.h"
+
+namespace glint {
+
+struct RectifiedView {
+  std::string name;   // "view_000"
+  std::string file;   // EXR, relative to the manifest's folder: R, G, B, mask.Y
+  std::string photo;  // the photograph it came from, as in capture.toml's folder
+  bool ldr = true;    // the photograph clips at radiance 1
+  View view;
+};
+
+struct RectifiedSet {
+  std::filesystem::path manifest_file;
+  SamplePlane plane;
+  ReflectanceConvention convention;
+  bool light_power_known = true;  // false: light_rgb is a first guess, common factor to be estimated
+  std::vector<RectifiedView> views;
+};
+
+// Values of one view: `rgb` planar [3·H·W], linear; `mask` [H·W], 1 = usable.
+struct RectifiedImage {
+  int width = 0, height = 0;
+  std::vector<float> rgb;
+  std::vector<float> mask;
+};
+
+// The "data" object of the rectify manifest.
+Json ToJson(const RectifiedSet& set);
+
+// Reads and checks manifest (stage "rectify") without its images. Throws UserError.
+RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file);
+
+// Throws UserError when size or channels do not fit the set.
+RectifiedImage ReadRectifiedImage(const RectifiedSet& set, const RectifiedView& view);
+void WriteRectifiedImage(const std::filesystem::path& file, const RectifiedImage& image,
+                         const RectifiedSet& set);
+
+// Views named by `only` (empty: all) less those named by `exclude`; names are a view's name or the
+// photograph's file name. Throws UserError for a name that no view has, or when none is left.
+std::vector<RectifiedView> SelectViews(const RectifiedSet& set, const std::vector<std::string>& only,
+                                       const std::vector<std::string>& exclude);
+
+}  // namespace glint
