@@ -24,6 +24,8 @@ struct CalibratedPhoto {
 struct Calibration {
   std::vector<Camera> cameras;
   std::vector<CalibratedPhoto> photos;  // accepted flash photographs, in capture order
+  Eigen::Vector3d light_rgb{1, 1, 1};   // power, radiance·mm² in units where the sensor clips at 1
+  bool light_power_known = false;       // false: light_rgb is a first guess
 };
 
 Json ToJson(const Calibration& calibration);
