@@ -1,0 +1,170 @@
+// The reflectance model: Cook–Torrance with GGX, as Gao et al. 2019 ("Deep Inverse Rendering", TOG
+// 38(4)) and its published code use it. Values only; brdf_derivatives.h has the derivatives.
+//
+//   h = (l+v)/|l+v|, every dot product clamped to ≥ kDotClamp, α = r²
+//   D = (α / (NoH²(α²−1) + 1))² / π
+//   G = G1(NoL)·G1(NoV),  G1(x) = x / (x(1−k) + k),  k = α/2
+//   F = k_s + (1−k_s)·2^(VoH(−5.55473·VoH − 6.98316))
+//   f = w·k_d/π + D·G·F / (4·NoL·NoV),   w = 1 or 1−k_s (DiffuseWeight)
+//   radiance = exposure·(E·f·NoL + ambient·w·k_d/π)
+//
+// The scalar T may be float, double or an automatic-differentiation type (ceres::Jet).
+//
+// Two things keep the formulas finite and exact in float where the text's form is not:
+// G1(x)/x is formed directly, so nothing divides by a small NoL or NoV; and D's denominator is
+// |n − (n·h)h|² + NoH²α², which is the text's for a unit normal but does not lose a narrow
+// highlight to the cancellation in 1 − NoH². That fixes what the model means beside the unit
+// sphere, and so the radial part of derivatives by the normal: it must be projected out (as
+// normalising does).
+#pragma once
+
+#include <cmath>
+
+#include "fitting/reflectance/convention.h"
+#include "fitting/reflectance/view.h"
+
+namespace glint {
+
+inline constexpr double kDotClamp = 1e-8;          // of every dot product
+inline constexpr double kDenominatorClamp = 1e-8;  // of D's denominator and of k, as in DIR's code
+inline constexpr double kInversePi = 0.318309886183790671538;
+
+// Reflectance of one texel; units and ranges as in svbrdf_maps.h, and in the order of its planes.
+template <class T>
+struct TexelSvbrdf {
+  T normal[3];  // unit
+  T diffuse[3];
+  T specular[3];
+  T roughness;
+};
+
+// One texel in one view. Make it with MakeTexelGeometry or TexelGeometryInView.
+template <class T>
+struct TexelGeometry {
+  T light[3];       // unit, texel to light
+  T camera[3];      // unit, texel to camera
+  T half[3];        // unit, between them
+  T fresnel;        // the power of two in F: depends on the directions only
+  T irradiance[3];  // exposure·E
+  T ambient[3];     // exposure·ambient
+};
+
+template <class T>
+T Dot(const T a[3], const T b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+template <class T>
+T ClampBelow(const T& x, double bound) {
+  return x > T(bound) ? x : T(bound);
+}
+
+template <class T>
+T FresnelWeight(const T& v_dot_h) {
+  using std::exp2;
+  return exp2(v_dot_h * (T(-5.55473) * v_dot_h - T(6.98316)));
+}
+
+// D's denominator: 1 at NoH = 0, α² at NoH = 1.
+template <class T>
+T GgxDenominator(const T normal[3], const T half[3], const T& alpha) {
+  const T n_dot_h = Dot(normal, half);
+  if (!(n_dot_h > T(kDotClamp))) {
+    return T(1) + T(kDotClamp * kDotClamp) * (alpha * alpha - T(1));
+  }
+  T sine_squared(0);
+  for (int i = 0; i < 3; ++i) {
+    const T across = normal[i] - n_dot_h * half[i];
+    sine_squared += across * across;
+  }
+  return ClampBelow(sine_squared + n_dot_h * n_dot_h * alpha * alpha, kDenominatorClamp);
+}
+
+// D·G / (4·NoL·NoV)
+template <class T>
+T SpecularFactor(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry) {
+  const T alpha = texel.roughness * texel.roughness;
+  const T k = ClampBelow(alpha * T(0.5), kDenominatorClamp);
+  const T n_dot_l = ClampBelow(Dot(texel.normal, geometry.light), kDotClamp);
+  const T n_dot_v = ClampBelow(Dot(texel.normal, geometry.camera), kDotClamp);
+  const T ratio = alpha / GgxDenominator(texel.normal, geometry.half, alpha);
+  const T masking = (n_dot_l * (T(1) - k) + k) * (n_dot_v * (T(1) - k) + k);
+  return ratio * ratio * T(0.25 * kInversePi) / masking;
+}
+
+// The diffuse lobe w·k_d/π of one channel.
+template <class T>
+T DiffuseLobe(const TexelSvbrdf<T>& texel, DiffuseWeight weight, int channel) {
+  const T lobe = texel.diffuse[channel] * T(kInversePi);
+  return weight == DiffuseWeight::kOne ? lobe : lobe * (T(1) - texel.specular[channel]);
+}
+
+// The BRDF f, per channel [1/sr]. `geometry` needs its directions only.
+template <class T>
+void EvaluateBrdf(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
+                  DiffuseWeight weight, T brdf[3]) {
+  const T factor = SpecularFactor(texel, geometry);
+  for (int c = 0; c < 3; ++c) {
+    const T fresnel = texel.specular[c] + (T(1) - texel.specular[c]) * geometry.fresnel;
+    brdf[c] = DiffuseLobe(texel, weight, c) + factor * fresnel;
+  }
+}
+
+// Radiance of the texel toward the camera, per channel.
+template <class T>
+void ShadeRadiance(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
+                   DiffuseWeight weight, T radiance[3]) {
+  const T n_dot_l = ClampBelow(Dot(texel.normal, geometry.light), kDotClamp);
+  EvaluateBrdf(texel, geometry, weight, radiance);
+  for (int c = 0; c < 3; ++c) {
+    radiance[c] = geometry.irradiance[c] * radiance[c] * n_dot_l +
+                  geometry.ambient[c] * DiffuseLobe(texel, weight, c);
+  }
+}
+
+// Geometry from unit directions (texel to light, texel to camera), exposure·E and exposure·ambient.
+template <class T>
+TexelGeometry<T> MakeTexelGeometry(const T light[3], const T camera[3], const T irradiance[3],
+                                   const T ambient[3]) {
+  using std::sqrt;
+  TexelGeometry<T> geometry;
+  T sum[3];
+  for (int i = 0; i < 3; ++i) sum[i] = light[i] + camera[i];
+  // Opposite directions have no half vector; the clamp keeps its length finite.
+  const T inverse = T(1) / sqrt(ClampBelow(Dot(sum, sum), 1e-20));
+  for (int i = 0; i < 3; ++i) {
+    geometry.light[i] = light[i];
+    geometry.camera[i] = camera[i];
+    geometry.half[i] = sum[i] * inverse;
+    geometry.irradiance[i] = irradiance[i];
+    geometry.ambient[i] = ambient[i];
+  }
+  geometry.fresnel = FresnelWeight(ClampBelow(Dot(geometry.camera, geometry.half), kDotClamp));
+  return geometry;
+}
+
+// Geometry of the texel at (x_mm, y_mm, 0) in the sample frame.
+template <class T>
+TexelGeometry<T> TexelGeometryInView(const View& view, LightFalloff falloff, const T& x_mm,
+                                     const T& y_mm) {
+  using std::sqrt;
+  const T position[3] = {x_mm, y_mm, T(0)};
+  T light[3], camera[3], irradiance[3], ambient[3];
+  for (int i = 0; i < 3; ++i) {
+    light[i] = T(view.light_in_sample_mm[i]) - position[i];
+    camera[i] = T(view.camera_in_sample_mm[i]) - position[i];
+  }
+  const T light_inverse = T(1) / sqrt(Dot(light, light));
+  const T camera_inverse = T(1) / sqrt(Dot(camera, camera));
+  const T attenuation =
+      falloff == LightFalloff::kInverseSquare ? light_inverse * light_inverse : T(1);
+  for (int i = 0; i < 3; ++i) {
+    light[i] *= light_inverse;
+    camera[i] *= camera_inverse;
+    irradiance[i] = T(view.exposure * view.light_rgb[i]) * attenuation;
+    ambient[i] = T(view.exposure * view.ambient_rgb[i]);
+  }
+  return MakeTexelGeometry(light, camera, irradiance, ambient);
+}
+
+}  // namespace glint
