@@ -23,15 +23,18 @@ struct Board {
   BoardKind kind = BoardKind::kCharuco;
   int squares_x = 0, squares_y = 0;  // squares, not inner corners
   double square_mm = 0;
-  double marker_mm = 0;                       // ChArUco only
-  std::string dictionary = "DICT_5X5_1000";   // ChArUco only: OpenCV's name of the ArUco dictionary
-  bool legacy_layout = false;                 // ChArUco only: OpenCV < 4.6's layout of even-row boards
+  double marker_mm = 0;                      // ChArUco only
+  std::string dictionary = "DICT_5X5_1000";  // ChArUco only: OpenCV's name of the ArUco dictionary
+  // ChArUco only: the layout of OpenCV < 4.6 (setLegacyPattern of OpenCV >= 4.7), where boards with
+  // an even number of rows have a marker, not a black square, at the top left. Odd rows: no
+  // difference.
+  bool legacy_layout = false;
   std::optional<BoardWindow> window;
   Eigen::Vector2d board_centre_in_sample_mm{0, 0};
 };
 
-// An inner corner of the squares. Ids are row-major over (squares_x − 1) × (squares_y − 1), top left
-// first, also where corners inside the window do not exist.
+// An inner corner of the squares. Ids are row-major over (squares_x − 1) × (squares_y − 1), top
+// left first; corners that touch the window do not exist, and the others keep their ids.
 struct BoardCorner {
   int id = 0;
   Eigen::Vector2d position_in_sample_mm;
@@ -45,6 +48,15 @@ struct BoardMarker {
 
 // Returns what is wrong with the description ("" when nothing): field, found, mend.
 std::string CheckBoard(const Board& board);
+
+// Whether square (column, row) is printed: on the board and outside the window.
+bool SquareExists(const Board& board, int column, int row);
+// Square (0, 0) is black, and neighbours alternate (OpenCV >= 4.7; see legacy_layout). White
+// squares of a ChArUco board hold the markers, numbered row by row from the top left; those that
+// fall into the window keep their numbers, so that a frame is a full board with its middle cut out.
+bool SquareIsBlack(const Board& board, int column, int row);
+// The point `column` squares from the board's left edge and `row` squares below its top edge.
+Eigen::Vector2d GridPointInSample(const Board& board, double column, double row);
 
 std::vector<BoardCorner> BoardCorners(const Board& board);
 std::vector<BoardMarker> BoardMarkers(const Board& board);  // empty for a checkerboard
