@@ -13,19 +13,19 @@
 namespace glint {
 
 struct CalibratedPhoto {
-  std::string photo;      // relative to the capture's folder
-  int camera = 0;         // index into Calibration::cameras
+  std::string photo;  // relative to the capture's folder
+  int camera = 0;     // index into Calibration::cameras
   Rigid3 camera_from_sample;
   Eigen::Vector3d light_in_camera_mm{0, 0, 0};  // flash position in the camera frame
-  double rms_px = 0;      // reprojection error of its inlier corners
+  double rms_px = 0;                            // reprojection error of its inlier corners
   int corners = 0, inliers = 0;
 };
 
 struct Calibration {
   std::vector<Camera> cameras;
   std::vector<CalibratedPhoto> photos;  // accepted flash photographs, in capture order
-  Eigen::Vector3d light_rgb{1, 1, 1};   // power, radiance·mm² in units where the sensor clips at 1
-  bool light_power_known = false;       // false: light_rgb is a first guess
+  Eigen::Vector3d light_rgb{1, 1, 1};  // power, radiance·mm² in units where the sensor clips at 1
+  bool light_power_known = false;      // false: light_rgb is a first guess
 };
 
 Json ToJson(const Calibration& calibration);

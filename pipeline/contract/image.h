@@ -41,18 +41,26 @@ void WriteExr(const std::filesystem::path& file, const Image& image,
 Image ReadExr(const std::filesystem::path& file,
               std::map<std::string, std::string>* attributes = nullptr);
 
-// 8 or 16 bit PNG (1, 3 or 4 channels), values clamped to [0, 1] and rounded. Throws EnvironmentError.
+// 8 or 16 bit PNG (1, 3 or 4 channels), values clamped to [0, 1] and rounded. Throws
+// EnvironmentError.
 void WritePng(const std::filesystem::path& file, const Image& image, int bits = 8);
+
+// Size and channels of any image, from its header alone. Throws UserError.
+struct ImageHeader {
+  int width = 0, height = 0;
+  std::vector<std::string> channels;
+};
+ImageHeader ReadImageHeader(const std::filesystem::path& file);
 
 // What a camera wrote: samples as stored (8/16 bit divided by 255/65535; float as is), EXIF
 // orientation applied, alpha dropped, grey widened to RGB.
 struct Photo {
-  Image image;          // R, G, B; not linearised
-  int bits = 8;         // 8, 16, or 32 for float
+  Image image;   // R, G, B; not linearised
+  int bits = 8;  // 8, 16, or 32 for float
   bool is_float() const { return bits == 32; }
   double focal_length_35mm = 0;  // EXIF; 0: absent
   double exposure_time_s = 0, iso = 0, f_number = 0;
-  std::string camera_model;      // EXIF make and model
+  std::string camera_model;  // EXIF make and model
 };
 
 // JPEG, PNG, TIFF, EXR, HEIC, RAW… Throws UserError (missing, empty, truncated, not an image, too

@@ -19,7 +19,7 @@ struct ManifestInput {
 struct ManifestOutput {
   std::string path;
   std::string hash;
-  int width = 0, height = 0;           // 0 for files that are no images
+  int width = 0, height = 0;  // 0 for files that are no images
   std::vector<std::string> channels;
 };
 
@@ -35,8 +35,8 @@ struct Manifest {
 
 Json ToJson(const Manifest& manifest);
 
-// Reads and checks structure, format and stage. `expected_stage` empty: any. Throws UserError naming
-// file, field, found and mend.
+// Reads and checks structure, format and stage. `expected_stage` empty: any. Throws UserError
+// naming file, field, found and mend.
 Manifest ReadManifest(const std::filesystem::path& file, const std::string& expected_stage = "");
 
 // Compares the outputs on disk with their hashes; throws UserError on the first that differs.

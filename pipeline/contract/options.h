@@ -26,9 +26,9 @@ enum class Invalidates { kYes, kNo };
 
 class OptionSet {
  public:
-  using Target = std::variant<bool*, int*, std::uint64_t*, double*, std::string*,
-                              std::filesystem::path*, std::vector<std::string>*,
-                              std::vector<double>*>;
+  using Target =
+      std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::filesystem::path*,
+                   std::vector<std::string>*, std::vector<double>*>;
 
   // Names are kebab-case on the command line and in capture.toml ("max-iterations").
   void Add(const std::string& name, Target target, const std::string& help,

@@ -12,10 +12,10 @@
 namespace glint {
 
 struct CommonOptions {
-  int threads = 0;          // resolved: at least 1
-  std::uint64_t seed = 0;   // enters the manifest
+  int threads = 0;         // resolved: at least 1
+  std::uint64_t seed = 0;  // enters the manifest
   std::string log_level = "info";
-  bool json = false;        // the result on stdout as JSON
+  bool json = false;  // the result on stdout as JSON
 };
 
 // What a program leaves on stdout: `text` for a person, or `json` with --json.

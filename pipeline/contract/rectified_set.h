@@ -24,7 +24,8 @@ struct RectifiedSet {
   std::filesystem::path manifest_file;
   SamplePlane plane;
   ReflectanceConvention convention;
-  bool light_power_known = true;  // false: light_rgb is a first guess, common factor to be estimated
+  bool light_power_known =
+      true;  // false: light_rgb is a first guess, common factor to be estimated
   std::vector<RectifiedView> views;
 };
 
@@ -48,7 +49,8 @@ void WriteRectifiedImage(const std::filesystem::path& file, const RectifiedImage
 
 // Views named by `only` (empty: all) less those named by `exclude`; names are a view's name or the
 // photograph's file name. Throws UserError for a name that no view has, or when none is left.
-std::vector<RectifiedView> SelectViews(const RectifiedSet& set, const std::vector<std::string>& only,
+std::vector<RectifiedView> SelectViews(const RectifiedSet& set,
+                                       const std::vector<std::string>& only,
                                        const std::vector<std::string>& exclude);
 
 }  // namespace glint

@@ -5,9 +5,9 @@
 //   WriteExr(stage.Output("view_000.exr"), …);
 //   stage.Commit(data, metrics);
 //
-// Outputs are written into a sibling folder (".rectify.new"); Commit writes the manifest last, syncs,
-// and exchanges the two folders atomically. Killed at any moment, the old or the new result stands,
-// and the next run clears what was left over.
+// Outputs are written into a sibling folder (".rectify.new"); Commit writes the manifest last,
+// syncs, and exchanges the two folders atomically. Killed at any moment, the old or the new result
+// stands, and the next run clears what was left over.
 #pragma once
 
 #include <filesystem>

@@ -1,0 +1,119 @@
+#include "pipeline/contract/calibration.h"
+
+#include <cmath>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/manifest.h"
+
+namespace glint {
+namespace {
+
+std::vector<double> List(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Camera ReadCamera(const std::filesystem::path& file, const Json& json, const std::string& name) {
+  Camera camera;
+  const std::string model = RequireString(file, json, name, "model");
+  const auto known = CameraModelFromName(model);
+  if (!known) {
+    throw UserError(file, name + ".model", "'" + model + "'",
+                    "use SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV or FULL_OPENCV");
+  }
+  camera.model = *known;
+  camera.width_px = static_cast<int>(RequireNumber(file, json, name, "width_px"));
+  camera.height_px = static_cast<int>(RequireNumber(file, json, name, "height_px"));
+  camera.parameters =
+      RequireNumbers(file, json, name, "parameters", CameraParameterNames(camera.model).size());
+  if (camera.focal_length_x() <= 0 || camera.focal_length_y() <= 0 || camera.width_px < 1 ||
+      camera.height_px < 1) {
+    throw UserError(file, name, "a focal length or size that is not positive", "run calib again");
+  }
+  return camera;
+}
+
+CalibratedPhoto ReadPhoto(const std::filesystem::path& file, const Json& json,
+                          const std::string& name, size_t cameras) {
+  CalibratedPhoto photo;
+  photo.photo = RequireString(file, json, name, "photo");
+  const double camera = RequireNumber(file, json, name, "camera");
+  if (camera < 0 || camera >= static_cast<double>(cameras) || camera != std::floor(camera)) {
+    throw UserError(file, name + ".camera", std::to_string(camera),
+                    "no such camera; run calib again");
+  }
+  photo.camera = static_cast<int>(camera);
+  const Json& pose = RequireField(file, json, name, "camera_from_sample");
+  const auto rotation = RequireNumbers(file, pose, name + ".camera_from_sample", "rotation", 9);
+  const auto translation =
+      RequireNumbers(file, pose, name + ".camera_from_sample", "translation_mm", 3);
+  photo.camera_from_sample.rotation =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data());
+  photo.camera_from_sample.translation = Eigen::Map<const Eigen::Vector3d>(translation.data());
+  const auto& r = photo.camera_from_sample.rotation;
+  if (!(r * r.transpose()).isIdentity(1e-6) || r.determinant() < 0) {
+    throw UserError(file, name + ".camera_from_sample.rotation", "a matrix that is no rotation",
+                    "run calib again");
+  }
+  const auto light = RequireNumbers(file, json, name, "light_in_camera_mm", 3);
+  photo.light_in_camera_mm = Eigen::Map<const Eigen::Vector3d>(light.data());
+  photo.rms_px = RequireNumber(file, json, name, "rms_px");
+  photo.corners = static_cast<int>(RequireNumber(file, json, name, "corners"));
+  photo.inliers = static_cast<int>(RequireNumber(file, json, name, "inliers"));
+  return photo;
+}
+
+}  // namespace
+
+Json ToJson(const Calibration& calibration) {
+  Json data;
+  data["cameras"] = Json::array();
+  for (const Camera& camera : calibration.cameras) {
+    data["cameras"].push_back({{"model", std::string(CameraModelName(camera.model))},
+                               {"width_px", camera.width_px},
+                               {"height_px", camera.height_px},
+                               {"parameters", camera.parameters}});
+  }
+  data["light_rgb"] = List(calibration.light_rgb);
+  data["light_power_known"] = calibration.light_power_known;
+  data["photos"] = Json::array();
+  for (const CalibratedPhoto& photo : calibration.photos) {
+    std::vector<double> rotation;
+    for (int i = 0; i < 9; ++i) rotation.push_back(photo.camera_from_sample.rotation(i / 3, i % 3));
+    data["photos"].push_back(
+        {{"photo", photo.photo},
+         {"camera", photo.camera},
+         {"camera_from_sample",
+          {{"rotation", rotation}, {"translation_mm", List(photo.camera_from_sample.translation)}}},
+         {"light_in_camera_mm", List(photo.light_in_camera_mm)},
+         {"rms_px", photo.rms_px},
+         {"corners", photo.corners},
+         {"inliers", photo.inliers}});
+  }
+  return data;
+}
+
+Calibration ReadCalibration(const std::filesystem::path& manifest_file) {
+  const Manifest manifest = ReadManifest(manifest_file, "calib");
+  VerifyOutputs(manifest_file, manifest);
+  Calibration calibration;
+  const Json& cameras = RequireField(manifest_file, manifest.data, "data", "cameras");
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    calibration.cameras.push_back(
+        ReadCamera(manifest_file, cameras[i], "data.cameras[" + std::to_string(i) + "]"));
+  }
+  const auto light = RequireNumbers(manifest_file, manifest.data, "data", "light_rgb", 3);
+  calibration.light_rgb = Eigen::Map<const Eigen::Vector3d>(light.data());
+  const Json& known = RequireField(manifest_file, manifest.data, "data", "light_power_known");
+  if (!known.is_boolean()) {
+    throw UserError(manifest_file, "data.light_power_known", known.dump(),
+                    "true or false is expected");
+  }
+  calibration.light_power_known = known.get<bool>();
+  const Json& photos = RequireField(manifest_file, manifest.data, "data", "photos");
+  for (size_t i = 0; i < photos.size(); ++i) {
+    calibration.photos.push_back(ReadPhoto(manifest_file, photos[i],
+                                           "data.photos[" + std::to_string(i) + "]",
+                                           calibration.cameras.size()));
+  }
+  return calibration;
+}
+
+}  // namespace glint

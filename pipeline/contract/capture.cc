@@ -1,0 +1,316 @@
+#include "pipeline/contract/capture.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/toml_file.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxPhotos = 10000;
+constexpr int kMaxResolution_px = 16384;
+
+// One table of the file, read key by key; what is not asked for is unknown in the end.
+class TableReader {
+ public:
+  TableReader(const fs::path& file, const toml::table& document, std::string name)
+      : file_(file), name_(std::move(name)) {
+    const toml::node* node = document.get(name_);
+    if (node == nullptr) return;
+    if (!node->is_table()) {
+      throw UserError(file_, name_, DescribeToml(*node), "write a table: [" + name_ + "]");
+    }
+    table_ = node->as_table();
+  }
+
+  bool present() const { return table_ != nullptr; }
+
+  const toml::node* Find(const std::string& key) {
+    known_.push_back(key);
+    return table_ == nullptr ? nullptr : table_->get(key);
+  }
+
+  [[noreturn]] void Reject(const toml::node& node, const std::string& key,
+                           const std::string& mend) const {
+    throw UserError(file_, TomlPlace{file_, name_ + "." + key}.Field(node), DescribeToml(node),
+                    mend);
+  }
+  [[noreturn]] void Missing(const std::string& key, const std::string& mend) const {
+    throw UserError(file_, name_ + "." + key, "no such key", mend);
+  }
+
+  double Number(const std::string& key, double fallback, double low, double high,
+                const std::string& unit) {
+    const toml::node* node = Find(key);
+    if (node == nullptr) return fallback;
+    const auto value = node->is_number() ? node->value<double>() : std::nullopt;
+    if (!value || !(*value >= low && *value <= high)) Reject(*node, key, "give a number" + unit);
+    return *value;
+  }
+
+  std::string Text(const std::string& key, const std::string& fallback,
+                   const std::vector<std::string>& choices = {}) {
+    const toml::node* node = Find(key);
+    if (node == nullptr) return fallback;
+    std::string list;
+    for (const std::string& choice : choices) list += (list.empty() ? "" : ", ") + choice;
+    if (!node->is_string())
+      Reject(*node, key, list.empty() ? "give a text" : "use one of: " + list);
+    const std::string text = node->as_string()->get();
+    if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end()) {
+      Reject(*node, key, "use one of: " + list);
+    }
+    return text;
+  }
+
+  // A list of `count` numbers (or one number repeated, where `one_for_all`); empty: absent.
+  std::vector<double> Numbers(const std::string& key, size_t count, bool one_for_all,
+                              const std::string& mend) {
+    const toml::node* node = Find(key);
+    if (node == nullptr) return {};
+    if (one_for_all && node->is_number()) return std::vector<double>(count, *node->value<double>());
+    const toml::array* array = node->as_array();
+    if (array == nullptr || array->size() != count) Reject(*node, key, mend);
+    std::vector<double> numbers;
+    for (const toml::node& element : *array) {
+      const auto value = element.is_number() ? element.value<double>() : std::nullopt;
+      if (!value || !std::isfinite(*value)) Reject(element, key, mend);
+      numbers.push_back(*value);
+    }
+    return numbers;
+  }
+
+  std::vector<int> Integers(const std::string& key, size_t count, bool one_for_all,
+                            const std::string& mend) {
+    const std::vector<double> numbers = Numbers(key, count, one_for_all, mend);
+    std::vector<int> integers;
+    for (const double number : numbers) {
+      if (number != std::floor(number) || std::abs(number) > 1e9)
+        Reject(*table_->get(key), key, mend);
+      integers.push_back(static_cast<int>(number));
+    }
+    return integers;
+  }
+
+  std::vector<std::string> Texts(const std::string& key, const std::string& mend) {
+    const toml::node* node = Find(key);
+    if (node == nullptr) return {};
+    if (node->is_string()) return {node->as_string()->get()};
+    const toml::array* array = node->as_array();
+    if (array == nullptr) Reject(*node, key, mend);
+    std::vector<std::string> texts;
+    for (const toml::node& element : *array) {
+      if (!element.is_string()) Reject(element, key, mend);
+      texts.push_back(element.as_string()->get());
+    }
+    return texts;
+  }
+
+  bool Flag(const std::string& key, bool fallback) {
+    const toml::node* node = Find(key);
+    if (node == nullptr) return fallback;
+    if (!node->is_boolean()) Reject(*node, key, "give true or false");
+    return node->as_boolean()->get();
+  }
+
+  // Throws on the first key that nobody asked for.
+  void RejectUnknown() const {
+    if (table_ == nullptr) return;
+    for (const auto& [key, node] : *table_) {
+      if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
+      std::string list;
+      for (const std::string& name : known_) list += (list.empty() ? "" : ", ") + name;
+      throw UserError(file_, TomlPlace{file_, name_ + "." + std::string(key.str())}.Field(node),
+                      "an unknown key", "use one of: " + list);
+    }
+  }
+
+ private:
+  fs::path file_;
+  std::string name_;
+  const toml::table* table_ = nullptr;
+  std::vector<std::string> known_;
+};
+
+// Files of `folder` that match "some/folder/*.jpg", sorted by name, relative to `folder`. Patterns
+// with * or ? may match none; a plain name must exist. Case is folded: phones write .JPG.
+std::vector<std::string> Match(const fs::path& folder, const std::string& pattern,
+                               const fs::path& file, const std::string& field) {
+  const fs::path relative(pattern);
+  if (relative.is_absolute() || pattern.find("..") != std::string::npos) {
+    throw UserError(file, field, "'" + pattern + "'", "give a path inside the capture's folder");
+  }
+  if (pattern.find_first_of("*?[") == std::string::npos) {
+    if (!fs::is_regular_file(folder / relative)) {
+      throw UserError(file, field, "no file '" + pattern + "'", "check the name");
+    }
+    return {relative.generic_string()};
+  }
+  std::vector<std::string> found;
+  const fs::path where = folder / relative.parent_path();
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(where, error)) {
+    const std::string name = entry.path().filename();
+    if (!entry.is_regular_file() || name[0] == '.') continue;
+    if (fnmatch(relative.filename().c_str(), name.c_str(), FNM_CASEFOLD) == 0) {
+      found.push_back((relative.parent_path() / name).generic_string());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<std::string> MatchAll(const fs::path& folder, const std::vector<std::string>& patterns,
+                                  const fs::path& file, const std::string& field) {
+  std::vector<std::string> all;
+  std::set<std::string> seen;
+  for (const std::string& pattern : patterns) {
+    for (const std::string& name : Match(folder, pattern, file, field)) {
+      if (seen.insert(name).second) all.push_back(name);
+    }
+  }
+  if (all.size() > kMaxPhotos) {
+    throw UserError(file, field, std::to_string(all.size()) + " files",
+                    "at most " + std::to_string(kMaxPhotos) + " photographs are read");
+  }
+  return all;
+}
+
+void ReadSample(const fs::path& file, const toml::table& document, Capture* capture) {
+  TableReader table(file, document, "sample");
+  const auto size = table.Numbers("size_mm", 2, false, "give [width, height] in millimetres");
+  if (size.empty()) table.Missing("size_mm", "give [width, height] of the sample in millimetres");
+  if (!(size[0] > 0 && size[1] > 0 && size[0] < 1e5 && size[1] < 1e5)) {
+    table.Reject(*document["sample"]["size_mm"].node(), "size_mm",
+                 "give a positive width and height in millimetres");
+  }
+  capture->sample_size_mm = {size[0], size[1]};
+  const auto centre = table.Numbers("centre_mm", 2, false, "give [x, y] in millimetres");
+  if (!centre.empty()) capture->board.board_centre_in_sample_mm = {-centre[0], -centre[1]};
+
+  const std::string mend = "give a width in texels, or [width, height], from 8 to 16384";
+  const toml::node* node = table.Find("resolution_px");
+  if (node == nullptr) {
+    capture->resolution_px = {1024, static_cast<int>(std::lround(1024 * size[1] / size[0]))};
+  } else if (node->is_integer()) {
+    const auto width = node->as_integer()->get();
+    if (width < 8 || width > kMaxResolution_px) table.Reject(*node, "resolution_px", mend);
+    capture->resolution_px = {
+        static_cast<int>(width),
+        static_cast<int>(std::lround(static_cast<double>(width) * size[1] / size[0]))};
+  } else {
+    const auto pair = table.Integers("resolution_px", 2, false, mend);
+    capture->resolution_px = {pair[0], pair[1]};
+  }
+  for (const int side : capture->resolution_px) {
+    if (side < 8 || side > kMaxResolution_px) {
+      throw UserError(file, "sample.resolution_px", std::to_string(side), mend);
+    }
+  }
+  table.RejectUnknown();
+}
+
+void ReadBoard(const fs::path& file, const toml::table& document, Capture* capture) {
+  TableReader table(file, document, "board");
+  capture->has_board = table.present();
+  if (!capture->has_board) return;
+  Board& board = capture->board;
+  const std::string kind = table.Text("kind", "charuco", {"charuco", "checkerboard"});
+  board.kind = kind == "charuco" ? BoardKind::kCharuco : BoardKind::kCheckerboard;
+  const auto squares =
+      table.Integers("squares", 2, false, "give [columns, rows] of squares as whole numbers");
+  const auto corners =
+      table.Integers("inner_corners", 2, false, "give [columns, rows] of inner corners");
+  if (squares.empty() == corners.empty()) {
+    table.Missing("squares",
+                  "give either squares = [columns, rows] or inner_corners = [columns, rows]");
+  }
+  board.squares_x = squares.empty() ? corners[0] + 1 : squares[0];
+  board.squares_y = squares.empty() ? corners[1] + 1 : squares[1];
+  board.square_mm = table.Number("square_mm", 0, 1e-3, 1e4, " of millimetres, greater than 0");
+  if (board.square_mm == 0) table.Missing("square_mm", "give the side of a square in millimetres");
+  board.marker_mm = table.Number("marker_mm", 0, 1e-3, 1e4, " of millimetres, greater than 0");
+  board.dictionary = table.Text("dictionary", board.dictionary);
+  board.legacy_layout = table.Flag("legacy_layout", false);
+  const auto window = table.Integers("window", 4, false,
+                                     "give [first column, first row, columns, rows] in squares");
+  if (!window.empty()) board.window = BoardWindow{window[0], window[1], window[2], window[3]};
+  const auto patterns = table.Texts("photos", "give a list of patterns such as [\"board/*.jpg\"]");
+  capture->board_photos = MatchAll(capture->folder, patterns, file, "board.photos");
+  table.RejectUnknown();
+  if (const std::string wrong = CheckBoard(board); !wrong.empty()) {
+    throw UserError(file.string() + ": board: " + wrong);
+  }
+}
+
+void ReadRadiometry(const fs::path& file, const toml::table& document, Capture* capture) {
+  TableReader radiometry(file, document, "radiometry");
+  capture->encoding = radiometry.Text("encoding", "auto", {"auto", "srgb", "gamma2.2", "linear"});
+  radiometry.RejectUnknown();
+  TableReader light(file, document, "light");
+  const auto offset = light.Numbers("offset_mm", 3, false, "give [x, y, z] in millimetres");
+  if (!offset.empty()) capture->light_offset_mm = {offset[0], offset[1], offset[2]};
+  for (auto [key, target] :
+       {std::pair{"power", &capture->light_power}, std::pair{"ambient", &capture->ambient}}) {
+    const std::string mend = "give a number or [r, g, b], none below 0";
+    const auto numbers = light.Numbers(key, 3, true, mend);
+    if (numbers.empty()) continue;
+    for (const double number : numbers) {
+      if (number < 0) light.Reject(*document["light"][key].node(), key, mend);
+    }
+    *target = {numbers[0], numbers[1], numbers[2]};
+  }
+  light.RejectUnknown();
+}
+
+void RejectUnknownTables(const fs::path& file, const toml::table& document) {
+  static const std::set<std::string, std::less<>> known = {
+      "sample",  "photos", "board",  "radiometry", "light", "calib",
+      "rectify", "fit",    "refine", "export",     "report"};
+  for (const auto& [key, node] : document) {
+    if (known.count(std::string(key.str())) > 0) continue;
+    std::string list;
+    for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+    throw UserError(file, TomlPlace{file, std::string(key.str())}.Field(node), "an unknown key",
+                    "use one of the tables: " + list);
+  }
+}
+
+}  // namespace
+
+Capture ReadCapture(const fs::path& folder) {
+  Capture capture;
+  capture.folder = folder.filename() == "capture.toml" ? folder.parent_path() : folder;
+  if (capture.folder.empty()) capture.folder = ".";
+  capture.file = capture.folder / "capture.toml";
+  if (!fs::is_directory(capture.folder)) {
+    throw UserError(capture.folder, "", "no such folder", "give the folder of a capture");
+  }
+  if (!fs::exists(capture.file)) {
+    throw UserError(capture.file, "", "no such file",
+                    "write one with: glint init " + capture.folder.string());
+  }
+  const auto document = ReadTomlFile(capture.file);
+  RejectUnknownTables(capture.file, *document);
+  ReadSample(capture.file, *document, &capture);
+  TableReader photos(capture.file, *document, "photos");
+  const auto patterns = photos.Texts("files", "give a list of patterns such as [\"photos/*.jpg\"]");
+  photos.RejectUnknown();
+  capture.photos = MatchAll(capture.folder, patterns, capture.file, "photos.files");
+  ReadBoard(capture.file, *document, &capture);
+  ReadRadiometry(capture.file, *document, &capture);
+  if (photos.present() && capture.photos.empty()) {
+    throw UserError(capture.file, "photos.files", "no photograph that matches",
+                    "put photographs into the folder, or mend the pattern");
+  }
+  return capture;
+}
+
+}  // namespace glint

@@ -1,0 +1,35 @@
+// OpenImageIO with bounds on what untrusted files may make it allocate. Included by .cc files only.
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "pipeline/contract/errors.h"
+
+namespace glint {
+
+// Limits on size and channels, one thread inside the library (ours run outside); done once.
+void SetUpOiio();
+
+// Opens an image and checks its header. Throws UserError: missing, empty, not an image, too large.
+std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
+                                            const OIIO::ImageSpec* configuration = nullptr);
+
+[[noreturn]] void RejectTruncated(const std::filesystem::path& file, OIIO::ImageInput* input);
+
+// All samples, interleaved. Throws UserError when the file ends early.
+template <class T>
+std::vector<T> ReadSamples(const std::filesystem::path& file, OIIO::ImageInput* input,
+                           OIIO::TypeDesc type) {
+  const OIIO::ImageSpec& spec = input->spec();
+  std::vector<T> samples(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, type, samples.data())) {
+    RejectTruncated(file, input);
+  }
+  return samples;
+}
+
+}  // namespace glint

@@ -1,0 +1,208 @@
+#include "pipeline/contract/options.h"
+
+#include <toml++/toml.h>
+#include <CLI/CLI.hpp>
+#include <limits>
+#include <memory>
+#include <sstream>
+#include <type_traits>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/toml_file.h"
+
+namespace glint {
+namespace {
+
+template <class T>
+struct IsList : std::false_type {};
+template <class T>
+struct IsList<std::vector<T>> : std::true_type {};
+
+std::string Joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string NumberText(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+[[noreturn]] void Reject(const toml::node& node, const TomlPlace& place,
+                         const std::string& wanted) {
+  throw UserError(place.file, place.Field(node), DescribeToml(node), "give " + wanted);
+}
+
+// One overload a target type: reads `node` into *target or rejects it.
+void ReadInto(const toml::node& node, const TomlPlace& place, bool* target) {
+  if (!node.is_boolean()) Reject(node, place, "true or false");
+  *target = node.as_boolean()->get();
+}
+void ReadInto(const toml::node& node, const TomlPlace& place, int* target) {
+  if (!node.is_integer()) Reject(node, place, "a whole number");
+  const auto value = node.as_integer()->get();
+  if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) {
+    Reject(node, place, "a whole number of at most 2147483647");
+  }
+  *target = static_cast<int>(value);
+}
+void ReadInto(const toml::node& node, const TomlPlace& place, std::uint64_t* target) {
+  if (!node.is_integer() || node.as_integer()->get() < 0) {
+    Reject(node, place, "a whole number of at least 0");
+  }
+  *target = static_cast<std::uint64_t>(node.as_integer()->get());
+}
+void ReadInto(const toml::node& node, const TomlPlace& place, double* target) {
+  const auto value = node.value<double>();
+  if (!node.is_number() || !value) Reject(node, place, "a number");
+  *target = *value;
+}
+void ReadInto(const toml::node& node, const TomlPlace& place, std::string* target) {
+  if (!node.is_string()) Reject(node, place, "a text in quotes");
+  *target = node.as_string()->get();
+}
+void ReadInto(const toml::node& node, const TomlPlace& place, std::filesystem::path* target) {
+  if (!node.is_string()) Reject(node, place, "a path in quotes");
+  const std::filesystem::path path = node.as_string()->get();
+  // Paths in a capture.toml are relative to its folder.
+  *target = path.is_absolute() || path.empty() ? path : place.file.parent_path() / path;
+}
+template <class T>
+void ReadInto(const toml::node& node, const TomlPlace& place, std::vector<T>* target) {
+  if (!node.is_array()) Reject(node, place, "a list in square brackets");
+  target->clear();
+  for (const toml::node& element : *node.as_array()) {
+    T value{};
+    ReadInto(element, place, &value);
+    target->push_back(value);
+  }
+}
+
+}  // namespace
+
+void OptionSet::Add(const std::string& name, Target target, const std::string& help,
+                    Invalidates invalidates) {
+  Option option;
+  option.name = name;
+  option.target = target;
+  option.help = help;
+  option.invalidates = invalidates;
+  options_.push_back(std::move(option));
+}
+
+void OptionSet::AddChoice(const std::string& name, std::string* target,
+                          std::vector<std::string> choices, const std::string& help,
+                          Invalidates invalidates) {
+  Add(name, target, help, invalidates);
+  options_.back().choices = std::move(choices);
+}
+
+void OptionSet::AddRange(const std::string& name, Target target, double low, double high,
+                         const std::string& help, Invalidates invalidates) {
+  Add(name, target, help, invalidates);
+  options_.back().low = low;
+  options_.back().high = high;
+  options_.back().has_range = true;
+}
+
+void OptionSet::AddPositional(const std::string& name, Target target, const std::string& help,
+                              bool required) {
+  Add(name, target, help, Invalidates::kNo);
+  options_.back().positional = true;
+  options_.back().required = required;
+}
+
+void OptionSet::Register(CLI::App* app) {
+  for (Option& option : options_) {
+    const std::string flag = option.positional ? option.name : "--" + option.name;
+    CLI::Option* registered = std::visit(
+        [&](auto* target) -> CLI::Option* {
+          using T = std::remove_pointer_t<decltype(target)>;
+          CLI::Option* added = nullptr;
+          if constexpr (std::is_same_v<T, bool>) {
+            added = app->add_flag(flag + ",!--no-" + option.name, *target, option.help);
+          } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
+            added = app->add_option_function<std::string>(
+                flag, [target](const std::string& text) { *target = text; }, option.help);
+            added->type_name("PATH");
+          } else {
+            added = app->add_option(flag, *target, option.help);
+            if constexpr (IsList<T>::value) {
+              if (!option.positional) added->delimiter(',');
+            } else {
+              added->capture_default_str();
+            }
+          }
+          return added;
+        },
+        option.target);
+    if (option.required) registered->required();
+    if (!option.choices.empty()) registered->check(CLI::IsMember(option.choices));
+    if (option.has_range) registered->check(CLI::Range(option.low, option.high));
+    option.set_on_command_line = [registered] { return registered->count() > 0; };
+  }
+}
+
+void OptionSet::LoadToml(const std::filesystem::path& file, const std::string& table) {
+  const auto document = ReadTomlFile(file);
+  const toml::node* node = document->get(table);
+  if (node == nullptr) return;
+  if (!node->is_table()) {
+    throw UserError(file, table, DescribeToml(*node), "write a table: [" + table + "]");
+  }
+  for (const auto& [key, value] : *node->as_table()) {
+    const TomlPlace place{file, table + "." + std::string(key.str())};
+    Option* found = nullptr;
+    std::vector<std::string> known;
+    for (Option& option : options_) {
+      if (option.positional) continue;
+      known.push_back(option.name);
+      if (option.name == key.str()) found = &option;
+    }
+    if (found == nullptr) {
+      throw UserError(file, place.Field(value), "an unknown key", "use one of: " + Joined(known));
+    }
+    if (found->set_on_command_line && found->set_on_command_line()) continue;
+    std::visit([&](auto* target) { ReadInto(value, place, target); }, found->target);
+    if (!found->choices.empty()) {
+      const std::string& text = *std::get<std::string*>(found->target);
+      if (std::find(found->choices.begin(), found->choices.end(), text) == found->choices.end()) {
+        throw UserError(file, place.Field(value), "'" + text + "'",
+                        "use one of: " + Joined(found->choices));
+      }
+    }
+    if (found->has_range) {
+      const double number = value.value<double>().value_or(0);
+      if (!(number >= found->low && number <= found->high)) {
+        throw UserError(
+            file, place.Field(value), NumberText(number),
+            "use a value from " + NumberText(found->low) + " to " + NumberText(found->high));
+      }
+    }
+  }
+}
+
+Json OptionSet::Echo(Invalidates which) const {
+  Json echo = Json::object();
+  for (const Option& option : options_) {
+    if (option.positional || option.invalidates != which) continue;
+    std::visit(
+        [&](auto* target) {
+          if constexpr (std::is_same_v<std::remove_pointer_t<decltype(target)>,
+                                       std::filesystem::path>) {
+            echo[option.name] = target->generic_string();
+          } else {
+            echo[option.name] = *target;
+          }
+        },
+        option.target);
+  }
+  return echo;
+}
+
+Json OptionSet::ManifestEcho() const { return Echo(Invalidates::kYes); }
+Json OptionSet::RunEcho() const { return Echo(Invalidates::kNo); }
+
+}  // namespace glint

@@ -1,0 +1,102 @@
+#include "pipeline/contract/program.h"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <new>
+#include <system_error>
+#include <thread>
+
+#include "pipeline/contract/errors.h"
+
+namespace glint {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+
+void SetUpLogging(const std::string& program, const std::string& level) {
+  auto logger = spdlog::stderr_logger_mt(program);
+  logger->set_pattern(program + ": %l: %v");
+  logger->set_level(spdlog::level::from_str(level));
+  spdlog::set_default_logger(logger);
+}
+
+int Report(const ProgramInfo& info, int code, const std::string& message) {
+  std::fprintf(stderr, "%s: error: %s\n", info.name.c_str(), message.c_str());
+  return code;
+}
+
+int PrintResult(const ProgramInfo& info, const ProgramResult& result, bool json) {
+  std::string text = json ? result.json.dump(2) : result.text;
+  if (!text.empty() && text.back() != '\n') text += '\n';
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+    return Report(info, kExitEnvironment, "cannot write the result to stdout; is the disk full?");
+  }
+  return kExitDone;
+}
+
+int RunBody(const ProgramInfo& info, const CommonOptions& common,
+            const std::function<ProgramResult(const CommonOptions&)>& body) {
+  try {
+    return PrintResult(info, body(common), common.json);
+  } catch (const Error& error) {
+    return Report(info, error.code(), error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    const auto path = error.path1().string();
+    return Report(info, kExitEnvironment,
+                  (path.empty() ? "" : path + ": ") + error.code().message() +
+                      "; check the folder, its permissions and the free space");
+  } catch (const std::bad_alloc&) {
+    return Report(info, kExitEnvironment,
+                  "not enough memory; lower the resolution or the number of photographs");
+  } catch (const std::exception& error) {
+    return Report(info, kExitComputation, error.what());
+  }
+}
+
+}  // namespace
+
+int RunProgram(int argc, char** argv, const ProgramInfo& info, OptionSet* options,
+               const std::function<ProgramResult(const CommonOptions&)>& body) {
+  // A write past a file-size limit is an error to report, not a reason to die.
+  std::signal(SIGXFSZ, SIG_IGN);
+  CommonOptions common;
+  CLI::App app(info.description, info.name);
+  app.set_version_flag("--version", info.name + " " + info.version);
+  if (!info.footer.empty()) app.footer(info.footer);
+  options->Register(&app);
+  app.add_option("--threads", common.threads,
+                 "threads to use; 0: one a core. Never changes a result")
+      ->check(CLI::Range(0, kMaxThreads))
+      ->capture_default_str()
+      ->group("Common");
+  app.add_option("--seed", common.seed, "seed of everything random")
+      ->capture_default_str()
+      ->group("Common");
+  app.add_option("--log-level", common.log_level, "what is said on stderr")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
+      ->capture_default_str()
+      ->group("Common");
+  app.add_flag("--json", common.json, "write the result to stdout as JSON")->group("Common");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& help) {
+    app.exit(help);
+    return kExitDone;
+  } catch (const CLI::CallForVersion& version) {
+    app.exit(version);
+    return kExitDone;
+  } catch (const CLI::ParseError& error) {
+    return Report(info, kExitUser, std::string(error.what()) + "; see " + info.name + " --help");
+  }
+  if (common.threads == 0) {
+    common.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  }
+  SetUpLogging(info.name, common.log_level);
+  return RunBody(info, common, body);
+}
+
+}  // namespace glint

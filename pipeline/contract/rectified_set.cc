@@ -1,0 +1,197 @@
+#include "pipeline/contract/rectified_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/image.h"
+
+namespace glint {
+namespace {
+
+constexpr int kMaxSide_px = 16384;
+
+Json FromVec(const Vec3d& vector) {
+  return Json(std::vector<double>(vector.begin(), vector.end()));
+}
+
+Vec3d RequireVec(const std::filesystem::path& file, const Json& object, const std::string& name,
+                 const std::string& field) {
+  const std::vector<double> numbers = RequireNumbers(file, object, name, field, 3);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+bool RequireBool(const std::filesystem::path& file, const Json& object, const std::string& name,
+                 const std::string& field) {
+  const Json& value = RequireField(file, object, name, field);
+  if (!value.is_boolean()) {
+    throw UserError(file, name + "." + field, value.dump(), "true or false is expected");
+  }
+  return value.get<bool>();
+}
+
+int RequireSide(const std::filesystem::path& file, const Json& data, const std::string& field) {
+  const double value = RequireNumber(file, data, "data", field);
+  if (value < 1 || value > kMaxSide_px || value != std::floor(value)) {
+    throw UserError(file, "data." + field, std::to_string(value),
+                    "a whole number from 1 to " + std::to_string(kMaxSide_px) + " is expected");
+  }
+  return static_cast<int>(value);
+}
+
+RectifiedView ReadView(const std::filesystem::path& file, const Json& json, size_t index) {
+  const std::string name = "data.views[" + std::to_string(index) + "]";
+  RectifiedView view;
+  view.name = RequireString(file, json, name, "name");
+  view.file = RequireString(file, json, name, "file");
+  view.photo = RequireString(file, json, name, "photo");
+  view.ldr = RequireBool(file, json, name, "ldr");
+  view.view.camera_in_sample_mm = RequireVec(file, json, name, "camera_in_sample_mm");
+  view.view.light_in_sample_mm = RequireVec(file, json, name, "light_in_sample_mm");
+  view.view.light_rgb = RequireVec(file, json, name, "light_rgb");
+  view.view.ambient_rgb = RequireVec(file, json, name, "ambient_rgb");
+  view.view.exposure = RequireNumber(file, json, name, "exposure");
+  for (const auto& [field, z] :
+       {std::pair<const char*, double>{"camera_in_sample_mm", view.view.camera_in_sample_mm[2]},
+        {"light_in_sample_mm", view.view.light_in_sample_mm[2]}}) {
+    if (z <= 0) {
+      throw UserError(file, name + "." + field, "z = " + std::to_string(z),
+                      "it must stand in front of the sample (z > 0)");
+    }
+  }
+  return view;
+}
+
+bool Names(const RectifiedView& view, const std::string& name) {
+  const std::filesystem::path photo(view.photo);
+  return view.name == name || view.photo == name || photo.filename() == name ||
+         photo.stem() == name;
+}
+
+}  // namespace
+
+Json ToJson(const RectifiedSet& set) {
+  Json data;
+  data["width"] = set.plane.width;
+  data["height"] = set.plane.height;
+  data["width_mm"] = set.plane.width_mm;
+  data["height_mm"] = set.plane.height_mm;
+  data["convention"] = ToString(set.convention);
+  data["light_power_known"] = set.light_power_known;
+  data["views"] = Json::array();
+  for (const RectifiedView& view : set.views) {
+    data["views"].push_back({{"name", view.name},
+                             {"file", view.file},
+                             {"photo", view.photo},
+                             {"ldr", view.ldr},
+                             {"camera_in_sample_mm", FromVec(view.view.camera_in_sample_mm)},
+                             {"light_in_sample_mm", FromVec(view.view.light_in_sample_mm)},
+                             {"light_rgb", FromVec(view.view.light_rgb)},
+                             {"ambient_rgb", FromVec(view.view.ambient_rgb)},
+                             {"exposure", view.view.exposure}});
+  }
+  return data;
+}
+
+RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file) {
+  const Manifest manifest = ReadManifest(manifest_file, "rectify");
+  VerifyOutputs(manifest_file, manifest);
+  const Json& data = manifest.data;
+  RectifiedSet set;
+  set.manifest_file = manifest_file;
+  set.plane.width = RequireSide(manifest_file, data, "width");
+  set.plane.height = RequireSide(manifest_file, data, "height");
+  set.plane.width_mm = RequireNumber(manifest_file, data, "data", "width_mm");
+  set.plane.height_mm = RequireNumber(manifest_file, data, "data", "height_mm");
+  if (set.plane.width_mm <= 0 || set.plane.height_mm <= 0) {
+    throw UserError(manifest_file, "data.width_mm, data.height_mm", "a size that is not positive",
+                    "run rectify again");
+  }
+  const std::string convention = RequireString(manifest_file, data, "data", "convention");
+  try {
+    set.convention = ParseReflectanceConvention(convention);
+  } catch (const std::invalid_argument& error) {
+    throw UserError(manifest_file.string() + ": data.convention: " + error.what());
+  }
+  set.plane.sampling = set.convention.sampling;
+  set.light_power_known = RequireBool(manifest_file, data, "data", "light_power_known");
+  const Json& views = RequireField(manifest_file, data, "data", "views");
+  if (!views.is_array() || views.empty()) {
+    throw UserError(manifest_file, "data.views", "no views", "run rectify again");
+  }
+  for (size_t i = 0; i < views.size(); ++i) {
+    set.views.push_back(ReadView(manifest_file, views[i], i));
+  }
+  return set;
+}
+
+RectifiedImage ReadRectifiedImage(const RectifiedSet& set, const RectifiedView& view) {
+  const std::filesystem::path file = set.manifest_file.parent_path() / view.file;
+  const Image image = ReadExr(file);
+  if (image.width != set.plane.width || image.height != set.plane.height) {
+    throw UserError(file, "size", std::to_string(image.width) + "x" + std::to_string(image.height),
+                    "the manifest says " + std::to_string(set.plane.width) + "x" +
+                        std::to_string(set.plane.height) + "; run rectify again");
+  }
+  RectifiedImage result{image.width, image.height, {}, {}};
+  result.rgb.resize(3 * image.pixels());
+  int next = 0;
+  for (const char* name : {"R", "G", "B", "mask.Y"}) {
+    const int channel = image.ChannelIndex(name);
+    if (channel < 0) throw UserError(file, name, "no such channel", "run rectify again");
+    const auto plane = image.channel(channel);
+    if (!std::all_of(plane.begin(), plane.end(), [](float v) { return std::isfinite(v); })) {
+      throw UserError(file, name, "a value that is not a number", "run rectify again");
+    }
+    if (next < 3) {
+      std::copy(plane.begin(), plane.end(),
+                result.rgb.begin() + static_cast<std::ptrdiff_t>(next * image.pixels()));
+    } else {
+      result.mask.assign(plane.begin(), plane.end());
+    }
+    ++next;
+  }
+  return result;
+}
+
+void WriteRectifiedImage(const std::filesystem::path& file, const RectifiedImage& rectified,
+                         const RectifiedSet& set) {
+  Image image(rectified.width, rectified.height, {"R", "G", "B", "mask.Y"});
+  std::copy(rectified.rgb.begin(), rectified.rgb.end(), image.samples.begin());
+  std::copy(rectified.mask.begin(), rectified.mask.end(), image.channel(3).begin());
+  WriteExr(file, image, {{"reflectance_convention", ToString(set.convention)}});
+}
+
+std::vector<RectifiedView> SelectViews(const RectifiedSet& set,
+                                       const std::vector<std::string>& only,
+                                       const std::vector<std::string>& exclude) {
+  for (const auto* names : {&only, &exclude}) {
+    for (const std::string& name : *names) {
+      const bool known = std::any_of(set.views.begin(), set.views.end(),
+                                     [&](const RectifiedView& view) { return Names(view, name); });
+      if (known) continue;
+      std::string list;
+      for (const RectifiedView& view : set.views) {
+        list += (list.empty() ? "" : ", ") + view.name + " (" + view.photo + ")";
+      }
+      throw UserError(set.manifest_file, "views", "no view named '" + name + "'",
+                      "use a view's or photograph's name: " + list);
+    }
+  }
+  const auto named = [](const RectifiedView& view, const std::vector<std::string>& names) {
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& name) { return Names(view, name); });
+  };
+  std::vector<RectifiedView> views;
+  for (const RectifiedView& view : set.views) {
+    if ((only.empty() || named(view, only)) && !named(view, exclude)) views.push_back(view);
+  }
+  if (views.empty()) {
+    throw UserError(set.manifest_file, "views", "no view left after --views and --exclude",
+                    "keep at least one");
+  }
+  return views;
+}
+
+}  // namespace glint

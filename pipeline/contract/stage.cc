@@ -1,0 +1,178 @@
+#include "pipeline/contract/stage.h"
+
+#include <fcntl.h>
+#include <linux/fs.h>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/hash.h"
+#include "pipeline/contract/image.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+double Now_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+void MakeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw EnvironmentError(folder.string() + ": cannot create the folder: " + error.message() +
+                           "; check its permissions and the free space");
+  }
+}
+
+void SyncFile(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  const int result = ::fsync(descriptor);
+  const int error = errno;
+  ::close(descriptor);
+  if (result != 0 && error != EINVAL) {
+    throw EnvironmentError(file.string() + ": cannot be written to the disk: " +
+                           std::strerror(error) + "; free some space and run again");
+  }
+}
+
+// Puts `fresh` at `folder`'s place. With an old result there the two are exchanged in one step
+// where the file system can (Linux: ext4, xfs, btrfs, tmpfs); elsewhere the old one is moved aside
+// first.
+void Exchange(const fs::path& fresh, const fs::path& folder) {
+  if (!fs::exists(folder)) {
+    fs::rename(fresh, folder);
+    return;
+  }
+  if (::syscall(SYS_renameat2, AT_FDCWD, fresh.c_str(), AT_FDCWD, folder.c_str(),
+                RENAME_EXCHANGE) == 0) {
+    return;
+  }
+  const fs::path aside = fresh.string() + ".old";
+  fs::remove_all(aside);
+  fs::rename(folder, aside);
+  fs::rename(fresh, folder);
+  fs::remove_all(aside);
+}
+
+bool IsImage(const std::string& name) {
+  const std::string extension = fs::path(name).extension();
+  return extension == ".exr" || extension == ".png";
+}
+
+ManifestOutput Describe(const fs::path& folder, const std::string& name) {
+  ManifestOutput output;
+  output.path = name;
+  output.hash = HashFile(folder / name);
+  if (IsImage(name)) {
+    const ImageHeader header = ReadImageHeader(folder / name);
+    output.width = header.width;
+    output.height = header.height;
+    output.channels = header.channels;
+  }
+  return output;
+}
+
+}  // namespace
+
+Stage::Stage(fs::path folder, StageInfo info, const OptionSet& options, const CommonOptions& common,
+             std::vector<fs::path> inputs, bool force)
+    : folder_(fs::absolute(folder).lexically_normal()),
+      info_(std::move(info)),
+      options_(options.ManifestEcho()),
+      run_options_(options.RunEcho()),
+      threads_(common.threads),
+      started_s_(Now_s()) {
+  options_["seed"] = common.seed;
+  for (const fs::path& input : inputs) {
+    // Relative to the stage's folder, so that a capture can be moved as a whole.
+    const fs::path relative = fs::absolute(input).lexically_normal().lexically_relative(folder_);
+    inputs_.push_back({relative.generic_string(), HashFile(input)});
+  }
+  MakeFolder(folder_.parent_path());
+  lock_ = std::make_unique<FileLock>(folder_.parent_path() / (".lock-" + info_.name),
+                                     "stage " + info_.name + " of this capture");
+  fs::remove_all(staging());
+  // Where no exchange is possible, a kill may have left the old result aside with none in place.
+  const fs::path aside = staging().string() + ".old";
+  if (fs::exists(aside) && !fs::exists(folder_)) fs::rename(aside, folder_);
+  fs::remove_all(aside);
+  if (force || !fs::exists(manifest_file())) return;
+  try {
+    const Manifest manifest = ReadManifest(manifest_file(), info_.name);
+    Manifest wanted = manifest;
+    wanted.stage_version = info_.version;
+    wanted.options = options_;
+    wanted.inputs = inputs_;
+    VerifyOutputs(manifest_file(), manifest);
+    up_to_date_ = ToJson(wanted) == ToJson(manifest);
+  } catch (const UserError& error) {
+    spdlog::warn("{}; computing the stage anew", error.what());
+  }
+}
+
+fs::path Stage::staging() const {
+  return folder_.parent_path() / ("." + folder_.filename().string() + ".new");
+}
+
+fs::path Stage::Output(const std::string& name) {
+  outputs_.push_back(name);
+  const fs::path file = staging() / name;
+  MakeFolder(file.parent_path());
+  return file;
+}
+
+void Stage::WriteRunFacts() const {
+  const double finished_s = Now_s();
+  const std::time_t started = static_cast<std::time_t>(started_s_);
+  char text[32];
+  std::tm utc{};
+  gmtime_r(&started, &utc);
+  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  char host[256] = "";
+  gethostname(host, sizeof(host) - 1);
+  const Json facts = {{"started", text},
+                      {"seconds", finished_s - started_s_},
+                      {"host", host},
+                      {"threads", threads_},
+                      {"options", run_options_}};
+  WriteFileAtomically(staging() / "run.json", facts.dump(2) + "\n");
+}
+
+void Stage::Commit(const Json& data, const Json& metrics) {
+  MakeFolder(staging());
+  Manifest manifest;
+  manifest.stage = info_.name;
+  manifest.stage_version = info_.version;
+  manifest.inputs = inputs_;
+  manifest.options = options_;
+  manifest.data = data;
+  manifest.metrics = metrics;
+  for (const std::string& name : outputs_) {
+    SyncFile(staging() / name);
+    manifest.outputs.push_back(Describe(staging(), name));
+  }
+  WriteRunFacts();
+  WriteFileAtomically(staging() / "manifest.json", ToJson(manifest).dump(2) + "\n");
+  SyncFile(staging());
+  Exchange(staging(), folder_);
+  SyncFile(folder_.parent_path());
+  fs::remove_all(staging());
+  up_to_date_ = true;
+}
+
+std::string Stage::UpToDateText() const {
+  return info_.name + ": up to date (" + manifest_file().string() + ")";
+}
+
+}  // namespace glint
