@@ -1,0 +1,69 @@
+#include "datasets/formats/read_maps.h"
+
+#include "datasets/formats/map_folder.h"
+#include "datasets/formats/map_strip.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/image.h"
+#include "pipeline/contract/svbrdf_file.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kMend[] =
+    "give an svbrdf.exr, a strip of four maps (normal, diffuse, roughness, specular) or of five (a "
+    "photo before them), or a folder with NAME_Color, NAME_NormalGL and NAME_Roughness";
+
+MapLayout DetectInFolder(const fs::path& folder) {
+  if (fs::is_regular_file(folder / "svbrdf.exr")) return MapLayout::kSvbrdfExr;
+  if (!FindMapFiles(folder).empty()) return MapLayout::kColorFolder;
+  throw UserError(folder, "", "a folder with no maps that are known", kMend);
+}
+
+}  // namespace
+
+std::string_view MapLayoutName(MapLayout layout) {
+  switch (layout) {
+    case MapLayout::kSvbrdfExr:
+      return "svbrdf.exr";
+    case MapLayout::kDirStrip:
+      return "strip of four maps";
+    case MapLayout::kPhotoStrip:
+      return "strip of a photo and four maps";
+    case MapLayout::kColorFolder:
+      return "folder of maps";
+  }
+  return "";
+}
+
+MapLayout DetectMapLayout(const fs::path& path) {
+  if (fs::is_directory(path)) return DetectInFolder(path);
+  if (!fs::is_regular_file(path)) throw UserError(path, "", "no such file or folder", kMend);
+  const ImageHeader header = ReadImageHeader(path);
+  for (const std::string& channel : header.channels) {
+    if (channel == "normal.X") return MapLayout::kSvbrdfExr;
+  }
+  if (header.width == 4 * header.height) return MapLayout::kDirStrip;
+  if (header.width == 5 * header.height) return MapLayout::kPhotoStrip;
+  throw UserError(path, "size",
+                  "a picture of " + std::to_string(header.width) + "x" +
+                      std::to_string(header.height),
+                  kMend);
+}
+
+SvbrdfMaps ReadMaps(const fs::path& path, const MapEncodings& encodings) {
+  const MapLayout layout = DetectMapLayout(path);
+  switch (layout) {
+    case MapLayout::kSvbrdfExr:
+      return ReadSvbrdf(fs::is_directory(path) ? path / "svbrdf.exr" : path);
+    case MapLayout::kColorFolder:
+      return ReadMapFolder(path);
+    case MapLayout::kDirStrip:
+    case MapLayout::kPhotoStrip:
+      break;
+  }
+  return ReadMapStrip(path, layout, encodings);
+}
+
+}  // namespace glint

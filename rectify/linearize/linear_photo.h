@@ -1,0 +1,79 @@
+// A photograph held as small as it came, read as linear radiance sample by sample.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "pipeline/contract/image.h"
+#include "rectify/linearize/encoding.h"
+
+namespace glint {
+
+// Sensor clipping: a stored value at or above `stored_level` carries no radiance any more. Floats
+// (HDR) clip only where asked for.
+struct SaturationRule {
+  double stored_level = 0.995;  // 8 and 16 bit and RAW, on [0, 1] as stored, before linearisation
+  double float_level = std::numeric_limits<double>::infinity();
+};
+
+// 8 and 16 bit samples stay codes that a table linearises on reading (36 MB for 12 MP of 8 bit);
+// floats are linearised in place. Interleaved R, G, B codes, or three float planes.
+class LinearPhoto {
+ public:
+  // One pixel: linear values, and whether any of the three had clipped.
+  struct Pixel {
+    std::array<float, 3> rgb;
+    bool saturated;
+  };
+
+  // Eight- and sixteen-bit codes: pixel i is data[3·i …]. `Code` is uint8_t or uint16_t.
+  template <class Code>
+  struct Codes {
+    const Code* data;
+    const float* table;
+    int saturated_from;  // first code that is clipped
+    Pixel At(size_t i) const {
+      const Code* p = data + 3 * i;
+      const int brightest = std::max({p[0], p[1], p[2]});
+      return {{table[p[0]], table[p[1]], table[p[2]]}, brightest >= saturated_from};
+    }
+  };
+  struct Floats {
+    const float* plane;
+    size_t pixels;
+    float saturated_from;
+    Pixel At(size_t i) const {
+      const float r = plane[i], g = plane[pixels + i], b = plane[2 * pixels + i];
+      return {{r, g, b}, std::max({r, g, b}) >= saturated_from};
+    }
+  };
+
+  // Takes the photo's samples (the float copy of an 8 or 16 bit photo is freed).
+  LinearPhoto(Photo photo, Encoding encoding, const SaturationRule& saturation = {});
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  bool is_float() const { return bits_ == 32; }
+
+  // Calls `f` with the storage's reader (Codes<uint8_t>, Codes<uint16_t> or Floats).
+  template <class F>
+  auto Visit(F&& f) const {
+    if (bits_ == 8) return f(Codes<uint8_t>{codes8_.data(), table_.data(), saturated_code_});
+    if (bits_ == 16) return f(Codes<uint16_t>{codes16_.data(), table_.data(), saturated_code_});
+    return f(Floats{planes_.data(), static_cast<size_t>(width_) * height_, saturated_value_});
+  }
+
+ private:
+  int width_, height_, bits_;
+  std::vector<float> table_;
+  int saturated_code_ = 0;
+  float saturated_value_ = 0;
+  std::vector<uint8_t> codes8_;
+  std::vector<uint16_t> codes16_;
+  std::vector<float> planes_;
+};
+
+}  // namespace glint

@@ -1,0 +1,45 @@
+// From a photograph to the top view of the sample, in one resampling.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fitting/reflectance/view.h"
+#include "rectify/linearize/linear_photo.h"
+#include "rectify/resample/filter_kernel.h"
+#include "rectify/resample/plane_projection.h"
+
+namespace glint {
+
+struct ResampleOptions {
+  FilterKind filter = FilterKind::kSharp;
+  // How far, in pixels, the texel's own area may stick out of the picture and still count as inside.
+  double border_px = 1e-3;
+  int threads = 1;  // never changes a value
+};
+
+enum class TexelStatus : uint8_t {
+  kUsable,
+  kOutside,    // not (wholly) in the picture, behind the camera, or where the lens model folds over
+  kSaturated,  // a pixel that the filter reached had clipped
+  kMasked      // ruled out by the caller
+};
+
+// Rows top (+y) to bottom.
+struct ResampledView {
+  int width = 0, height = 0;
+  std::vector<float> rgb;           // planar [3·H·W], linear radiance; 0 where kOutside
+  std::vector<TexelStatus> status;  // [H·W]
+};
+
+// Per texel: the image of its centre, the ellipse its area covers there, and the weighted mean of the
+// linear pixel values under the kernel stretched over that ellipse. Never aliases when the photo is
+// finer than the texels, at any tilt; interpolates when it is coarser. Weights are normalised, so that
+// constants stay constants; negative results (the kernel's lobes beside a highlight) become 0. Threaded
+// by tiles; the result does not depend on the number of threads. Texels marked kMasked in
+// `status_before` (empty, or [H·W]) are passed over.
+ResampledView ResampleToPlane(const LinearPhoto& photo, const PlaneProjection& projection,
+                              const SamplePlane& plane, const ResampleOptions& options,
+                              const std::vector<TexelStatus>& status_before = {});
+
+}  // namespace glint
