@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/stage.h"
 
 namespace glint {
 namespace {
@@ -24,7 +25,9 @@ void SetUpLogging(const std::string& program, const std::string& level) {
   spdlog::set_default_logger(logger);
 }
 
+// An empty message: it has been said already (by a child process).
 int Report(const ProgramInfo& info, int code, const std::string& message) {
+  if (message.empty()) return code;
   std::fprintf(stderr, "%s: error: %s\n", info.name.c_str(), message.c_str());
   return code;
 }
@@ -42,6 +45,8 @@ int RunBody(const ProgramInfo& info, const CommonOptions& common,
             const std::function<ProgramResult(const CommonOptions&)>& body) {
   try {
     return PrintResult(info, body(common), common.json);
+  } catch (const StageCheck& check) {
+    return PrintResult(info, {ToText(check), ToJson(check)}, common.json);
   } catch (const Error& error) {
     return Report(info, error.code(), error.what());
   } catch (const std::filesystem::filesystem_error& error) {
@@ -81,6 +86,10 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info, OptionSet* option
       ->capture_default_str()
       ->group("Common");
   app.add_flag("--json", common.json, "write the result to stdout as JSON")->group("Common");
+  app.add_flag("--force", common.force, "compute although the result is up to date")
+      ->group("Common");
+  app.add_flag("--check", common.check, "only say whether the result is up to date")
+      ->group("Common");
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {

@@ -16,6 +16,8 @@ struct CommonOptions {
   std::uint64_t seed = 0;  // enters the manifest
   std::string log_level = "info";
   bool json = false;  // the result on stdout as JSON
+  // For stages: compute although the result is up to date; or only say whether it is.
+  bool force = false, check = false;
 };
 
 // What a program leaves on stdout: `text` for a person, or `json` with --json.

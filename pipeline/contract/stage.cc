@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstring>
 #include <ctime>
+#include <map>
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
@@ -83,6 +84,38 @@ ManifestOutput Describe(const fs::path& folder, const std::string& name) {
   return output;
 }
 
+// The first option whose value differs, in words; empty: none.
+std::string OptionChange(const Json& before, const Json& now) {
+  for (const auto& [name, value] : now.items()) {
+    const auto found = before.find(name);
+    if (found == before.end()) return "option " + name + " is new";
+    if (*found != value) {
+      return "option " + name + " was " + found->dump() + " and is " + value.dump();
+    }
+  }
+  for (const auto& [name, value] : before.items()) {
+    if (!now.contains(name)) return "option " + name + " is gone";
+  }
+  return "";
+}
+
+// The first input that differs, in words; empty: none.
+std::string InputChange(const std::vector<ManifestInput>& before,
+                        const std::vector<ManifestInput>& now) {
+  std::map<std::string, std::string> hashes;
+  for (const ManifestInput& input : before) hashes[input.path] = input.hash;
+  for (const ManifestInput& input : now) {
+    const auto found = hashes.find(input.path);
+    if (found == hashes.end()) return "input " + input.path + " is new";
+    if (found->second != input.hash) return "input " + input.path + " has changed";
+  }
+  if (now.size() != before.size()) return "some inputs are no longer read";
+  for (size_t i = 0; i < now.size(); ++i) {
+    if (now[i].path != before[i].path) return "the order of the inputs has changed";
+  }
+  return "";
+}
+
 }  // namespace
 
 Stage::Stage(fs::path folder, StageInfo info, const OptionSet& options, const CommonOptions& common,
@@ -99,6 +132,7 @@ Stage::Stage(fs::path folder, StageInfo info, const OptionSet& options, const Co
     const fs::path relative = fs::absolute(input).lexically_normal().lexically_relative(folder_);
     inputs_.push_back({relative.generic_string(), HashFile(input)});
   }
+  if (common.check) throw StageCheck{info_.name, WhyStale()};
   MakeFolder(folder_.parent_path());
   lock_ = std::make_unique<FileLock>(folder_.parent_path() / (".lock-" + info_.name),
                                      "stage " + info_.name + " of this capture");
@@ -107,18 +141,38 @@ Stage::Stage(fs::path folder, StageInfo info, const OptionSet& options, const Co
   const fs::path aside = staging().string() + ".old";
   if (fs::exists(aside) && !fs::exists(folder_)) fs::rename(aside, folder_);
   fs::remove_all(aside);
-  if (force || !fs::exists(manifest_file())) return;
+  if (force || common.force || !fs::exists(manifest_file())) return;
+  const std::string why = WhyStale();
+  up_to_date_ = why.empty();
+  if (!up_to_date_) spdlog::info("{}; computing the stage anew", why);
+}
+
+std::string Stage::WhyStale() const {
+  if (!fs::exists(manifest_file())) return "there is no result yet";
   try {
     const Manifest manifest = ReadManifest(manifest_file(), info_.name);
-    Manifest wanted = manifest;
-    wanted.stage_version = info_.version;
-    wanted.options = options_;
-    wanted.inputs = inputs_;
+    if (manifest.stage_version != info_.version) {
+      return "the result is of stage version " + std::to_string(manifest.stage_version) +
+             ", the program of " + std::to_string(info_.version);
+    }
+    if (const std::string why = OptionChange(manifest.options, options_); !why.empty()) return why;
+    if (const std::string why = InputChange(manifest.inputs, inputs_); !why.empty()) return why;
     VerifyOutputs(manifest_file(), manifest);
-    up_to_date_ = ToJson(wanted) == ToJson(manifest);
   } catch (const UserError& error) {
-    spdlog::warn("{}; computing the stage anew", error.what());
+    return error.what();
   }
+  return "";
+}
+
+std::string ToText(const StageCheck& check) {
+  return check.stage + ": " +
+         (check.why_stale.empty() ? "up to date" : "stale: " + check.why_stale);
+}
+
+Json ToJson(const StageCheck& check) {
+  return {{"stage", check.stage},
+          {"up_to_date", check.why_stale.empty()},
+          {"why_stale", check.why_stale}};
 }
 
 fs::path Stage::staging() const {

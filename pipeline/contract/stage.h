@@ -27,10 +27,19 @@ struct StageInfo {
   int version = 1;   // raised whenever the same inputs give other bytes
 };
 
+// Thrown by Stage's constructor under --check; the front end prints it and ends with exit code 0.
+struct StageCheck {
+  std::string stage;
+  std::string why_stale;  // empty: up to date
+};
+std::string ToText(const StageCheck& check);
+Json ToJson(const StageCheck& check);
+
 class Stage {
  public:
   // `inputs`: every file the result depends on (hashed here). Takes the stage folder's lock.
-  // With `force` the result is never up to date.
+  // With `force` (or --force) the result is never up to date; under --check throws StageCheck and
+  // touches nothing.
   Stage(std::filesystem::path folder, StageInfo info, const OptionSet& options,
         const CommonOptions& common, std::vector<std::filesystem::path> inputs, bool force = false);
 
@@ -52,6 +61,8 @@ class Stage {
  private:
   std::filesystem::path staging() const;
   void WriteRunFacts() const;
+  // Why the result on disk is not this run's; empty when it is.
+  std::string WhyStale() const;
 
   std::filesystem::path folder_;
   StageInfo info_;
