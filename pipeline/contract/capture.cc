@@ -235,7 +235,6 @@ void ReadBoard(const fs::path& file, const toml::table& document, Capture* captu
   board.squares_x = squares.empty() ? corners[0] + 1 : squares[0];
   board.squares_y = squares.empty() ? corners[1] + 1 : squares[1];
   board.square_mm = table.Number("square_mm", 0, 1e-3, 1e4, " of millimetres, greater than 0");
-  if (board.square_mm == 0) table.Missing("square_mm", "give the side of a square in millimetres");
   board.marker_mm = table.Number("marker_mm", 0, 1e-3, 1e4, " of millimetres, greater than 0");
   board.dictionary = table.Text("dictionary", board.dictionary);
   board.legacy_layout = table.Flag("legacy_layout", false);
@@ -245,6 +244,7 @@ void ReadBoard(const fs::path& file, const toml::table& document, Capture* captu
   const auto patterns = table.Texts("photos", "give a list of patterns such as [\"board/*.jpg\"]");
   capture->board_photos = MatchAll(capture->folder, patterns, file, "board.photos");
   table.RejectUnknown();
+  if (board.square_mm == 0) table.Missing("square_mm", "give the side of a square in millimetres");
   if (const std::string wrong = CheckBoard(board); !wrong.empty()) {
     throw UserError(file.string() + ": board: " + wrong);
   }

@@ -22,6 +22,9 @@ class FileLock {
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;
 
+  // Closed on exec by default; a child that keeps it open holds the lock too.
+  int descriptor() const { return descriptor_; }
+
  private:
   int descriptor_ = -1;
 };

@@ -1,0 +1,103 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/contract/capture.h"
+#include "pipeline/contract/errors.h"
+#include "tests/pipeline/contract/temp_folder.h"
+
+namespace glint {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr char kGood[] = R"([sample]
+size_mm = [100, 50]
+centre_mm = [1, 2]
+resolution_px = 512
+[photos]
+files = ["photos/*.jpg"]
+[board]
+kind = "charuco"
+squares = [12, 10]
+square_mm = 15
+marker_mm = 11
+window = [3, 3, 6, 4]
+[light]
+offset_mm = [10, 0, 0]
+power = 5
+[refine]
+iterations = 3
+)";
+
+class CaptureTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.Write("photos/b.JPG", "x");
+    folder_.Write("photos/a.jpg", "x");
+  }
+  Capture Read(const std::string& text) {
+    folder_.Write("capture.toml", text);
+    return ReadCapture(folder_.path());
+  }
+  std::string Complaint(const std::string& text) {
+    return MessageOf<UserError>([&] { Read(text); });
+  }
+  std::string Replaced(const std::string& what, const std::string& with) {
+    std::string text = kGood;
+    return text.replace(text.find(what), what.size(), with);
+  }
+  TempFolder folder_;
+};
+
+TEST_F(CaptureTest, ReadsEveryTable) {
+  const Capture capture = Read(kGood);
+  EXPECT_THAT(capture.photos, ElementsAre("photos/a.jpg", "photos/b.JPG"));
+  EXPECT_THAT(capture.resolution_px, ElementsAre(512, 256));
+  EXPECT_TRUE(capture.has_board);
+  EXPECT_EQ(capture.board.squares_x, 12);
+  EXPECT_EQ(capture.board.window->rows, 4);
+  EXPECT_EQ(capture.board.board_centre_in_sample_mm, Eigen::Vector2d(-1, -2));
+  EXPECT_THAT(capture.light_power, ElementsAre(5, 5, 5));
+}
+
+TEST_F(CaptureTest, MissingFileSaysHowToWriteOne) {
+  EXPECT_THAT(MessageOf<UserError>([&] { ReadCapture(folder_.path()); }),
+              AllOf(HasSubstr("capture.toml"), HasSubstr("glint init")));
+}
+
+TEST_F(CaptureTest, SyntaxErrorNamesLine) {
+  EXPECT_THAT(Complaint("[sample]\nsize_mm = [100,\n[photos]"), HasSubstr("line 3"));
+}
+
+TEST_F(CaptureTest, UnknownKeysAreNamedWithTheKnownOnes) {
+  EXPECT_THAT(Complaint(Replaced("square_mm", "square_cm")),
+              AllOf(HasSubstr("board.square_cm"), HasSubstr("line 10")));
+  EXPECT_THAT(Complaint(Replaced("[light]", "[lights]")), HasSubstr("lights"));
+}
+
+TEST_F(CaptureTest, WrongTypesAndUnitsAreNamed) {
+  EXPECT_THAT(Complaint(Replaced("[100, 50]", "\"10 cm\"")),
+              AllOf(HasSubstr("sample.size_mm"), HasSubstr("'10 cm'"), HasSubstr("millimetres")));
+  EXPECT_THAT(Complaint(Replaced("[100, 50]", "[-100, 50]")), HasSubstr("positive"));
+  EXPECT_THAT(Complaint(Replaced("squares = [12, 10]", "squares = [12.5, 10]")),
+              HasSubstr("board.squares"));
+  EXPECT_THAT(Complaint(Replaced("\"charuco\"", "\"circles\"")), HasSubstr("'circles'"));
+}
+
+TEST_F(CaptureTest, NoPhotographsIsAnError) {
+  EXPECT_THAT(Complaint(Replaced("photos/*.jpg", "photos/*.png")),
+              AllOf(HasSubstr("photos.files"), HasSubstr("no photograph")));
+}
+
+TEST_F(CaptureTest, PatternsCannotLeaveTheFolder) {
+  EXPECT_THAT(Complaint(Replaced("photos/*.jpg", "../*.jpg")), HasSubstr("inside"));
+}
+
+TEST_F(CaptureTest, BoardThatCannotBePrintedIsRefused) {
+  EXPECT_THAT(Complaint(Replaced("marker_mm = 11", "marker_mm = 16")), HasSubstr("marker_mm"));
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,89 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
+#include "pipeline/contract/image.h"
+#include "tests/pipeline/contract/temp_folder.h"
+
+namespace glint {
+namespace {
+
+using ::testing::HasSubstr;
+
+Image Gradient(int width, int height, std::vector<std::string> channels) {
+  Image image(width, height, std::move(channels));
+  for (size_t i = 0; i < image.samples.size(); ++i) {
+    image.samples[i] = static_cast<float>(i) / static_cast<float>(image.samples.size());
+  }
+  return image;
+}
+
+TEST(Exr, RoundTripKeepsEverySampleAndAttribute) {
+  const TempFolder folder;
+  const Image image = Gradient(37, 21, {"R", "G", "B", "mask.Y"});
+  WriteExr(folder / "a.exr", image, {{"note", "value"}});
+  std::map<std::string, std::string> attributes;
+  const Image read = ReadExr(folder / "a.exr", &attributes);
+  ASSERT_EQ(read.width, 37);
+  ASSERT_EQ(read.height, 21);
+  for (const std::string& name : image.channels) {
+    const auto wanted = image.channel(image.ChannelIndex(name));
+    const int found = read.ChannelIndex(name);
+    ASSERT_GE(found, 0) << name;
+    EXPECT_TRUE(std::equal(wanted.begin(), wanted.end(), read.channel(found).begin())) << name;
+  }
+  EXPECT_EQ(attributes["note"], "value");
+}
+
+TEST(Exr, IdenticalImagesGiveIdenticalBytes) {
+  const TempFolder folder;
+  const Image image = Gradient(64, 64, {"R", "G", "B"});
+  WriteExr(folder / "a.exr", image);
+  ::usleep(1100 * 1000);  // a time stamp would have a resolution of one second
+  WriteExr(folder / "b.exr", image);
+  EXPECT_EQ(ReadTextFile(folder / "a.exr"), ReadTextFile(folder / "b.exr"));
+}
+
+TEST(Photo, EightBitPngKeepsItsValues) {
+  const TempFolder folder;
+  WritePng(folder / "a.png", Gradient(32, 32, {"R", "G", "B"}), 8);
+  const Photo photo = ReadPhoto(folder / "a.png");
+  EXPECT_EQ(photo.bits, 8);
+  const Image wanted = Gradient(32, 32, {"R", "G", "B"});
+  for (size_t i = 0; i < wanted.samples.size(); ++i) {
+    ASSERT_NEAR(photo.image.samples[i], wanted.samples[i], 0.5 / 255 + 1e-6);
+  }
+}
+
+TEST(Photo, BadFilesAreNamed) {
+  const TempFolder folder;
+  const auto complaint = [&](const std::string& name) {
+    return MessageOf<UserError>([&] { ReadPhoto(folder / name); });
+  };
+  EXPECT_THAT(complaint("missing.jpg"), HasSubstr("no such file"));
+  folder.Write("empty.jpg", "");
+  EXPECT_THAT(complaint("empty.jpg"), HasSubstr("empty file"));
+  folder.Write("text.jpg", "this is no photograph\n");
+  EXPECT_THAT(complaint("text.jpg"), HasSubstr("text.jpg"));
+  WritePng(folder / "dot.png", Gradient(1, 1, {"R", "G", "B"}));
+  EXPECT_THAT(complaint("dot.png"), HasSubstr("1x1"));
+  Image nan = Gradient(32, 32, {"R", "G", "B"});
+  nan.samples[40] = std::numeric_limits<float>::quiet_NaN();
+  WriteExr(folder / "nan.exr", nan);
+  EXPECT_THAT(complaint("nan.exr"), HasSubstr("(8, 1)"));
+}
+
+TEST(Photo, TruncatedPngIsRefused) {
+  const TempFolder folder;
+  WritePng(folder / "whole.png", Gradient(256, 256, {"R", "G", "B"}), 16);
+  const std::string bytes = ReadTextFile(folder / "whole.png");
+  folder.Write("cut.png", bytes.substr(0, bytes.size() / 2));
+  EXPECT_THAT(MessageOf<UserError>([&] { ReadPhoto(folder / "cut.png"); }), HasSubstr("cut.png"));
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,77 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/hash.h"
+#include "pipeline/contract/manifest.h"
+#include "tests/pipeline/contract/temp_folder.h"
+
+namespace glint {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class ManifestTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.Write("out.txt", "result");
+    manifest_.stage = "demo";
+    manifest_.stage_version = 3;
+    manifest_.inputs = {{"../in.txt", HashBytes("in")}};
+    manifest_.options = {{"alpha", 0.5}};
+    manifest_.outputs = {{"out.txt", HashBytes("result"), 0, 0, {}}};
+    json_ = ToJson(manifest_);
+  }
+  std::filesystem::path Write() { return folder_.Write("manifest.json", json_.dump()); }
+  std::string Complaint() {
+    const auto file = Write();
+    return MessageOf<UserError>([&] { VerifyOutputs(file, ReadManifest(file, "demo")); });
+  }
+  TempFolder folder_;
+  Manifest manifest_;
+  Json json_;
+};
+
+TEST_F(ManifestTest, RoundTripIsTheSameJson) {
+  EXPECT_EQ(ToJson(ReadManifest(Write(), "demo")).dump(), json_.dump());
+  EXPECT_EQ(Complaint(), "");
+}
+
+TEST_F(ManifestTest, AnotherVersionIsRefused) {
+  json_["glint_manifest"] = 2;
+  EXPECT_THAT(Complaint(), AllOf(HasSubstr("glint_manifest"), HasSubstr("found 2")));
+}
+
+TEST_F(ManifestTest, AMissingFieldIsNamed) {
+  for (const char* field :
+       {"stage", "stage_version", "inputs", "options", "outputs", "data", "metrics"}) {
+    const Json whole = json_;
+    json_.erase(field);
+    EXPECT_THAT(Complaint(), AllOf(HasSubstr("manifest.json"), HasSubstr(field))) << field;
+    json_ = whole;
+  }
+}
+
+TEST_F(ManifestTest, AChangedOutputIsNoticed) {
+  folder_.Write("out.txt", "another result");
+  EXPECT_THAT(Complaint(), AllOf(HasSubstr("outputs[0].hash"), HasSubstr("out.txt")));
+}
+
+TEST_F(ManifestTest, AnotherStageIsRefused) {
+  json_["stage"] = "other";
+  EXPECT_THAT(Complaint(), AllOf(HasSubstr("'other'"), HasSubstr("'demo'")));
+}
+
+TEST_F(ManifestTest, AbsolutePathsAreRefused) {
+  json_["outputs"][0]["path"] = "/etc/passwd";
+  EXPECT_THAT(Complaint(), HasSubstr("outputs[0].path"));
+}
+
+TEST_F(ManifestTest, TextThatIsNoJsonIsRefused) {
+  const auto file = folder_.Write("manifest.json", "{ not json");
+  EXPECT_THAT(MessageOf<UserError>([&] { ReadManifest(file); }), HasSubstr("not JSON"));
+}
+
+}  // namespace
+}  // namespace glint
