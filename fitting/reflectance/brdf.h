@@ -20,14 +20,11 @@
 
 #include <cmath>
 
+#include "fitting/reflectance/brdf_constants.h"
 #include "fitting/reflectance/convention.h"
 #include "fitting/reflectance/view.h"
 
 namespace glint {
-
-inline constexpr double kDotClamp = 1e-8;          // of every dot product
-inline constexpr double kDenominatorClamp = 1e-8;  // of D's denominator and of k, as in DIR's code
-inline constexpr double kInversePi = 0.318309886183790671538;
 
 // Reflectance of one texel; units and ranges as in svbrdf_maps.h, and in the order of its planes.
 template <class T>
@@ -62,7 +59,7 @@ T ClampBelow(const T& x, double bound) {
 template <class T>
 T FresnelWeight(const T& v_dot_h) {
   using std::exp2;
-  return exp2(v_dot_h * (T(-5.55473) * v_dot_h - T(6.98316)));
+  return exp2(v_dot_h * (T(kFresnelSquare) * v_dot_h + T(kFresnelLinear)));
 }
 
 // D's denominator: 1 at NoH = 0, α² at NoH = 1.

@@ -1,0 +1,69 @@
+#include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/render/kernel.h"
+
+namespace glint::kernel {
+
+static_assert(kPlanes == kSvbrdfPlanes);
+
+RunRowsFunction<float> BaselineKernelFloat();
+RunRowsFunction<double> BaselineKernelDouble();
+RunRowsFunction<float> Avx2KernelFloat();
+RunRowsFunction<double> Avx2KernelDouble();
+RunRowsFunction<float> Avx512KernelFloat();
+RunRowsFunction<double> Avx512KernelDouble();
+
+bool Available(InstructionSet set) {
+#ifdef GLINT_X86_KERNELS
+  switch (set) {
+    case InstructionSet::kAvx512:
+      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+             __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+    case InstructionSet::kAvx2:
+      return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    case InstructionSet::kBaseline:
+      return true;
+  }
+#endif
+  return set == InstructionSet::kBaseline;
+}
+
+InstructionSet BestInstructionSet() {
+  static const InstructionSet best = Available(InstructionSet::kAvx512) ? InstructionSet::kAvx512
+                                     : Available(InstructionSet::kAvx2) ? InstructionSet::kAvx2
+                                                                        : InstructionSet::kBaseline;
+  return best;
+}
+
+const char* Name(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::kAvx512:
+      return "AVX-512";
+    case InstructionSet::kAvx2:
+      return "AVX2";
+    case InstructionSet::kBaseline:
+      break;
+  }
+  return "baseline";
+}
+
+template <>
+RunRowsFunction<float> RunRows<float>(InstructionSet set) {
+#ifdef GLINT_X86_KERNELS
+  if (set == InstructionSet::kAvx512) return Avx512KernelFloat();
+  if (set == InstructionSet::kAvx2) return Avx2KernelFloat();
+#endif
+  (void)set;
+  return BaselineKernelFloat();
+}
+
+template <>
+RunRowsFunction<double> RunRows<double>(InstructionSet set) {
+#ifdef GLINT_X86_KERNELS
+  if (set == InstructionSet::kAvx512) return Avx512KernelDouble();
+  if (set == InstructionSet::kAvx2) return Avx2KernelDouble();
+#endif
+  (void)set;
+  return BaselineKernelDouble();
+}
+
+}  // namespace glint::kernel
