@@ -1,0 +1,195 @@
+#include "datasets/procedural/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "datasets/procedural/shaping.h"
+#include "datasets/procedural/weathering.h"
+
+namespace glint::procedural {
+namespace {
+
+constexpr float kSteepest = 4.2f;         // slopes approach this tangent (76.6°) and never pass it
+constexpr float kProbeStep = 1.0f / 256;  // where relief is measured, whatever the picture's size
+constexpr int kProbeRows = 16;
+constexpr int kProbePoints = 64;
+
+// Where the picture lies in the pattern's plane.
+struct Placement {
+  float xx, xy, yx, yy;  // picture to pattern, with zoom
+  float x0, y0;
+  float zoom;
+};
+
+Placement DrawPlacement(Rng& rng, bool directional) {
+  const float any = rng.Unit();
+  const float quarter = 0.25f * static_cast<float>(rng.Int(0, 3));
+  const float turn = directional && rng.Chance(0.55f) ? quarter : any;
+  const float zoom = rng.LogUniform(0.55f, 1.7f);
+  const float mirror = rng.Chance(0.5f) ? -1.0f : 1.0f;
+  // Quarter turns exactly, so that straight rows stay straight.
+  const float c = turn == quarter ? std::round(CosTurn(turn)) : CosTurn(turn);
+  const float s = turn == quarter ? std::round(SinTurn(turn)) : SinTurn(turn);
+  return {zoom * c * mirror,
+          -zoom * s,
+          zoom * s * mirror,
+          zoom * c,
+          rng.Uniform(-30.0f, 30.0f),
+          rng.Uniform(-30.0f, 30.0f),
+          zoom};
+}
+
+class Surface {
+ public:
+  Surface(const Family& family, uint64_t seed) {
+    Rng rng(seed);
+    placement_ = DrawPlacement(rng, family.directional);
+    const bool nearly_flat = rng.Chance(0.12f);
+    const float slope = rng.LogUniform(family.slope_low, family.slope_high);
+    slope_ = nearly_flat ? 0.1f * slope : slope;
+    rows_ = family.draw(rng);
+    weathering_ = DrawWeathering(rng);
+  }
+
+  // Picture coordinates: origin at the centre, x right, y up, the longer side one unit.
+  void Evaluate(const float* x, const float* y, int n, float pixel, float* px, float* py,
+                Scratch& scratch, const RowLayers& out) const {
+    const Placement p = placement_;
+    for (int i = 0; i < n; ++i) {
+      px[i] = p.xx * x[i] + p.xy * y[i] + p.x0;
+      py[i] = p.yx * x[i] + p.yy * y[i] + p.y0;
+    }
+    const RowDomain d{px, py, n, pixel * p.zoom};
+    scratch.Reset();
+    rows_(d, scratch, out);
+    weathering_(d, scratch, out);
+  }
+
+  // The factor that brings the relief to the drawn slope.
+  float ReliefScale() const;
+
+ private:
+  Placement placement_;
+  float slope_;
+  RowFunction rows_;
+  RowFunction weathering_;
+};
+
+// Buffers of one row of points and of all layers but height.
+struct RowBuffers {
+  explicit RowBuffers(int n) : storage(static_cast<size_t>(n) * 10) {
+    float* next = storage.data();
+    for (float** row : {&x, &y, &px, &py, &r, &g, &b, &metal, &f0, &roughness}) {
+      *row = next;
+      next += n;
+    }
+  }
+  RowLayers Layers(float* height) const { return {height, r, g, b, metal, f0, roughness}; }
+
+  std::vector<float> storage;
+  float *x, *y, *px, *py, *r, *g, *b, *metal, *f0, *roughness;
+};
+
+float Surface::ReliefScale() const {
+  RowBuffers rows(kProbePoints);
+  Scratch scratch(kProbePoints);
+  std::vector<float> heights(3 * kProbePoints);
+  double sum = 0.0;
+  for (int row = 0; row < kProbeRows; ++row) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const float dx = corner == 1 ? kProbeStep : 0.0f, dy = corner == 2 ? kProbeStep : 0.0f;
+      for (int i = 0; i < kProbePoints; ++i) {
+        // Rows shifted by a golden ratio, so that no lattice hides between the probes.
+        const float shift = Fract(0.618034f * static_cast<float>(row));
+        rows.x[i] = (static_cast<float>(i) + shift) / kProbePoints - 0.5f + dx;
+        rows.y[i] =
+            (static_cast<float>(row) + Fract(0.7549f * static_cast<float>(i))) / kProbeRows - 0.5f +
+            dy;
+      }
+      Evaluate(rows.x, rows.y, kProbePoints, kProbeStep, rows.px, rows.py, scratch,
+               rows.Layers(heights.data() + corner * kProbePoints));
+    }
+    for (int i = 0; i < kProbePoints; ++i) {
+      const float h = heights[i];
+      const float sx = (heights[kProbePoints + i] - h) / kProbeStep;
+      const float sy = (heights[2 * kProbePoints + i] - h) / kProbeStep;
+      sum += std::min(static_cast<double>(sx * sx + sy * sy), 1e4);
+    }
+  }
+  const float rms = static_cast<float>(std::sqrt(sum / (kProbeRows * kProbePoints)));
+  return slope_ / std::max(rms, 0.1f);
+}
+
+void WriteReflectance(const RowBuffers& rows, int first, int row, SvbrdfMaps& maps) {
+  const size_t at = static_cast<size_t>(row) * maps.width;
+  const float* base[3] = {rows.r + first, rows.g + first, rows.b + first};
+  const float* metal = rows.metal + first;
+  const float* f0_row = rows.f0 + first;
+  for (int c = 0; c < 3; ++c) {
+    float* diffuse = maps.plane(kDiffuseR + c).data() + at;
+    float* specular = maps.plane(kSpecularR + c).data() + at;
+    for (int i = 0; i < maps.width; ++i) {
+      const float f0 = std::min(std::max(f0_row[i], 0.02f), 0.08f);
+      const float m = Clamp01(metal[i]);
+      const float color = Clamp01(base[c][i]);
+      diffuse[i] = (1.0f - m) * std::min(color, 1.0f - f0);
+      specular[i] = Mix(f0, color, m);
+    }
+  }
+  float* roughness = maps.plane(kRoughness).data() + at;
+  for (int i = 0; i < maps.width; ++i) {
+    roughness[i] = std::min(std::max(rows.roughness[first + i], 0.05f), 1.0f);
+  }
+}
+
+// Central differences of a height plane that has a border of one texel all around.
+void WriteNormals(const std::vector<float>& heights, float scale, SvbrdfMaps& maps) {
+  const size_t stride = static_cast<size_t>(maps.width) + 2;
+  for (int row = 0; row < maps.height; ++row) {
+    const float* here = heights.data() + (static_cast<size_t>(row) + 1) * stride + 1;
+    const float* above = here - stride;
+    const float* below = here + stride;
+    const size_t at = static_cast<size_t>(row) * maps.width;
+    float* nx = maps.plane(kNormalX).data() + at;
+    float* ny = maps.plane(kNormalY).data() + at;
+    float* nz = maps.plane(kNormalZ).data() + at;
+    for (int i = 0; i < maps.width; ++i) {
+      const float sx = scale * (here[i + 1] - here[i - 1]);
+      const float sy = scale * (above[i] - below[i]);
+      const float square = sx * sx + sy * sy;
+      const float limit = 1.0f / std::sqrt(1.0f + square / (kSteepest * kSteepest));
+      const float z = 1.0f / std::sqrt(1.0f + square * limit * limit);
+      nx[i] = -sx * limit * z;
+      ny[i] = -sy * limit * z;
+      nz[i] = z;
+    }
+  }
+}
+
+}  // namespace
+
+SvbrdfMaps MakeSurface(const Family& family, uint64_t seed, int width, int height) {
+  const Surface surface(family, seed);
+  const float longer = static_cast<float>(std::max(width, height));
+  const float pixel = 1.0f / longer;
+  const int n = width + 2;
+  SvbrdfMaps maps(width, height);
+  std::vector<float> heights(static_cast<size_t>(n) * (height + 2));
+  RowBuffers rows(n);
+  Scratch scratch(n);
+  for (int row = -1; row <= height; ++row) {
+    const float y = (0.5f * static_cast<float>(height) - static_cast<float>(row) - 0.5f) * pixel;
+    for (int i = 0; i < n; ++i) {
+      rows.x[i] = (static_cast<float>(i) - 0.5f - 0.5f * static_cast<float>(width)) * pixel;
+      rows.y[i] = y;
+    }
+    surface.Evaluate(rows.x, rows.y, n, pixel, rows.px, rows.py, scratch,
+                     rows.Layers(heights.data() + static_cast<size_t>(row + 1) * n));
+    if (row >= 0 && row < height) WriteReflectance(rows, 1, row, maps);
+  }
+  WriteNormals(heights, surface.ReliefScale() * 0.5f * longer, maps);
+  return maps;
+}
+
+}  // namespace glint::procedural
