@@ -1,0 +1,54 @@
+// The auto-encoder as torch modules. Include from .cc files only: this header pulls in torch.
+//
+// Source: Gao et al. 2019 (DIR), Fig. 3 and its published code; see method.md's summary in
+// docs. Differences: bf16 needs convolutions, so the 4×4 stride-2 up-convolution is computed as a 2×2
+// convolution to four times the channels whose results are interleaved (pixel shuffle) and cropped by
+// one; this is the same linear map with the same number of multiplications.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+inline constexpr int kLevels = 5;
+inline constexpr int kDownsampling = 32;
+
+// Channels after each of the encoder's convolutions; the decoder runs through them backwards. The
+// last is the latent code's.
+using NetworkChannels = std::array<int, kLevels>;
+
+struct AutoencoderNetwork {
+  NetworkChannels channels{};
+  std::vector<torch::Tensor> encoder_weights, encoder_biases;  // [out, in, 4, 4]
+  std::vector<torch::Tensor> decoder_weights, decoder_biases;  // [4·out, in, 2, 2]
+  torch::Tensor code_mean, code_variance;                      // batch normalisation's running values
+
+  // Weights drawn for `seed` (He's variance; up-convolutions start as nearest-upsample + 3×3).
+  static AutoencoderNetwork Random(const NetworkChannels& channels, std::uint64_t seed);
+
+  // Learned tensors with their names in weights files, in a fixed order.
+  std::vector<std::pair<std::string, torch::Tensor*>> Parameters();
+  // Parameters and the code's running statistics.
+  std::vector<std::pair<std::string, torch::Tensor*>> State();
+
+  // `encoded` [B, 9, H, W], H and W multiples of 32 → code [B, C, H/32, W/32] before normalisation.
+  // Convolutions run in `compute` (bfloat16 or the parameters' own type); result float32 (or double).
+  torch::Tensor EncodeRaw(const torch::Tensor& encoded, torch::Dtype compute) const;
+
+  // Normalised by the batch's own statistics, which also move the running ones by `momentum`.
+  torch::Tensor NormaliseByBatch(const torch::Tensor& raw, double momentum);
+  torch::Tensor NormaliseByRunning(const torch::Tensor& raw) const;
+
+  // z [B, C, h, w] → encoded maps [B, 9, 32·h, 32·w] in [−1, 1].
+  torch::Tensor Decode(const torch::Tensor& z, torch::Dtype compute) const;
+};
+
+// bfloat16 where the CPU multiplies it natively (AVX512_BF16 or AMX), float32 elsewhere.
+torch::Dtype FastComputeType();
+
+}  // namespace glint

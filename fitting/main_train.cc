@@ -1,0 +1,115 @@
+// glint-train: trains the learned parts of Glint. Builds with libtorch and header-only libraries alone.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "datasets/procedural/material.h"
+#include "fitting/autoencoder/trainer.h"
+
+namespace {
+
+using glint::TrainFiles;
+using glint::TrainOptions;
+using glint::TrainProgress;
+
+// Validation takes reserved seeds that no table of results uses.
+constexpr std::uint64_t kValidationOffset = 500'000'000;
+
+// Each training draws its materials from a stretch of its own below the reserved seeds.
+std::uint64_t TrainingSeed(std::uint64_t seed, std::uint64_t k) {
+  return (seed * 10'000'019 + k) % glint::kReservedSeedBase;
+}
+
+void AddOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
+  app->add_option("--out", files->weights, "weights file to write (safetensors)")->required();
+  app->add_option("--checkpoint", files->checkpoint, "checkpoint file (default: OUT.checkpoint)");
+  app->add_option("--log", files->log_csv, "loss log, CSV (default: OUT.csv)");
+  app->add_flag("--resume", files->resume, "go on from the checkpoint when it exists");
+  app->add_option("--steps", o->steps, "steps of the optimiser");
+  app->add_option("--minutes", o->minutes, "training time, counted over all resumes");
+  app->add_option("--batch", o->batch, "crops per step")->capture_default_str();
+  app->add_option("--crop", o->crop, "texels along a crop, multiple of 32")->capture_default_str();
+  app->add_option("--channels", o->channels, "channels of the five levels, the last the code's")
+      ->delimiter(',')
+      ->capture_default_str();
+  app->add_option("--lr", o->learning_rate, "highest learning rate")->capture_default_str();
+  app->add_option("--warmup", o->warmup_steps, "steps of rising rate")->capture_default_str();
+  app->add_option("--smoothness", o->smoothness, "weight of the smoothness term (DIR: 2)")
+      ->capture_default_str();
+  app->add_option("--smoothness-share", o->smoothness_share, "share of the batch it is taken on")
+      ->capture_default_str();
+  app->add_option("--noise-variance", o->noise_variance, "of the code's disturbance")
+      ->capture_default_str();
+  app->add_option("--render-weight", o->render_weight, "weight of the rendering term")
+      ->capture_default_str();
+  app->add_option("--render-views", o->render_views, "renderings per crop (DIR: 9)")
+      ->capture_default_str();
+  app->add_option("--normal-weight", o->normal_weight, "of normals in the map term")
+      ->capture_default_str();
+  app->add_option("--average-decay", o->average_decay, "of the moving average of weights")
+      ->capture_default_str();
+  app->add_option("--bf16", o->bf16, "multiply in bf16 where the CPU can")->capture_default_str();
+  app->add_option("--pool-window", o->pool.window, "materials a step chooses from")
+      ->capture_default_str();
+  app->add_option("--pool-first", o->pool.first, "materials made before the first step")
+      ->capture_default_str();
+  app->add_option("--pool-per-step", o->pool.per_step, "new materials per step")
+      ->capture_default_str();
+  app->add_option("--material-size", o->pool.material_size, "texels along a material")
+      ->capture_default_str();
+  app->add_option("--checkpoint-minutes", o->checkpoint_minutes, "between checkpoints")
+      ->capture_default_str();
+  app->add_option("--seed", o->seed, "of weights, materials and crops")->capture_default_str();
+  app->add_option("--threads", o->threads, "torch threads; results repeat for a fixed number")
+      ->capture_default_str();
+}
+
+void Report(const TrainProgress& p) {
+  std::fprintf(stderr,
+               "step %lld  %.0f s  %.1f samples/s  lr %.2e  loss %.4f (map %.4f smooth %.4f "
+               "render %.4f)  ETA %.0f s",
+               static_cast<long long>(p.step), p.seconds, p.samples_per_second, p.learning_rate,
+               p.loss, p.map_loss, p.smoothness_loss, p.render_loss, p.eta_seconds);
+  if (p.validation_map_loss) std::fprintf(stderr, "  validation %.4f", *p.validation_map_loss);
+  std::fputc('\n', stderr);
+}
+
+int TrainAutoencoder(TrainOptions options, const TrainFiles& files) {
+  const int size = options.pool.material_size;
+  options.data_name = "procedural";
+  const glint::MaterialSource materials = [&](std::uint64_t k) {
+    return glint::MakeMaterial(TrainingSeed(options.seed, k), size, size);
+  };
+  const glint::MaterialSource validation = [&](std::uint64_t k) {
+    return glint::MakeMaterial(glint::kReservedSeedBase + kValidationOffset + k, size, size);
+  };
+  const TrainProgress last = glint::Train(options, files, materials, validation, Report);
+  std::printf("%s: %lld steps, map loss %.4f, validation %.4f\n", files.weights.c_str(),
+              static_cast<long long>(last.step), last.map_loss,
+              last.validation_map_loss.value_or(0.0));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Trains Glint's auto-encoder of SVBRDF maps on procedural materials.", "glint-train");
+  app.set_version_flag("--version", GLINT_VERSION);
+  app.require_subcommand(1);
+  TrainOptions options;
+  TrainFiles files;
+  CLI::App* autoencoder = app.add_subcommand("autoencoder", "the learned space of `glint-fit`");
+  AddOptions(autoencoder, &options, &files);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    return TrainAutoencoder(options, files);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "glint-train: error: %s\n", error.what());
+    return 1;
+  }
+}
