@@ -160,6 +160,9 @@ BatchLoss Summarise(const std::vector<kernel::ViewSums>& sums, int64_t elements)
   return result;
 }
 
+// Autograd functions take no undefined tensors: an empty one stands for an absent argument.
+bool Given(const Tensor& tensor) { return tensor.numel() > 0; }
+
 // Forward computes the gradient too, in the same pass; backward only scales it.
 class LogLossFunction : public torch::autograd::Function<LogLossFunction> {
  public:
@@ -168,10 +171,10 @@ class LogLossFunction : public torch::autograd::Function<LogLossFunction> {
                         const ViewBatch& batch, const TensorLossOptions& options,
                         bool want_gradient) {
     BatchJobs jobs(batch, maps);
-    if (target_maps.defined()) jobs.SetTarget(target_maps.data_ptr<float>());
-    if (images.defined()) jobs.SetImages(images.data_ptr<float>());
-    if (masks.defined()) jobs.SetMasks(masks.data_ptr<float>());
-    if (light_rgb.defined()) jobs.SetLight(light_rgb.data_ptr<float>());
+    if (Given(target_maps)) jobs.SetTarget(target_maps.data_ptr<float>());
+    if (Given(images)) jobs.SetImages(images.data_ptr<float>());
+    if (Given(masks)) jobs.SetMasks(masks.data_ptr<float>());
+    if (Given(light_rgb)) jobs.SetLight(light_rgb.data_ptr<float>());
     for (kernel::Job<float>& job : jobs.jobs()) {
       job.clamp_rendered = options.clamp_rendered;
       job.log_offset = static_cast<float>(options.offset);
@@ -182,7 +185,7 @@ class LogLossFunction : public torch::autograd::Function<LogLossFunction> {
     if (want_gradient) {
       context->save_for_backward({gradient, result.by_light});
       context->saved_data["scale"] = result.scale;
-      context->saved_data["light"] = light_rgb.defined();
+      context->saved_data["light"] = Given(light_rgb);
     }
     return torch::tensor(result.loss, maps.options());
   }
@@ -207,8 +210,8 @@ bool WantsGradient(const Tensor& tensor) {
   return tensor.defined() && tensor.requires_grad() && at::GradMode::is_enabled();
 }
 
-Tensor ContiguousOrUndefined(const Tensor& tensor) {
-  return tensor.defined() ? tensor.contiguous() : tensor;
+Tensor ContiguousOrEmpty(const Tensor& tensor) {
+  return tensor.defined() ? tensor.contiguous() : torch::empty({0});
 }
 
 void CheckOptions(const TensorLossOptions& options) {
@@ -232,9 +235,9 @@ Tensor LogLossBatch(const Tensor& maps, const Tensor& images, const Tensor& mask
   CheckTensor("images", images, {elements, views, 3, height, width});
   if (masks.defined()) CheckTensor("masks", masks, {elements, views, height, width});
   if (light_rgb.defined()) CheckTensor("light_rgb", light_rgb, {elements, views, 3});
-  return LogLossFunction::apply(maps.contiguous(), ContiguousOrUndefined(light_rgb),
-                                images.detach().contiguous(), ContiguousOrUndefined(masks),
-                                Tensor(), batch, options,
+  return LogLossFunction::apply(maps.contiguous(), ContiguousOrEmpty(light_rgb),
+                                images.detach().contiguous(), ContiguousOrEmpty(masks),
+                                torch::empty({0}), batch, options,
                                 WantsGradient(maps) || WantsGradient(light_rgb));
 }
 
@@ -243,9 +246,9 @@ Tensor LogLossBetweenMaps(const Tensor& maps, const Tensor& target_maps, const V
   CheckBatch(maps, batch);
   CheckOptions(options);
   CheckTensor("target_maps", target_maps, maps.sizes());
-  return LogLossFunction::apply(maps.contiguous(), Tensor(), Tensor(), Tensor(),
-                                target_maps.detach().contiguous(), batch, options,
-                                WantsGradient(maps));
+  return LogLossFunction::apply(maps.contiguous(), torch::empty({0}), torch::empty({0}),
+                                torch::empty({0}), target_maps.detach().contiguous(), batch,
+                                options, WantsGradient(maps));
 }
 
 }  // namespace glint
