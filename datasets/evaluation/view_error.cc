@@ -1,0 +1,114 @@
+#include "datasets/evaluation/view_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "fitting/render/renderer.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/image.h"
+#include "pipeline/contract/manifest.h"
+#include "pipeline/contract/svbrdf_file.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLogOffset = 0.01;
+
+std::array<double, 3> OptionalNumbers(const fs::path& file, const Json& data,
+                                      const std::string& field, std::array<double, 3> absent) {
+  if (!data.contains(field)) return absent;
+  const auto numbers = RequireNumbers(file, data, "data", field, 3);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+}  // namespace
+
+ViewError CompareView(std::span<const float> rendered, const RectifiedImage& photograph, bool ldr) {
+  const size_t texels = photograph.mask.size();
+  if (rendered.size() != 3 * texels || photograph.rgb.size() != 3 * texels) {
+    throw std::invalid_argument("rendering and photograph must have one size");
+  }
+  const auto seen = [ldr](float value) {
+    const double v = std::max(value, 0.0f);
+    return ldr ? std::min(v, 1.0) : v;
+  };
+  ViewError error;
+  double squares = 0, logs = 0;
+  for (size_t i = 0; i < texels; ++i) {
+    if (photograph.mask[i] < 0.5f) continue;
+    ++error.texels;
+    for (size_t c = 0; c < 3; ++c) {
+      const double photo = seen(photograph.rgb[c * texels + i]);
+      const double render = seen(rendered[c * texels + i]);
+      squares += (photo - render) * (photo - render);
+      logs += std::abs(std::log(photo + kLogOffset) - std::log(render + kLogOffset));
+    }
+  }
+  if (error.texels == 0) return error;
+  error.mse = squares / (3.0 * static_cast<double>(error.texels));
+  error.rmse = std::sqrt(error.mse);
+  error.log_l1 = logs / (3.0 * static_cast<double>(error.texels));
+  return error;
+}
+
+FitResult ReadFitResult(const fs::path& path) {
+  FitResult fit;
+  if (path.extension() == ".exr") {
+    fit.maps = ReadSvbrdf(path, &fit.convention);
+    return fit;
+  }
+  const fs::path file = fs::is_directory(path) ? path / "manifest.json" : path;
+  const Manifest manifest = ReadManifest(file);
+  if (manifest.stage != "fit" && manifest.stage != "refine") {
+    throw UserError(file, "stage", "'" + manifest.stage + "'",
+                    "give the manifest of fit or refine, or an svbrdf.exr");
+  }
+  VerifyOutputs(file, manifest);
+  fit.maps = ReadSvbrdf(file.parent_path() / "svbrdf.exr", &fit.convention);
+  fit.light_scale_rgb =
+      OptionalNumbers(file, manifest.data, "light_scale_rgb", fit.light_scale_rgb);
+  return fit;
+}
+
+std::vector<float> RenderFit(const FitResult& fit, const RectifiedSet& set,
+                             const RectifiedView& view, int threads) {
+  const bool same_size = fit.maps.width == set.plane.width && fit.maps.height == set.plane.height;
+  const SvbrdfMaps maps =
+      same_size ? fit.maps : ResampleSvbrdf(fit.maps, set.plane.width, set.plane.height);
+  // The maps are of the fit's diffuse weight; light and texels are the set's.
+  ReflectanceConvention convention = set.convention;
+  convention.diffuse_weight = fit.convention.diffuse_weight;
+  View lit = view.view;
+  for (int c = 0; c < 3; ++c) {
+    lit.light_rgb[c] *= fit.light_scale_rgb[c];
+  }
+  std::vector<float> rendered(3 * maps.texels());
+  RenderView(maps, set.plane, lit, convention, rendered.data(), threads);
+  return rendered;
+}
+
+void WritePair(const fs::path& file, const RectifiedImage& photograph,
+               std::span<const float> rendered) {
+  constexpr float kDifferenceGain = 4;
+  const int width = photograph.width;
+  const size_t texels = photograph.mask.size();
+  Image image(3 * width, photograph.height, {"R", "G", "B"});
+  for (int c = 0; c < 3; ++c) {
+    for (size_t i = 0; i < texels; ++i) {
+      const size_t row = i / width, column = i % width;
+      float* out = image.channel(c).data() + row * image.width + column;
+      const float photo = photograph.rgb[c * texels + i], render = rendered[c * texels + i];
+      const float values[3] = {photo, render, kDifferenceGain * std::abs(photo - render)};
+      for (int panel = 0; panel < 3; ++panel) {
+        out[static_cast<ptrdiff_t>(panel) * width] =
+            std::pow(std::clamp(values[panel], 0.0f, 1.0f), 1 / 2.2f);
+      }
+    }
+  }
+  WritePng(file, image);
+}
+
+}  // namespace glint

@@ -1,0 +1,49 @@
+// How well maps explain photographs: re-rendered views against rectified photographs.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fitting/reflectance/svbrdf_maps.h"
+#include "pipeline/contract/rectified_set.h"
+
+namespace glint {
+
+// Means over usable texels (mask ≥ 0.5) and channels.
+struct ViewError {
+  double mse = 0;  // of linear radiance
+  double rmse = 0;
+  double log_l1 = 0;  // |log(I + 0.01) − log(R + 0.01)|, eq. 2 of Gao et al. 2019
+  size_t texels = 0;  // usable
+};
+
+// `rendered`: planar 3·H·W as the photograph. `ldr`: both are clipped to [0, 1] first. A view
+// without usable texels gives zeros with texels = 0. Throws std::invalid_argument when sizes
+// differ.
+ViewError CompareView(std::span<const float> rendered, const RectifiedImage& photograph, bool ldr);
+
+// The result of fit or refine: maps, and what the fit found for the light's power.
+struct FitResult {
+  SvbrdfMaps maps;
+  ReflectanceConvention convention;
+  std::array<double, 3> light_scale_rgb{1, 1,
+                                        1};  // data.light_scale_rgb, multiplies every light_rgb
+};
+
+// `path`: manifest.json of fit or refine, the folder that holds it, or svbrdf.exr alone (then the
+// scale is 1). Throws UserError.
+FitResult ReadFitResult(const std::filesystem::path& path);
+
+// Renders `view` of `set` from the fit, at the set's size.
+std::vector<float> RenderFit(const FitResult& fit, const RectifiedSet& set,
+                             const RectifiedView& view, int threads);
+
+// Writes FOLDER/NAME.png: photograph, rendering and four times their absolute difference, side by
+// side, gamma 2.2.
+void WritePair(const std::filesystem::path& file, const RectifiedImage& photograph,
+               std::span<const float> rendered);
+
+}  // namespace glint

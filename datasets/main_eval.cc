@@ -1,0 +1,213 @@
+// glint-eval: how good results are.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "datasets/evaluation/calibration_error.h"
+#include "datasets/evaluation/map_error.h"
+#include "datasets/evaluation/table1.h"
+#include "datasets/evaluation/view_error.h"
+#include "pipeline/contract/calibration.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
+#include "pipeline/contract/rectified_set.h"
+#include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/contract/verbs.h"
+
+namespace {
+
+using namespace glint;
+namespace fs = std::filesystem;
+
+constexpr int kTable1Materials = 8;
+
+// Maps of any layout with diffuse weight 1; of a result also by its manifest or folder.
+SvbrdfMaps ReadAnyMaps(const fs::path& path) {
+  if (path.extension() == ".exr" || path.filename() == "manifest.json") {
+    const FitResult result = ReadFitResult(path);
+    return ToUnitWeight(result.maps, result.convention);
+  }
+  return LoadMaterial(path.string(), 0).maps;
+}
+
+ProgramResult ReportMaps(const Table1Row& row, bool resampled) {
+  const MapErrors& maps = row.maps;
+  ProgramResult result;
+  result.json = {{"diffuse", maps.diffuse},        {"specular", maps.specular},
+                 {"roughness", maps.roughness},    {"normal", maps.normal},
+                 {"map_average", maps.average()},  {"render", row.render},
+                 {"estimate_resampled", resampled}};
+  result.text = fmt::format(
+      "mean squared error, maps on [0, 1]\n"
+      "diffuse      {:.6f}\nspecular     {:.6f}\nroughness    {:.6f}\nnormal       {:.6f}\n"
+      "map average  {:.6f}\nrender       {:.6f}   ({} novel views and lights, clipped to [0, 1])\n",
+      maps.diffuse, maps.specular, maps.roughness, maps.normal, maps.average(), row.render,
+      kNovelViews);
+  if (resampled) result.text += "the estimate was resampled to the truth's size\n";
+  return result;
+}
+
+int RunMaps(int argc, char** argv, const ProgramInfo& info) {
+  fs::path estimate_path, truth_path;
+  OptionSet options;
+  options.AddPositional("estimate", &estimate_path, "svbrdf.exr, manifest.json, strip or folder",
+                        true);
+  options.AddPositional("truth", &truth_path, "likewise", true);
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
+    SvbrdfMaps estimate = ReadAnyMaps(estimate_path);
+    const SvbrdfMaps truth = ReadAnyMaps(truth_path);
+    const bool resample = estimate.width != truth.width || estimate.height != truth.height;
+    if (resample) estimate = ResampleSvbrdf(estimate, truth.width, truth.height);
+    return ReportMaps(EvaluateMaps(estimate, truth, common.threads), resample);
+  });
+}
+
+Json JsonOf(const ViewError& error) {
+  return {
+      {"mse", error.mse}, {"rmse", error.rmse}, {"log_l1", error.log_l1}, {"texels", error.texels}};
+}
+
+int RunViews(int argc, char** argv, const ProgramInfo& info) {
+  fs::path fit_path, set_path, pairs;
+  std::vector<std::string> only, exclude;
+  OptionSet options;
+  options.AddPositional("fit", &fit_path,
+                        "manifest.json of fit or refine, its folder, or svbrdf.exr", true);
+  options.AddPositional("views-of", &set_path, "manifest.json of rectify", true);
+  options.Add("views", &only, "only these views (names of views or photographs)");
+  options.Add("exclude", &exclude, "not these");
+  options.Add("pairs", &pairs, "folder for pictures: photograph, rendering, 4 × difference");
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
+    const fs::path file = fs::is_directory(set_path) ? set_path / "manifest.json" : set_path;
+    const RectifiedSet set = ReadRectifiedSet(file);
+    const FitResult fit = ReadFitResult(fit_path);
+    const auto views = SelectViews(set, only, exclude);
+    if (!pairs.empty()) fs::create_directories(pairs);
+    ProgramResult result;
+    result.json["views"] = Json::array();
+    result.text = fmt::format("{:<12} {:<28} {:>10} {:>10} {:>10}\n", "view", "photo", "MSE",
+                              "RMSE", "log L1");
+    const auto line = [&](const std::string& name, const std::string& photo, const ViewError& e) {
+      result.text += fmt::format("{:<12} {:<28} {:>10.6f} {:>10.5f} {:>10.5f}\n", name, photo,
+                                 e.mse, e.rmse, e.log_l1);
+    };
+    ViewError mean;
+    for (const RectifiedView& view : views) {
+      const RectifiedImage photograph = ReadRectifiedImage(set, view);
+      const std::vector<float> rendered = RenderFit(fit, set, view, common.threads);
+      const ViewError error = CompareView(rendered, photograph, view.ldr);
+      line(view.name, view.photo, error);
+      Json json = {{"name", view.name}, {"photo", view.photo}};
+      json.update(JsonOf(error));
+      result.json["views"].push_back(json);
+      mean.mse += error.mse / views.size();
+      mean.rmse += error.rmse / views.size();
+      mean.log_l1 += error.log_l1 / views.size();
+      mean.texels += error.texels;
+      if (!pairs.empty()) WritePair(pairs / (view.name + ".png"), photograph, rendered);
+    }
+    line("mean", "", mean);
+    result.json["mean"] = JsonOf(mean);
+    return result;
+  });
+}
+
+ProgramResult ReportCameras(const CalibrationErrors& errors) {
+  ProgramResult result;
+  result.json = {{"focal_length_percent", errors.focal_length_percent},
+                 {"principal_point_px", errors.principal_point_px},
+                 {"largest_position_percent", errors.largest_position_percent},
+                 {"mean_position_percent", errors.mean_position_percent},
+                 {"corner_rms_texel", errors.corner_rms_texel},
+                 {"largest_corner_rms_texel", errors.largest_corner_rms_texel},
+                 {"light_power_percent", errors.light_power_percent},
+                 {"missing_photos", errors.missing_photos},
+                 {"photos", Json::array()}};
+  result.text = fmt::format("{:<28} {:>12} {:>12} {:>10} {:>14}\n", "photo", "position %",
+                            "rotation °", "light mm", "corners texel");
+  for (const PhotoPoseError& photo : errors.photos) {
+    result.json["photos"].push_back({{"photo", photo.photo},
+                                     {"position_percent", photo.position_percent},
+                                     {"rotation_deg", photo.rotation_deg},
+                                     {"light_mm", photo.light_mm},
+                                     {"corner_rms_texel", photo.corner_rms_texel}});
+    result.text += fmt::format("{:<28} {:>12.4f} {:>12.4f} {:>10.3f} {:>14.4f}\n", photo.photo,
+                               photo.position_percent, photo.rotation_deg, photo.light_mm,
+                               photo.corner_rms_texel);
+  }
+  result.text += fmt::format(
+      "focal length {:.4f} %, principal point {:.2f} px, camera position {:.4f} % (largest {:.4f} "
+      "%)\n"
+      "rectified corners {:.4f} texel RMS at 1024 (worst photo {:.4f}), light power {:.2f} %\n",
+      errors.focal_length_percent, errors.principal_point_px, errors.mean_position_percent,
+      errors.largest_position_percent, errors.corner_rms_texel, errors.largest_corner_rms_texel,
+      errors.light_power_percent);
+  if (errors.missing_photos > 0) {
+    result.text +=
+        fmt::format("{} photographs of the truth were not calibrated\n", errors.missing_photos);
+  }
+  return result;
+}
+
+int RunCameras(int argc, char** argv, const ProgramInfo& info) {
+  fs::path truth, estimate;
+  OptionSet options;
+  options.AddPositional("truth", &truth, "folder truth/ of a synthetic capture", true);
+  options.AddPositional("estimate", &estimate, "manifest.json of calib", true);
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions&) {
+    const fs::path facts_file = truth / "truth.json";
+    const Json facts = Json::parse(ReadTextFile(facts_file), nullptr, false);
+    const auto size = RequireNumbers(facts_file, facts, "truth", "sample_size_mm", 2);
+    const fs::path file = fs::is_directory(estimate) ? estimate / "manifest.json" : estimate;
+    return ReportCameras(CompareCalibrations(ReadCalibration(truth / "calib" / "manifest.json"),
+                                             ReadCalibration(file), {size[0], size[1]}));
+  });
+}
+
+int RunTable1Verb(int argc, char** argv, const ProgramInfo& info) {
+  Table1Options table;
+  std::vector<double> counts(table.counts.begin(), table.counts.end());
+  OptionSet options;
+  options.AddPositional("materials", &table.materials,
+                        "maps or procedural:SEED; none: eight reserved seeds", false);
+  options.Add("counts", &counts, "numbers of views");
+  options.Add("methods", &table.methods, "classic, latent, refined");
+  options.Add("work", &table.work, "folder that keeps views and results (needed)");
+  options.AddRange("size", &table.size, 8, 4096, "texels a side");
+  options.AddChoice("rule", &table.views.rule, {"dir", "photo"}, "as in glint-synth views");
+  options.AddChoice("bits", &table.views.bits, {"8", "float"}, "likewise");
+  options.AddChoice("encoding", &table.views.encoding, {"gamma2.2", "srgb", "linear"}, "likewise");
+  options.Add("fit-args", &table.fit_arguments, "more arguments for glint-fit, comma-separated");
+  options.Add("refine-args", &table.refine_arguments, "likewise for glint-refine");
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
+    if (table.work.empty()) throw UserError("work: found nothing; name a folder for the results");
+    table.counts.assign(counts.begin(), counts.end());
+    if (table.materials.empty()) table.materials = ReservedMaterials(kTable1Materials);
+    const Table1 result =
+        RunTable1(table, common, [](const std::string& text) { spdlog::info("{}", text); });
+    WriteFileAtomically(table.work / "table1.csv", result.Csv());
+    WriteFileAtomically(table.work / "table1.json", result.ToJson().dump(2) + "\n");
+    return ProgramResult{result.Text(), result.ToJson()};
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<Verb> verbs = {
+      {"maps", "Compares maps with true ones: the six figures of Gao et al. 2019, table 1.",
+       "Example: glint-eval maps demo/glint/refine/svbrdf.exr demo/truth/svbrdf.exr", RunMaps},
+      {"views", "Renders views from a fit and compares them with the photographs.",
+       "Example: glint-eval views cards/glint/refine cards/glint/rectify --views photo_07.jpg",
+       RunViews},
+      {"cameras", "Compares a calibration with the truth of a synthetic capture.",
+       "Example: glint-eval cameras demo/truth demo/glint/calib/manifest.json", RunCameras},
+      {"table1",
+       "Runs classic, latent and refined fits on synthetic views and tabulates the errors.",
+       "Example: glint-eval table1 --counts 1,5 --work /tmp/table1", RunTable1Verb}};
+  return RunVerb(argc, argv,
+                 {"glint-eval", "Measures results: maps, renderings, cameras, the paper's table 1.",
+                  GLINT_VERSION, ""},
+                 verbs);
+}

@@ -1,0 +1,191 @@
+// glint-synth: synthetic materials, phone captures and rectified views.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/procedural/material.h"
+#include "datasets/synth/capture_writer.h"
+#include "datasets/synth/material_source.h"
+#include "datasets/synth/view_set.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/image.h"
+#include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/contract/verbs.h"
+
+namespace {
+
+using namespace glint;
+namespace fs = std::filesystem;
+
+std::array<double, 3> Triple(const std::vector<double>& numbers, const std::string& option) {
+  if (numbers.size() != 3) {
+    throw UserError(
+        fmt::format("{}: found {} numbers; give three, as in 10,0,0", option, numbers.size()));
+  }
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+// Where maps come from, for all verbs: a file, or the generator at --family and --seed.
+struct MaterialChoice {
+  fs::path maps;
+  std::string family;
+
+  void AddTo(OptionSet* options) {
+    options->Add("maps", &maps,
+                 "svbrdf.exr, strip or folder of maps to take instead of making them");
+    options->Add("family", &family, "family of the procedural material; none: drawn from the seed");
+  }
+  MaterialSource Load(std::uint64_t seed, int size) const {
+    if (!maps.empty()) return LoadMaterial(maps.string(), size);
+    const std::string which = family.empty() ? "" : family + ":";
+    return LoadMaterial("procedural:" + which + std::to_string(seed), size);
+  }
+};
+
+// Normal, diffuse, specular and roughness side by side, as a person looks at maps: colours in gamma
+// 2.2, the others as they are.
+void WritePreview(const fs::path& file, const SvbrdfMaps& maps) {
+  Image image(4 * maps.width, maps.height, {"R", "G", "B"});
+  const auto display = [](float v) { return std::pow(std::clamp(v, 0.0f, 1.0f), 1 / 2.2f); };
+  for (int c = 0; c < 3; ++c) {
+    for (int y = 0; y < maps.height; ++y) {
+      float* row = image.channel(c).data() + static_cast<size_t>(y) * image.width;
+      for (int x = 0; x < maps.width; ++x) {
+        row[x] = 0.5f * maps.at(kNormalX + c, y, x) + 0.5f;
+        row[maps.width + x] = display(maps.at(kDiffuseR + c, y, x));
+        row[2 * maps.width + x] = display(maps.at(kSpecularR + c, y, x));
+        row[3 * maps.width + x] = maps.at(kRoughness, y, x);
+      }
+    }
+  }
+  WritePng(file, image);
+}
+
+ProgramResult ListFamilies() {
+  ProgramResult result;
+  result.json = Json::array();
+  for (const auto& family : MaterialFamilies()) {
+    result.text += std::string(family) + "\n";
+    result.json.push_back(family);
+  }
+  return result;
+}
+
+int RunMaterial(int argc, char** argv, const ProgramInfo& info) {
+  MaterialChoice choice;
+  int size = 512;
+  bool list = false, png = false;
+  fs::path out;
+  OptionSet options;
+  options.AddPositional("out", &out, "file (….exr) or folder to write svbrdf.exr into", false);
+  choice.AddTo(&options);
+  options.AddRange("size", &size, 8, 8192, "texels a side");
+  options.Add("png", &png, "also write a preview: normal, diffuse, specular, roughness");
+  options.Add("list", &list, "list the families and do nothing else");
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
+    if (list) return ListFamilies();
+    if (out.empty()) throw UserError("out: found nothing; name a file or folder to write to");
+    const bool names_file = out.extension() == ".exr";
+    const fs::path file = names_file ? out : out / "svbrdf.exr";
+    const MaterialSource material = choice.Load(common.seed, size);
+    if (!file.parent_path().empty()) fs::create_directories(file.parent_path());
+    WriteSvbrdf(file, material.maps, ReflectanceConvention::Photograph());
+    if (png) WritePreview(fs::path(file).replace_extension(".png"), material.maps);
+    return ProgramResult{fmt::format("{}: {}, {} x {}", file.string(), material.name,
+                                     material.maps.width, material.maps.height),
+                         {{"file", file.string()}, {"material", material.name}}};
+  });
+}
+
+int RunCapture(int argc, char** argv, const ProgramInfo& info) {
+  MaterialChoice choice;
+  SyntheticCaptureOptions capture;
+  CapturePlanOptions& plan = capture.plan;
+  int texels = 1024;
+  std::vector<double> distance_mm{plan.nearest_mm, plan.farthest_mm};
+  std::vector<double> flash_mm(plan.flash_offset_mm.begin(), plan.flash_offset_mm.end());
+  std::vector<double> tint(plan.flash_tint.begin(), plan.flash_tint.end());
+  fs::path out;
+  OptionSet options;
+  options.AddPositional("out", &out, "folder of the new capture", true);
+  choice.AddTo(&options);
+  options.AddRange("photos", &plan.photos, 1, 1000, "photographs; the first is about a top view");
+  options.AddRange("megapixels", &plan.megapixels, 0.05, 60, "size of a photograph, 4:3");
+  options.AddRange("sample-mm", &plan.sample_mm, 10, 1000, "side of the square sample");
+  options.AddRange("texels", &texels, 16, 8192, "texels a side of a procedural material");
+  options.Add("distance-mm", &distance_mm, "camera's distance: nearest,farthest");
+  options.AddRange("tilt-deg", &plan.largest_tilt_deg, 0, 65, "largest tilt of the later views");
+  options.Add("flash-offset-mm", &flash_mm, "flash in the camera frame: right,down,forward");
+  options.Add("flash-tint", &tint, "colour of the flash: r,g,b in (0, 1]");
+  options.AddRange("ambient", &plan.ambient, 0, 10, "room light relative to the flash's");
+  options.AddRange("paper-level", &plan.paper_level, 1e-3, 4,
+                   "radiance of the brightest paper; the sensor clips at 1");
+  options.AddRange("noise", &capture.noise.scale, 0, 100, "sensor noise; 0: none, 1: a phone's");
+  options.AddChoice("format", &capture.format, {"jpg", "png", "exr"},
+                    "of the photographs; exr: linear float, not clipped");
+  options.AddChoice("encoding", &capture.encoding, {"gamma2.2", "srgb", "linear"},
+                    "tone curve of 8-bit photographs");
+  options.AddRange("resolution", &capture.resolution_px, 8, 8192,
+                   "resolution_px that capture.toml asks for");
+  options.Add("force", &capture.overwrite, "replace a capture that is there");
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
+    if (distance_mm.size() != 2) {
+      throw UserError("distance-mm: give two numbers, as in 270,330");
+    }
+    plan.seed = common.seed;
+    plan.nearest_mm = distance_mm[0];
+    plan.farthest_mm = distance_mm[1];
+    plan.flash_offset_mm = Triple(flash_mm, "flash-offset-mm");
+    plan.flash_tint = Triple(tint, "flash-tint");
+    const MaterialSource material = choice.Load(common.seed, choice.maps.empty() ? texels : 0);
+    const SyntheticCaptureSummary summary =
+        WriteSyntheticCapture(out, material, capture, common.threads);
+    return ProgramResult{
+        fmt::format("{}: {}\n{}", out.string(), material.name, summary.BriefReport()),
+        {{"folder", out.string()},
+         {"material", material.name},
+         {"photos", summary.photos},
+         {"width_px", summary.width_px},
+         {"height_px", summary.height_px},
+         {"clipped_share", summary.clipped_share}}};
+  });
+}
+
+int RunViews(int argc, char** argv, const ProgramInfo& info) {
+  ViewSetOptions views;
+  int resolution = 256;
+  std::string maps;
+  fs::path out;
+  OptionSet options;
+  options.AddPositional("maps", &maps, "maps, or procedural:SEED, or procedural:FAMILY:SEED", true);
+  options.AddPositional("out", &out, "folder of the new capture", true);
+  AddViewSetOptions(&views, &options);
+  options.AddRange("resolution", &resolution, 8, 4096, "texels a side");
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
+    const MaterialSource material = LoadMaterial(maps, resolution);
+    WriteViewSet(out, material, views, common);
+    return ProgramResult{
+        fmt::format("{}: {} views of {}", out.string(), views.count, material.name),
+        {{"folder", out.string()}, {"material", material.name}, {"views", views.count}}};
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<Verb> verbs = {
+      {"material", "Makes the maps of a procedural material, or converts maps to svbrdf.exr.",
+       "Example: glint-synth material --family wood --seed 7 --size 1024 --png wood/", RunMaterial},
+      {"capture",
+       "Renders a phone's flash photographs of a printed board frame with a sample in its window.",
+       "Example: glint-synth capture demo --seed 3 --megapixels 3\n"
+       "Then: glint run demo; glint-eval cameras demo/truth demo/glint/calib/manifest.json",
+       RunCapture},
+      {"views", "Renders rectified views from maps: a capture whose stage rectify is done.",
+       "Example: glint-synth views procedural:7 set --count 5 && glint-fit set", RunViews}};
+  return RunVerb(argc, argv,
+                 {"glint-synth", "Makes synthetic materials, captures and views, with their truth.",
+                  GLINT_VERSION, ""},
+                 verbs);
+}

@@ -1,0 +1,201 @@
+#include "datasets/synth/capture_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "datasets/procedural/random.h"
+#include "pipeline/contract/errors.h"
+
+namespace glint {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using procedural::Rng;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+// Azimuths of successive photos: the golden angle spreads any number of them evenly.
+constexpr double kGoldenAngle = 2.399963229728653;
+
+// Streams of random numbers that must not follow each other's length.
+enum Stream : std::uint64_t { kLensStream = 1, kPoseStream = 2 };
+
+Rng StreamOf(std::uint64_t seed, Stream stream) {
+  return Rng(procedural::Mix64(seed) ^ (0x5eed0000ull + stream));
+}
+
+void CheckOptions(const CapturePlanOptions& o) {
+  const auto require = [](bool fine, const std::string& what) {
+    if (!fine) throw UserError(what);
+  };
+  require(o.photos >= 1 && o.photos <= 1000, "photos: use 1 to 1000");
+  require(o.megapixels >= 0.05 && o.megapixels <= 60, "megapixels: use 0.05 to 60");
+  require(o.sample_mm >= 10 && o.sample_mm <= 1000, "sample-mm: use 10 to 1000");
+  require(
+      o.nearest_mm > 0 && o.farthest_mm >= o.nearest_mm && o.nearest_mm >= 1.2 * o.sample_mm,
+      "distance-mm: the nearest must be positive, at least 1.2 times the sample's side, and not "
+      "above the farthest");
+  require(o.largest_tilt_deg >= 0 && o.largest_tilt_deg <= 65, "tilt-deg: use 0 to 65");
+  require(o.paper_level > 0 && o.paper_level <= 4, "paper-level: use a number in (0, 4]");
+  require(o.ambient >= 0 && o.ambient <= 10, "ambient: use 0 to 10");
+  for (const double tint : o.flash_tint) {
+    require(tint > 0 && tint <= 1, "flash-tint: each channel must lie in (0, 1]");
+  }
+}
+
+// Looking from `camera` at `target`, the top of the picture toward +y of the sample, then turned
+// about the line of sight.
+Rigid3 LookAt(const Vector3d& camera, const Vector3d& target, double roll) {
+  const Vector3d forward = (target - camera).normalized();
+  const Vector3d right = forward.cross(Vector3d::UnitY()).normalized();
+  const Vector3d down = forward.cross(right);
+  Rigid3 camera_from_sample;
+  camera_from_sample.rotation.row(0) = std::cos(roll) * right + std::sin(roll) * down;
+  camera_from_sample.rotation.row(1) = -std::sin(roll) * right + std::cos(roll) * down;
+  camera_from_sample.rotation.row(2) = forward;
+  camera_from_sample.translation = -(camera_from_sample.rotation * camera);
+  return camera_from_sample;
+}
+
+struct DrawnPose {
+  Vector3d direction;  // from the sample to the camera
+  double distance_mm;
+  Vector2d target_mm;
+  double roll;
+};
+
+DrawnPose DrawPose(const CapturePlanOptions& options, int index, double first_azimuth, Rng& rng) {
+  const bool top_view = index == 0;
+  const double azimuth = first_azimuth + index * kGoldenAngle + 0.3 * (2.0 * rng.Unit() - 1.0);
+  const double low = std::min(10.0, options.largest_tilt_deg);
+  const double tilt = kDegree * (top_view ? std::min(2.0, low) * rng.Unit()
+                                          : low + (options.largest_tilt_deg - low) * rng.Unit());
+  const double jitter_mm = (top_view ? 0.03 : 0.08) * options.sample_mm;
+  DrawnPose pose;
+  pose.direction = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
+                    std::cos(tilt)};
+  pose.distance_mm = options.nearest_mm + (options.farthest_mm - options.nearest_mm) * rng.Unit();
+  pose.target_mm.x() = jitter_mm * (2.0 * rng.Unit() - 1.0);
+  pose.target_mm.y() = jitter_mm * (2.0 * rng.Unit() - 1.0);
+  pose.roll = kDegree * (top_view ? 3.0 : 12.0) * (2.0 * rng.Unit() - 1.0);
+  return pose;
+}
+
+// The four corners of the squares lie in the picture, `share` of the half picture or less from its
+// centre.
+bool BoardInPicture(const CapturePlan& plan, const Rigid3& camera_from_sample, double share) {
+  const double x_mm = 0.5 * plan.board.squares_x * plan.board.square_mm;
+  const double y_mm = 0.5 * plan.board.squares_y * plan.board.square_mm;
+  const Vector2d half_px(0.5 * plan.camera.width_px, 0.5 * plan.camera.height_px);
+  for (const double sx : {-1.0, 1.0}) {
+    for (const double sy : {-1.0, 1.0}) {
+      const Vector3d corner = camera_from_sample * Vector3d(sx * x_mm, sy * y_mm, 0);
+      if (corner.z() < 0.1 * plan.options.nearest_mm) return false;
+      const Vector2d offset = ImageFromCamera(plan.camera, corner) - half_px;
+      if ((offset.cwiseAbs().array() > share * half_px.array()).any()) return false;
+    }
+  }
+  return true;
+}
+
+// Steps back, as a photographer would, until the board is in the picture; tilted views may cut it a
+// little.
+PlannedPhoto PlacePhoto(const CapturePlan& plan, int index, DrawnPose pose) {
+  constexpr int kMostSteps = 100;
+  const double share = index == 0 ? 0.99 : 1.06;
+  PlannedPhoto photo;
+  for (int step = 0; step < kMostSteps; ++step, pose.distance_mm *= 1.02) {
+    const Vector3d target(pose.target_mm.x(), pose.target_mm.y(), 0);
+    photo.camera_from_sample =
+        LookAt(target + pose.distance_mm * pose.direction, target, pose.roll);
+    if (BoardInPicture(plan, photo.camera_from_sample, share)) break;
+  }
+  const auto& offset = plan.options.flash_offset_mm;
+  photo.light_in_sample_mm =
+      Inverse(photo.camera_from_sample) * Vector3d(offset[0], offset[1], offset[2]);
+  if (photo.light_in_sample_mm.z() < 0.2 * plan.options.nearest_mm) {
+    throw UserError("flash-offset-mm: puts the flash at or below the sample; use a smaller offset");
+  }
+  return photo;
+}
+
+// Irradiance on the sheet per power.
+double LightGeometry(const Vector3d& light_mm, double x_mm, double y_mm) {
+  const Vector3d to_light = light_mm - Vector3d(x_mm, y_mm, 0);
+  const double distance = to_light.norm();
+  return to_light.z() / (distance * distance * distance);
+}
+
+// Fixed exposure for the whole capture: the brightest piece of paper reaches `paper_level`.
+void SetExposure(CapturePlan* plan) {
+  const double half_x = 0.5 * plan->board.squares_x * plan->board.square_mm;
+  const double half_y = 0.5 * plan->board.squares_y * plan->board.square_mm;
+  double brightest = 0;
+  for (const PlannedPhoto& photo : plan->photos) {
+    // The foot of the flash, moved onto the sheet, is where the paper is brightest.
+    const double x = std::clamp(photo.light_in_sample_mm.x(), -half_x, half_x);
+    const double y = std::clamp(photo.light_in_sample_mm.y(), -half_y, half_y);
+    brightest = std::max(brightest, LightGeometry(photo.light_in_sample_mm, x, y));
+  }
+  const CapturePlanOptions& options = plan->options;
+  const double room =
+      options.ambient * LightGeometry(plan->photos.front().light_in_sample_mm, 0, 0);
+  const double power = options.paper_level * std::numbers::pi / (kPaperAlbedo * (brightest + room));
+  plan->light_rgb = power * Vector3d(options.flash_tint.data());
+  plan->ambient_rgb.setConstant(power * room);
+}
+
+}  // namespace
+
+Board FrameBoard(double sample_mm) {
+  Board board;
+  board.kind = BoardKind::kCharuco;
+  board.squares_x = 18;
+  board.squares_y = 14;
+  board.window = BoardWindow{5, 3, 8, 8};
+  // 100 mm: squares of 13 mm, 234 × 182 mm, on A4 with 14 mm of margin above and below.
+  board.square_mm = 1.04 * sample_mm / board.window->columns;
+  board.marker_mm = board.square_mm * 0.75;
+  board.dictionary = "DICT_5X5_1000";
+  return board;
+}
+
+Camera PhoneCamera(double megapixels, std::uint64_t seed) {
+  Rng rng = StreamOf(seed, kLensStream);
+  const auto around = [&rng](double centre, double half_width) {
+    return centre + half_width * (2.0 * rng.Unit() - 1.0);
+  };
+  Camera camera;
+  camera.model = CameraModel::kRadial;
+  camera.width_px =
+      4 * std::max(1, static_cast<int>(std::lround(std::sqrt(megapixels * 1e6 / 12))));
+  camera.height_px = camera.width_px / 4 * 3;
+  const double scale = camera.width_px / 4000.0;
+  // A phone's main camera: 26 mm equivalent, a little barrel that turns back toward the corners.
+  const double focal_px = around(3000, 60) * scale;
+  const double cx = 0.5 * camera.width_px + around(0, 14) * scale;
+  const double cy = 0.5 * camera.height_px + around(0, 14) * scale;
+  const double k1 = around(0.05, 0.03);
+  const double k2 = around(-0.08, 0.03);
+  camera.parameters = {focal_px, cx, cy, k1, k2};
+  return camera;
+}
+
+CapturePlan PlanCapture(const CapturePlanOptions& options) {
+  CheckOptions(options);
+  CapturePlan plan;
+  plan.options = options;
+  plan.board = FrameBoard(options.sample_mm);
+  plan.margin_mm = plan.board.square_mm;
+  plan.camera = PhoneCamera(options.megapixels, options.seed);
+  Rng rng = StreamOf(options.seed, kPoseStream);
+  const double first_azimuth = 2.0 * std::numbers::pi * rng.Unit();
+  for (int i = 0; i < options.photos; ++i) {
+    plan.photos.push_back(PlacePhoto(plan, i, DrawPose(options, i, first_azimuth, rng)));
+  }
+  SetExposure(&plan);
+  return plan;
+}
+
+}  // namespace glint

@@ -1,0 +1,61 @@
+// A synthetic phone capture before it is rendered: board, lens, poses, flash, exposure. Pure.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "calib/board/board.h"
+#include "calib/camera/camera_model.h"
+#include "calib/camera/rigid3.h"
+
+namespace glint {
+
+struct CapturePlanOptions {
+  std::uint64_t seed = 0;
+  int photos = 12;
+  double megapixels = 12;        // 4:3; the focal length follows, so the field of view stays
+  double sample_mm = 100;        // side of the square sample
+  double nearest_mm = 270;       // distance of the camera from the point it looks at, uniform in
+  double farthest_mm = 330;      // [nearest, farthest]
+  double largest_tilt_deg = 40;  // of the views after the first
+  std::array<double, 3> flash_offset_mm{10, 0,
+                                        0};   // in the camera frame: x right, y down, z forward
+  std::array<double, 3> flash_tint{1, 1, 1};  // colour of the flash, largest channel 1
+  double ambient = 0;         // room's irradiance relative to the flash's in the first photo
+  double paper_level = 0.78;  // brightest paper of the capture, relative to clipping
+};
+
+// Reflectance factors of what surrounds the sample, Lambertian.
+inline constexpr double kPaperAlbedo = 0.85;
+inline constexpr double kInkAlbedo = 0.05;
+inline constexpr std::array<double, 3> kTableAlbedo{0.22, 0.17, 0.13};
+
+struct PlannedPhoto {
+  Rigid3 camera_from_sample;
+  Eigen::Vector3d light_in_sample_mm;
+};
+
+struct CapturePlan {
+  CapturePlanOptions options;
+  Board board;           // a frame: the sample lies in its window
+  double margin_mm = 0;  // paper round the squares
+  Camera camera;         // RADIAL, one for all photos
+  std::vector<PlannedPhoto> photos;
+  Eigen::Vector3d light_rgb{1, 1, 1};    // power, radiance·mm² where the sensor clips at 1
+  Eigen::Vector3d ambient_rgb{0, 0, 0};  // irradiance
+};
+
+// A ChArUco frame on A4 across: 18 × 14 squares with a window of 8 × 8 in the middle, scaled so
+// that a sample of `sample_mm` leaves 2 % of the window's side free all round.
+Board FrameBoard(double sample_mm);
+
+// Throws UserError for options that cannot give a capture (too few photos, a camera inside the
+// board…).
+CapturePlan PlanCapture(const CapturePlanOptions& options);
+
+// The field of view's intrinsics at an image size; lens and principal point vary with the seed.
+Camera PhoneCamera(double megapixels, std::uint64_t seed);
+
+}  // namespace glint

@@ -1,0 +1,184 @@
+#include "datasets/synth/photo_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "datasets/synth/parallel_rows.h"
+#include "fitting/reflectance/brdf.h"
+#include "pipeline/contract/errors.h"
+
+namespace glint {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kEdgeSamples = 8;       // a side, where an edge crosses the pixel
+constexpr int kFewestMapSamples = 2;  // a side, inside the sample
+constexpr int kMostMapSamples = 16;
+
+Vec3d ToVec3d(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Vector2d Between(const Vector2d& a, const Vector2d& b, double t) { return a + t * (b - a); }
+
+}  // namespace
+
+PhotoRenderer::PhotoRenderer(const CapturePlan& plan, const SvbrdfMaps& maps, int threads)
+    : plan_(plan),
+      painter_(plan.board, plan.margin_mm),
+      map_width_(maps.width),
+      map_height_(maps.height),
+      texels_(maps.texels()) {
+  for (size_t i = 0; i < texels_.size(); ++i) {
+    for (int p = 0; p < kSvbrdfPlanes; ++p) texels_[i].value[p] = maps.plane(p)[i];
+  }
+  for (const PlannedPhoto& photo : plan.photos) {
+    const Rigid3 sample_from_camera = Inverse(photo.camera_from_sample);
+    View view;
+    view.camera_in_sample_mm = ToVec3d(sample_from_camera.translation);
+    view.light_in_sample_mm = ToVec3d(photo.light_in_sample_mm);
+    view.light_rgb = ToVec3d(plan.light_rgb);
+    view.ambient_rgb = ToVec3d(plan.ambient_rgb);
+    geometry_.push_back({sample_from_camera.rotation, sample_from_camera.translation, view});
+  }
+  const int columns = plan.camera.width_px + 1;
+  normalized_.resize(static_cast<size_t>(columns) * (plan.camera.height_px + 1));
+  ParallelRows(plan.camera.height_px + 1, threads, [&](int row) {
+    for (int column = 0; column < columns; ++column) {
+      const auto point = NormalizedFromImage(plan.camera, Vector2d(column, row));
+      if (!point) {
+        throw ComputationError("the lens distortion has no inverse at pixel (" +
+                               std::to_string(column) + ", " + std::to_string(row) + ")");
+      }
+      normalized_[static_cast<size_t>(row) * columns + column] = point->cast<float>();
+    }
+  });
+}
+
+PhotoRenderer::Surface PhotoRenderer::SurfaceAt(const Vector2d& position_mm) const {
+  const double half_mm = 0.5 * plan_.options.sample_mm;
+  if (std::abs(position_mm.x()) <= half_mm && std::abs(position_mm.y()) <= half_mm) return kSample;
+  const auto reflectance = painter_.ReflectanceAt(position_mm.x(), position_mm.y());
+  if (!reflectance) return kTable;
+  return *reflectance < 0.5 ? kInk : kPaper;
+}
+
+void PhotoRenderer::FillCorners(const PhotoGeometry& geometry, int corner_row,
+                                CornerRow* corners) const {
+  const int columns = plan_.camera.width_px + 1;
+  corners->position_mm.resize(columns);
+  corners->surface.resize(columns);
+  const auto* normalized = normalized_.data() + static_cast<size_t>(corner_row) * columns;
+  for (int i = 0; i < columns; ++i) {
+    const Vector3d ray =
+        geometry.sample_from_camera * Vector3d(normalized[i].x(), normalized[i].y(), 1.0);
+    // A ray that does not come down meets the table very far away.
+    const double length = geometry.camera_mm.z() / std::max(-ray.z(), 1e-6);
+    corners->position_mm[i] = (geometry.camera_mm + length * ray).head<2>();
+    corners->surface[i] = SurfaceAt(corners->position_mm[i]);
+  }
+}
+
+PhotoRenderer::Rgb PhotoRenderer::ShadeSurface(const PhotoGeometry& geometry, Surface surface,
+                                               const Vector2d& position_mm) const {
+  if (surface == kSample) return ShadeSample(geometry, position_mm);
+  const auto& light = geometry.view.light_in_sample_mm;
+  const double dx = light[0] - position_mm.x(), dy = light[1] - position_mm.y();
+  const double squared = dx * dx + dy * dy + light[2] * light[2];
+  const double falloff = light[2] / (squared * std::sqrt(squared));
+  Rgb rgb;
+  for (int c = 0; c < 3; ++c) {
+    const double albedo =
+        surface == kTable ? kTableAlbedo[c] : (surface == kInk ? kInkAlbedo : kPaperAlbedo);
+    const double irradiance = plan_.light_rgb[c] * falloff + plan_.ambient_rgb[c];
+    rgb[c] = static_cast<float>(albedo * kInversePi * irradiance);
+  }
+  return rgb;
+}
+
+PhotoRenderer::Rgb PhotoRenderer::ShadeSample(const PhotoGeometry& geometry,
+                                              const Vector2d& position_mm) const {
+  const double side_mm = plan_.options.sample_mm;
+  const auto place = [side_mm](double along_mm, int texels, int* low, int* high) {
+    const double at = (along_mm / side_mm + 0.5) * texels - 0.5;
+    const double clamped = std::clamp(at, 0.0, texels - 1.0);
+    *low = static_cast<int>(clamped);
+    *high = std::min(*low + 1, texels - 1);
+    return static_cast<float>(clamped - *low);
+  };
+  int left, right, top, bottom;
+  const float tx = place(position_mm.x(), map_width_, &left, &right);
+  const float ty = place(-position_mm.y(), map_height_, &top, &bottom);
+  const Texel* row0 = texels_.data() + static_cast<size_t>(top) * map_width_;
+  const Texel* row1 = texels_.data() + static_cast<size_t>(bottom) * map_width_;
+  std::array<float, kSvbrdfPlanes> value;
+  for (int p = 0; p < kSvbrdfPlanes; ++p) {
+    const float upper = row0[left].value[p] + tx * (row0[right].value[p] - row0[left].value[p]);
+    const float lower = row1[left].value[p] + tx * (row1[right].value[p] - row1[left].value[p]);
+    value[p] = upper + ty * (lower - upper);
+  }
+  const float* n = value.data();
+  const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  const TexelSvbrdf<float> texel{{n[0] / length, n[1] / length, n[2] / length},
+                                 {value[kDiffuseR], value[kDiffuseG], value[kDiffuseB]},
+                                 {value[kSpecularR], value[kSpecularG], value[kSpecularB]},
+                                 value[kRoughness]};
+  const auto in_view =
+      TexelGeometryInView(geometry.view, LightFalloff::kInverseSquare,
+                          static_cast<float>(position_mm.x()), static_cast<float>(position_mm.y()));
+  Rgb rgb;
+  ShadeRadiance(texel, in_view, DiffuseWeight::kOne, rgb.data());
+  return rgb;
+}
+
+PhotoRenderer::Rgb PhotoRenderer::ShadePixel(const PhotoGeometry& geometry, const CornerRow& above,
+                                             const CornerRow& below, int column) const {
+  const Vector2d& a = above.position_mm[column];
+  const Vector2d& b = above.position_mm[column + 1];
+  const Vector2d& c = below.position_mm[column];
+  const Vector2d& d = below.position_mm[column + 1];
+  const Surface surface = above.surface[column];
+  const bool uniform = surface == above.surface[column + 1] && surface == below.surface[column] &&
+                       surface == below.surface[column + 1];
+  if (uniform && surface != kSample) {
+    return ShadeSurface(geometry, surface, 0.25 * (a + b + c + d));
+  }
+  int samples = kEdgeSamples;
+  if (uniform) {
+    const double texel_mm = plan_.options.sample_mm / std::max(map_width_, map_height_);
+    const double longest_mm = std::sqrt(std::max((b - a).squaredNorm(), (c - a).squaredNorm()));
+    samples = std::clamp(static_cast<int>(std::ceil(1.5 * longest_mm / texel_mm)),
+                         kFewestMapSamples, kMostMapSamples);
+  }
+  Rgb sum{0, 0, 0};
+  for (int i = 0; i < samples; ++i) {
+    const double v = (i + 0.5) / samples;
+    const Vector2d left = Between(a, c, v), right = Between(b, d, v);
+    for (int j = 0; j < samples; ++j) {
+      const Vector2d position = Between(left, right, (j + 0.5) / samples);
+      const Rgb rgb = ShadeSurface(geometry, uniform ? surface : SurfaceAt(position), position);
+      for (int k = 0; k < 3; ++k) sum[k] += rgb[k];
+    }
+  }
+  for (float& value : sum) value /= static_cast<float>(samples * samples);
+  return sum;
+}
+
+void PhotoRenderer::RenderRows(int photo, int first_row, int rows, std::span<float> rgb) const {
+  const PhotoGeometry& geometry = geometry_[photo];
+  CornerRow above, below;
+  FillCorners(geometry, first_row, &above);
+  float* out = rgb.data();
+  for (int row = first_row; row < first_row + rows; ++row) {
+    FillCorners(geometry, row + 1, &below);
+    for (int column = 0; column < plan_.camera.width_px; ++column) {
+      const Rgb value = ShadePixel(geometry, above, below, column);
+      out = std::copy(value.begin(), value.end(), out);
+    }
+    std::swap(above, below);
+  }
+}
+
+}  // namespace glint
