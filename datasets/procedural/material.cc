@@ -43,6 +43,18 @@ const Family& FindFamily(const std::string& name) {
   throw std::invalid_argument("unknown material family \"" + name + "\"; known are " + known);
 }
 
+// The stream of one family: the same seed draws unrelated parameters in another one.
+uint64_t FamilySeed(const Family& family, uint64_t seed, uint64_t stream) {
+  uint64_t hash = seed ^ stream;
+  for (const char c : family.name) hash = Mix64(hash ^ static_cast<unsigned char>(c));
+  return hash;
+}
+
+SvbrdfMaps MakeOne(const std::string& name, uint64_t seed, uint64_t stream, int width, int height) {
+  const Family& family = FindFamily(name);
+  return procedural::MakeSurface(family, FamilySeed(family, seed, stream), width, height);
+}
+
 void CheckSize(int width, int height) {
   if (width >= 1 && height >= 1 && width <= kLargestSide && height <= kLargestSide) return;
   throw std::invalid_argument(
@@ -69,12 +81,9 @@ MaterialRecipe DrawRecipe(uint64_t seed) {
 
 SvbrdfMaps MakeMaterial(const MaterialRecipe& recipe, int width, int height) {
   CheckSize(width, height);
-  const Family& family = FindFamily(recipe.family);
-  SvbrdfMaps first =
-      procedural::MakeSurface(family, Mix64(recipe.seed ^ kFirstStream), width, height);
+  SvbrdfMaps first = MakeOne(recipe.family, recipe.seed, kFirstStream, width, height);
   if (recipe.second.empty()) return first;
-  const SvbrdfMaps second = procedural::MakeSurface(
-      FindFamily(recipe.second), Mix64(recipe.seed ^ kSecondStream), width, height);
+  const SvbrdfMaps second = MakeOne(recipe.second, recipe.seed, kSecondStream, width, height);
   const std::vector<float> mask =
       procedural::DrawBlendMask(Mix64(recipe.seed ^ kMaskStream), width, height);
   return procedural::BlendMaterials(first, second, mask);

@@ -97,10 +97,14 @@ void FractalNoise(const NoiseOptions& options, const float* x, const float* y, i
                   float* out) {
   const bool ridged = options.kind == NoiseKind::kRidged;
   const bool smooth = options.kind == NoiseKind::kSmooth;
-  float total = 0.0f, amplitude = 1.0f, frequency = options.frequency;
-  for (int o = 0; o < options.octaves; ++o, amplitude *= options.gain) total += amplitude;
+  float total = 0.0f, power = 0.0f, amplitude = 1.0f, frequency = options.frequency;
+  for (int o = 0; o < options.octaves; ++o, amplitude *= options.gain) {
+    total += amplitude;
+    power += amplitude * amplitude;
+  }
   std::fill(out, out + n, ridged ? 1.0f : 0.0f);
-  amplitude = 1.0f / total;
+  // Signed octaves partly cancel: keep their spread, not their bound.
+  amplitude = smooth ? 1.2f / std::sqrt(power) : 1.0f / total;
   for (int o = 0; o < options.octaves; ++o) {
     const float finest = frequency * std::max(options.stretch, 1.0f) * pixel;  // cells per texel
     const float fade = Clamp01((0.7f - finest) / 0.35f);

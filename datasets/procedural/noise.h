@@ -10,7 +10,7 @@
 namespace glint::procedural {
 
 enum class NoiseKind {
-  kSmooth,  // signed gradient noise (Perlin 2002), about [-1, 1]
+  kSmooth,  // signed gradient noise (Perlin 2002), standard deviation 1/3, seldom beyond ±1
   kBillow,  // |noise|: pillows with sharp valleys, about [0, 1]
   kRidged,  // 1 − |noise|: sharp crests, about [0, 1]
 };
@@ -25,7 +25,7 @@ struct NoiseOptions {
   uint32_t seed = 0;
 };
 
-// Fractal sum of octaves, divided by the sum of amplitudes.
+// Fractal sum of octaves, scaled so that its spread does not depend on their number.
 void FractalNoise(const NoiseOptions& options, const float* x, const float* y, int n, float pixel,
                   float* out);
 

@@ -48,6 +48,7 @@ class Surface {
     const bool nearly_flat = rng.Chance(0.12f);
     const float slope = rng.LogUniform(family.slope_low, family.slope_high);
     slope_ = nearly_flat ? 0.1f * slope : slope;
+    metal_residue_ = rng.Chance(0.5f) ? rng.Uniform(0.0f, 0.06f) : 0.0f;
     rows_ = family.draw(rng);
     weathering_ = DrawWeathering(rng);
   }
@@ -66,12 +67,15 @@ class Surface {
     weathering_(d, scratch, out);
   }
 
+  float metal_residue() const { return metal_residue_; }
+
   // The factor that brings the relief to the drawn slope.
   float ReliefScale() const;
 
  private:
   Placement placement_;
   float slope_;
+  float metal_residue_;
   RowFunction rows_;
   RowFunction weathering_;
 };
@@ -121,7 +125,8 @@ float Surface::ReliefScale() const {
   return slope_ / std::max(rms, 0.1f);
 }
 
-void WriteReflectance(const RowBuffers& rows, int first, int row, SvbrdfMaps& maps) {
+// `residue`: part of a metal's colour that its oxide and dust scatter diffusely.
+void WriteReflectance(const RowBuffers& rows, float residue, int first, int row, SvbrdfMaps& maps) {
   const size_t at = static_cast<size_t>(row) * maps.width;
   const float* base[3] = {rows.r + first, rows.g + first, rows.b + first};
   const float* metal = rows.metal + first;
@@ -133,8 +138,9 @@ void WriteReflectance(const RowBuffers& rows, int first, int row, SvbrdfMaps& ma
       const float f0 = std::min(std::max(f0_row[i], 0.02f), 0.08f);
       const float m = Clamp01(metal[i]);
       const float color = Clamp01(base[c][i]);
-      diffuse[i] = (1.0f - m) * std::min(color, 1.0f - f0);
-      specular[i] = Mix(f0, color, m);
+      const float mirror = Mix(f0, (1.0f - residue) * color, m);
+      specular[i] = mirror;
+      diffuse[i] = std::min(Mix(1.0f, residue, m) * color, 1.0f - mirror);
     }
   }
   float* roughness = maps.plane(kRoughness).data() + at;
@@ -186,7 +192,7 @@ SvbrdfMaps MakeSurface(const Family& family, uint64_t seed, int width, int heigh
     }
     surface.Evaluate(rows.x, rows.y, n, pixel, rows.px, rows.py, scratch,
                      rows.Layers(heights.data() + static_cast<size_t>(row + 1) * n));
-    if (row >= 0 && row < height) WriteReflectance(rows, 1, row, maps);
+    if (row >= 0 && row < height) WriteReflectance(rows, surface.metal_residue(), 1, row, maps);
   }
   WriteNormals(heights, surface.ReliefScale() * 0.5f * longer, maps);
   return maps;

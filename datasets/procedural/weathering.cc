@@ -6,11 +6,11 @@ namespace glint::procedural {
 namespace {
 
 struct Weathering {
-  NoiseOptions tone, grain, dirt, gloss, waves;
+  NoiseOptions tone, grain, dirt, gloss, coating, waves;
   StreakOptions scratches[2];
   float tone_strength, tone_tint, grain_tone, grain_relief, grain_roughness;
-  float dirt_level, dirt_soft, dirt_strength, gloss_strength, scratch_gloss, scratch_relief,
-      wave_height;
+  float dirt_level, dirt_soft, dirt_strength, gloss_strength, f0_strength, f0_from_tone,
+      scratch_gloss, scratch_relief, wave_height;
   Color dirt_color;
 };
 
@@ -55,6 +55,15 @@ void AddGloss(const Weathering& p, const RowDomain& d, Scratch& s, const RowLaye
   for (int i = 0; i < d.n; ++i) out.roughness[i] += p.gloss_strength * gloss[i];
 }
 
+// Coatings, moisture and mineral content vary the reflectance of dielectrics from place to place.
+void AddCoating(const Weathering& p, const RowDomain& d, Scratch& s, const RowLayers& out) {
+  const float* coating = NoiseRow(p.coating, d, s);
+  for (int i = 0; i < d.n; ++i) {
+    const float tone = 0.3333f * (out.r[i] + out.g[i] + out.b[i]) - 0.25f;
+    out.f0[i] += p.f0_strength * coating[i] + p.f0_from_tone * tone;
+  }
+}
+
 void AddScratches(const Weathering& p, const RowDomain& d, Scratch& s, const RowLayers& out) {
   float* profile = s.Row();
   uint32_t* id = s.Ids();
@@ -77,6 +86,7 @@ void WeatheringRow(Weathering p, const RowDomain& d, Scratch& s, const RowLayers
   if (p.grain_tone > 0.0f) AddGrain(p, d, s, out);
   if (p.dirt_strength > 0.0f) AddDirt(p, d, s, out);
   if (p.gloss_strength > 0.0f) AddGloss(p, d, s, out);
+  if (p.f0_strength > 0.0f) AddCoating(p, d, s, out);
   if (p.scratch_gloss != 0.0f) AddScratches(p, d, s, out);
   if (p.wave_height > 0.0f) AddWaves(p, d, s, out);
 }
@@ -99,6 +109,9 @@ RowFunction DrawWeathering(Rng& rng) {
   p.dirt_color = rng.Chance(0.5f) ? EarthColor(rng) : GreyColor(rng);
   p.gloss = DrawNoise(rng, NoiseKind::kSmooth, 1.0f, 20.0f, 4);
   p.gloss_strength = rng.Chance(0.35f) ? rng.Uniform(0.03f, 0.35f) : 0.0f;
+  p.coating = DrawNoise(rng, NoiseKind::kSmooth, 1.0f, 20.0f, 3);
+  p.f0_strength = rng.Chance(0.35f) ? rng.Uniform(0.001f, 0.04f) : 0.0f;
+  p.f0_from_tone = rng.Chance(0.6f) ? rng.Uniform(-0.08f, 0.08f) : 0.0f;
   for (StreakOptions& layer : p.scratches) {
     layer.angle_turns = rng.Unit();
     layer.lanes = rng.LogUniform(10.0f, 40.0f);

@@ -213,7 +213,7 @@ RowFunction DrawCrumple(Rng& rng) {
   p.metal = metal ? 1.0f : 0.0f;
   p.crease_tone = metal ? 0.0f : rng.Uniform(-0.3f, 0.3f);
   p.roughness = AnyRoughness(rng, metal ? -0.5f : 0.2f);
-  p.roughness_spread = rng.Uniform(0.0f, 0.2f);
+  p.roughness_spread = rng.Chance(0.4f) ? rng.Uniform(0.0f, 0.2f) : 0.0f;
   p.f0 = AnyDielectricF0(rng);
   return Bind(p, CrumpleRow);
 }

@@ -8,7 +8,7 @@ namespace {
 struct Stone {
   NoiseOptions relief, tone, patches, pits;
   Scheme colors;
-  float pit_level, pit_depth, tone_by_height, patch_contrast;
+  float pit_level, pit_depth, tone_by_height, tone_contrast, patch_contrast;
   float roughness, roughness_spread, f0;
 };
 
@@ -20,7 +20,7 @@ void StoneRow(Stone p, const RowDomain& d, Scratch& s, const RowLayers& out) {
   for (int i = 0; i < d.n; ++i) {
     const float pit = SmoothStep(p.pit_level, p.pit_level + 0.12f, pits[i]);
     const float h = relief[i] - p.pit_depth * pit;
-    const float t = Clamp01(0.5f + 0.9f * tone[i] + p.tone_by_height * relief[i]);
+    const float t = Clamp01(0.5f + p.tone_contrast * tone[i] + p.tone_by_height * relief[i]);
     const float q = SmoothStep(-p.patch_contrast, p.patch_contrast, patches[i] + 0.3f * tone[i]);
     const float dark = 1.0f - 0.5f * pit;
     out.height[i] = h;
@@ -37,7 +37,8 @@ struct Marble {
   Warp warp;
   NoiseOptions body, veins, fine_veins;
   Scheme colors;
-  float vein_width, fine_width, vein_strength, fine_strength, roughness, vein_roughness, f0, dent;
+  float vein_width, fine_width, vein_strength, fine_strength, roughness, vein_roughness, f0, dent,
+      cloudy;
 };
 
 void MarbleRow(Marble p, const RowDomain& d, Scratch& s, const RowLayers& out) {
@@ -46,11 +47,11 @@ void MarbleRow(Marble p, const RowDomain& d, Scratch& s, const RowLayers& out) {
   const float* veins = NoiseRow(p.veins, w, s);
   const float* fine = NoiseRow(p.fine_veins, w, s);
   for (int i = 0; i < d.n; ++i) {
-    const float breaks = SmoothStep(-0.5f, 0.4f, body[i]);
+    const float breaks = SmoothStep(-0.7f, 0.3f, body[i]);
     const float v = p.vein_strength * breaks * SmoothStep(1.0f - p.vein_width, 1.0f, veins[i]);
     const float f = p.fine_strength * SmoothStep(1.0f - p.fine_width, 1.0f, fine[i]);
     const float vein = std::max(v, f);
-    const float cloud = Clamp01(0.5f + 0.8f * body[i]);
+    const float cloud = Clamp01(0.5f + p.cloudy * body[i]);
     out.height[i] = -p.dent * vein + 0.05f * body[i];
     out.r[i] = Mix(Mix(p.colors.base.r, p.colors.second.r, cloud), p.colors.third.r, vein);
     out.g[i] = Mix(Mix(p.colors.base.g, p.colors.second.g, cloud), p.colors.third.g, vein);
@@ -218,6 +219,7 @@ Stone StoneParameters(Rng& rng) {
   p.pit_level = rng.Chance(0.5f) ? rng.Uniform(0.25f, 0.6f) : 9.0f;
   p.pit_depth = rng.Uniform(0.1f, 0.8f);
   p.tone_by_height = rng.Uniform(-1.0f, 1.0f);
+  p.tone_contrast = rng.LogUniform(0.3f, 3.0f);
   p.patch_contrast = rng.Uniform(0.05f, 0.8f);
   p.roughness = AnyRoughness(rng, 0.35f);
   p.roughness_spread = rng.Uniform(0.0f, 0.35f);
@@ -231,22 +233,23 @@ RowFunction DrawStone(Rng& rng) { return Bind(StoneParameters(rng), StoneRow); }
 
 RowFunction DrawMarble(Rng& rng) {
   Marble p;
-  p.warp = DrawWarp(rng, 1.0f, 4.0f, rng.Uniform(0.2f, 1.2f));
+  p.warp = DrawWarp(rng, 1.0f, 4.0f, rng.Uniform(0.15f, 0.9f));
+  p.warp.noise.octaves = rng.Int(2, 5);
   p.body = DrawNoise(rng, NoiseKind::kSmooth, 1.0f, 8.0f, 5);
-  p.veins = DrawNoise(rng, NoiseKind::kRidged, 0.8f, 4.0f, 2);
-  p.veins.stretch = rng.LogUniform(0.5f, 3.0f);
-  p.veins.gain = rng.Uniform(0.1f, 0.35f);
+  p.veins = DrawNoise(rng, NoiseKind::kRidged, 1.0f, 5.0f, 1);
+  p.veins.stretch = rng.LogUniform(0.3f, 3.0f);
   p.fine_veins = DrawNoise(rng, NoiseKind::kRidged, 3.0f, 10.0f, 1);
   p.colors.base = rng.Chance(0.6f) ? GreyColor(rng) : AnyColor(rng);
   p.colors.second = Related(rng, p.colors.base, 0.5f);
   p.colors.third = rng.Chance(0.5f) ? AnyColor(rng) : Related(rng, p.colors.base, 1.8f);
-  p.vein_width = rng.LogUniform(0.04f, 0.3f);
+  p.vein_width = rng.LogUniform(0.04f, 0.5f);
   p.fine_width = rng.LogUniform(0.03f, 0.15f);
   p.vein_strength = rng.Uniform(0.4f, 1.0f);
   p.fine_strength = rng.Chance(0.6f) ? rng.Uniform(0.1f, 0.8f) : 0.0f;
   p.roughness = AnyRoughness(rng, -0.6f);
   p.vein_roughness = rng.Uniform(-0.1f, 0.3f);
   p.f0 = AnyDielectricF0(rng);
+  p.cloudy = rng.LogUniform(0.3f, 2.5f);
   p.dent = rng.Chance(0.4f) ? rng.Uniform(0.0f, 0.5f) : 0.0f;
   return Bind(p, MarbleRow);
 }
