@@ -1,0 +1,229 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "calib/corners/detector_internal.h"
+#include "calib/corners/markers.h"
+
+namespace glint::corners {
+namespace {
+
+// A marker seen, with the places of its four corners on the board.
+struct Match {
+  int id = 0;
+  PlanePoint corners[4];
+  double side_px = 0;
+};
+
+std::vector<Match> MatchMarkers(const Board& board, const std::vector<SeenMarker>& seen) {
+  std::map<int, BoardMarker> on_board;
+  for (const BoardMarker& marker : BoardMarkers(board)) on_board[marker.id] = marker;
+  std::vector<Match> matches;
+  for (const SeenMarker& marker : seen) {
+    const auto found = on_board.find(marker.id);
+    if (found == on_board.end()) continue;
+    Match match;
+    match.id = marker.id;
+    match.side_px = marker.side_px();
+    for (int k = 0; k < 4; ++k) {
+      match.corners[k] = {SquaresFromSample(board, found->second.corners_in_sample_mm[k]),
+                          marker.corners_px[k]};
+    }
+    matches.push_back(match);
+  }
+  return matches;
+}
+
+std::vector<PlanePoint> Points(const std::vector<Match>& matches) {
+  std::vector<PlanePoint> points;
+  for (const Match& match : matches) points.insert(points.end(), match.corners, match.corners + 4);
+  return points;
+}
+
+std::vector<Match> Agreeing(const std::vector<Match>& matches, const Eigen::Matrix3d& h) {
+  constexpr double kTolerance = 0.6;  // of a marker's side: lens distortion counts against it
+  std::vector<Match> agreeing;
+  for (const Match& match : matches) {
+    bool fits = true;
+    for (const PlanePoint& corner : match.corners) {
+      const auto there = ApplyHomography(h, corner.board);
+      fits = fits && there && (*there - corner.image_px).norm() < kTolerance * match.side_px;
+    }
+    if (fits) agreeing.push_back(match);
+  }
+  return agreeing;
+}
+
+// The largest set of markers that one homography explains; homographies come from pairs, which are
+// gone through in a fixed order. A single marker has nobody to agree with.
+std::vector<Match> Consensus(const std::vector<Match>& matches) {
+  constexpr size_t kMaxPairs = 600;
+  std::vector<Match> best;
+  const size_t n = matches.size();
+  if (n < 2) return best;
+  const size_t pairs = n * (n - 1) / 2;
+  const size_t stride = std::max<size_t>(1, pairs / kMaxPairs);
+  size_t number = 0;
+  for (size_t gap = n - 1; gap >= 1; --gap) {
+    for (size_t i = 0; i + gap < n; ++i) {
+      if (number++ % stride != 0) continue;
+      const auto h = FitHomography(Points({matches[i], matches[i + gap]}));
+      if (!h) continue;
+      auto agreeing = Agreeing(matches, *h);
+      if (agreeing.size() > best.size()) best = std::move(agreeing);
+    }
+  }
+  if (best.size() < 2) return {};
+  if (const auto h = FitHomography(Points(best))) {
+    auto again = Agreeing(matches, *h);
+    if (again.size() > best.size()) best = std::move(again);
+  }
+  return best;
+}
+
+// The radius round a corner that no marker's ink reaches.
+double FreeRadiusSquares(const Board& board) {
+  const double gap = 0.5 * (1.0 - board.marker_mm / board.square_mm);
+  return std::min(0.42, 0.92 * std::sqrt(2.0) * gap);
+}
+
+struct Found {
+  CornerObservation observation;
+  PlanePoint point;
+};
+
+// Fits every corner that is not found yet; returns how many came new.
+int FindCorners(const GrayImage& image, const Board& board, const DetectorOptions& options,
+                const std::vector<PlanePoint>& points, std::map<int, Found>* found) {
+  int added = 0;
+  for (const BoardCorner& corner : BoardCorners(board)) {
+    if (found->count(corner.id)) continue;
+    const Eigen::Vector2d at = SquaresFromSample(board, corner.position_in_sample_mm);
+    const int column = static_cast<int>(std::lround(at.x()));
+    const int row = static_cast<int>(std::lround(at.y()));
+    const auto guess = GuessCorner(points, at, SquareIsBlack(board, column - 1, row - 1),
+                                   FreeRadiusSquares(board));
+    if (!guess) continue;
+    const SaddleFit fit = FitSaddle(image, *guess, options.saddle);
+    if (!fit.ok) continue;
+    (*found)[corner.id] = {{corner.id, corner.position_in_sample_mm, fit.centre_px, fit.sigma_px},
+                           {at, fit.centre_px}};
+    ++added;
+  }
+  return added;
+}
+
+void DropInconsistent(std::map<int, Found>* found) {
+  std::vector<PlanePoint> points;
+  std::vector<int> ids;
+  for (const auto& [id, one] : *found) {
+    points.push_back(one.point);
+    ids.push_back(id);
+  }
+  for (int index : Inconsistent(points)) found->erase(ids[index]);
+}
+
+// Median of seen over described size of the markers, given where the corners are; 0: unknown.
+double MarkerScale(const std::vector<Match>& matches, const std::map<int, Found>& found) {
+  std::vector<PlanePoint> points;
+  for (const auto& [id, one] : found) points.push_back(one.point);
+  std::vector<double> ratios;
+  for (const Match& match : matches) {
+    const auto h = LocalHomography(points, match.corners[0].board, kReachSquares);
+    if (!h) continue;
+    double side = 0;
+    for (int k = 0; k < 4; ++k) {
+      const auto a = ApplyHomography(*h, match.corners[k].board);
+      const auto b = ApplyHomography(*h, match.corners[(k + 1) % 4].board);
+      if (a && b) side += 0.25 * (*a - *b).norm();
+    }
+    if (side > 0) ratios.push_back(match.side_px / side);
+  }
+  if (ratios.size() < 4) return 0;
+  std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
+  return ratios[ratios.size() / 2];
+}
+
+// What is wrong when many markers are seen and no place on the board explains them.
+std::string LayoutMismatch(const Board& board, const std::vector<SeenMarker>& seen, size_t on_board,
+                           size_t agreeing) {
+  Board other = board;
+  other.legacy_layout = !board.legacy_layout;
+  if (board.squares_y % 2 == 0 &&
+      Consensus(MatchMarkers(other, seen)).size() > agreeing + on_board / 5) {
+    return fmt::format("the markers lie as on a board with legacy_layout = {}; set it in [board]",
+                       other.legacy_layout);
+  }
+  return fmt::format(
+      "{} markers of {} seen (ids {} to {}), but only {} of {} lie where a board of {} x {} "
+      "squares "
+      "has them; correct squares in [board]",
+      seen.size(), board.dictionary, seen.front().id, seen.back().id, agreeing, on_board,
+      board.squares_x, board.squares_y);
+}
+
+BoardDetection Mismatch(BoardDetection detection, const std::string& problem) {
+  detection.mismatch = true;
+  detection.problem = problem;
+  detection.corners.clear();
+  return detection;
+}
+
+}  // namespace
+
+BoardDetection DetectCharuco(const GrayImage& image, const Board& board,
+                             const DetectorOptions& options) {
+  BoardDetection detection;
+  const int on_board = static_cast<int>(BoardMarkers(board).size());
+  const auto seen = FindMarkers(image, board.dictionary, options.longest_px, (on_board + 1) / 2);
+  const auto matches = MatchMarkers(board, seen);
+  const auto agreeing = Consensus(matches);
+  detection.markers = static_cast<int>(agreeing.size());
+  const int all_ids = board.squares_x * board.squares_y / 2;  // the window's included
+  const auto foreign =
+      std::count_if(seen.begin(), seen.end(), [&](const SeenMarker& m) { return m.id >= all_ids; });
+  if (foreign >= 4 && foreign * 4 > static_cast<long>(seen.size())) {
+    return Mismatch(detection,
+                    fmt::format("markers with ids up to {} seen, while {} x {} squares have {}; "
+                                "correct squares in [board]",
+                                seen.back().id, board.squares_x, board.squares_y, all_ids));
+  }
+  // Lens distortion costs few markers; a wrong layout costs a third at least.
+  if (matches.size() >= 6 && agreeing.size() * 10 < matches.size() * 7) {
+    return Mismatch(detection, LayoutMismatch(board, seen, matches.size(), agreeing.size()));
+  }
+  if (agreeing.size() < 2) {
+    detection.problem = fmt::format("{} of the board's {} markers ({}) seen", matches.size(),
+                                    on_board, board.dictionary);
+    return detection;
+  }
+  std::map<int, Found> found;
+  FindCorners(image, board, options, Points(agreeing), &found);
+  DropInconsistent(&found);
+  // Corners predict their neighbours better than markers do.
+  for (int round = 0; round < 3 && found.size() >= 6; ++round) {
+    std::vector<PlanePoint> points;
+    for (const auto& [id, one] : found) points.push_back(one.point);
+    if (FindCorners(image, board, options, points, &found) == 0) break;
+    DropInconsistent(&found);
+  }
+  const double scale = MarkerScale(agreeing, found);
+  if (scale > 0 && std::abs(scale - 1) > 0.12) {
+    return Mismatch(
+        detection,
+        fmt::format("the markers' sides are {:.2f} of a square, not {:.2f}; correct "
+                    "marker_mm or square_mm in [board]",
+                    scale * board.marker_mm / board.square_mm, board.marker_mm / board.square_mm));
+  }
+  if (static_cast<int>(found.size()) < options.min_corners) {
+    detection.problem = fmt::format("{} markers but only {} corners sharp enough to be used",
+                                    agreeing.size(), found.size());
+    return detection;
+  }
+  for (const auto& [id, one] : found) detection.corners.push_back(one.observation);
+  return detection;
+}
+
+}  // namespace glint::corners
