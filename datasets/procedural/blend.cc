@@ -91,7 +91,10 @@ SvbrdfMaps BlendMaterials(const SvbrdfMaps& first, const SvbrdfMaps& second,
     const float* a = first.plane(p).data();
     const float* b = second.plane(p).data();
     float* to = out.plane(p).data();
-    for (size_t i = 0; i < n; ++i) to[i] = Mix(a[i], b[i], mask[i]);
+    for (size_t i = 0; i < n; ++i) {
+      const float mixed = Mix(a[i], b[i], mask[i]);  // rounding may pass either end
+      to[i] = std::min(std::max(mixed, std::min(a[i], b[i])), std::max(a[i], b[i]));
+    }
   }
   const float* a[3] = {first.plane(0).data(), first.plane(1).data(), first.plane(2).data()};
   const float* b[3] = {second.plane(0).data(), second.plane(1).data(), second.plane(2).data()};

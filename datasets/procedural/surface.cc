@@ -45,9 +45,10 @@ class Surface {
   Surface(const Family& family, uint64_t seed) {
     Rng rng(seed);
     placement_ = DrawPlacement(rng, family.directional);
-    const bool nearly_flat = rng.Chance(0.12f);
-    const float slope = rng.LogUniform(family.slope_low, family.slope_high);
-    slope_ = nearly_flat ? 0.1f * slope : slope;
+    slope_ = rng.LogUniform(family.slope_low, family.slope_high);
+    const float kind = rng.Unit();
+    if (kind < 0.12f) slope_ *= 0.1f;                     // polished, pressed, worn flat
+    if (kind > 0.90f) slope_ *= rng.Uniform(1.5f, 3.0f);  // rugged: the tail of steep normals
     metal_residue_ = rng.Chance(0.5f) ? rng.Uniform(0.0f, 0.06f) : 0.0f;
     rows_ = family.draw(rng);
     weathering_ = DrawWeathering(rng);
