@@ -61,6 +61,7 @@ struct Photo {
   double focal_length_35mm = 0;  // EXIF; 0: absent
   double exposure_time_s = 0, iso = 0, f_number = 0;
   std::string camera_model;  // EXIF make and model
+  int orientation = 1;       // EXIF, 1 … 8, as it was before it was applied
 };
 
 // JPEG, PNG, TIFF, EXR, HEIC, RAW… Throws UserError (missing, empty, truncated, not an image, too

@@ -71,6 +71,7 @@ void Unpack(const std::vector<T>& samples, const OIIO::ImageSpec& spec, double s
 }
 
 void ReadExif(const OIIO::ImageSpec& spec, Photo* photo) {
+  photo->orientation = Orientation(spec);
   photo->focal_length_35mm = spec.get_float_attribute("Exif:FocalLengthIn35mmFilm", 0);
   photo->exposure_time_s = spec.get_float_attribute("ExposureTime", 0);
   photo->f_number = spec.get_float_attribute("FNumber", 0);
