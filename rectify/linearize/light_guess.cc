@@ -12,6 +12,16 @@ constexpr int kGrid = 64;
 constexpr double kMedianAlbedo = 0.3;
 constexpr double kBrightAlbedo = 0.95;
 
+// At most kGrid of n positions, evenly spread.
+std::vector<int> Spread(int n) {
+  const int count = std::min(kGrid, n);
+  std::vector<int> positions(count);
+  for (int i = 0; i < count; ++i) {
+    positions[i] = static_cast<int>((2 * static_cast<int64_t>(i) + 1) * n / (2 * count));
+  }
+  return positions;
+}
+
 // Irradiance on the texel at (x, y) of a light of power 1.
 double UnitIrradiance(const View& view, LightFalloff falloff, double x_mm, double y_mm) {
   const double dx = view.light_in_sample_mm[0] - x_mm;
@@ -25,41 +35,39 @@ double UnitIrradiance(const View& view, LightFalloff falloff, double x_mm, doubl
 }  // namespace
 
 LightGuess::LightGuess(const SamplePlane& plane, LightFalloff falloff)
-    : plane_(plane),
-      falloff_(falloff),
-      columns_(std::min(kGrid, plane.width)),
-      rows_(std::min(kGrid, plane.height)),
-      smallest_(static_cast<size_t>(columns_) * rows_, std::numeric_limits<float>::infinity()) {}
+    : plane_(plane), falloff_(falloff), columns_(Spread(plane.width)), rows_(Spread(plane.height)) {}
 
-void LightGuess::Add(const View& view, const RectifiedImage& image) {
+void LightGuess::Add(const RectifiedImage& image) {
   const size_t texels = static_cast<size_t>(image.width) * image.height;
-  for (int j = 0; j < rows_; ++j) {
-    const int row = static_cast<int>((2 * static_cast<int64_t>(j) + 1) * image.height / (2 * rows_));
-    for (int i = 0; i < columns_; ++i) {
-      const int column =
-          static_cast<int>((2 * static_cast<int64_t>(i) + 1) * image.width / (2 * columns_));
-      const size_t texel = static_cast<size_t>(row) * image.width + column;
-      if (image.mask[texel] < 0.5f) continue;
-      const double irradiance =
-          UnitIrradiance(view, falloff_, plane_.x_mm(column), plane_.y_mm(row)) * view.exposure;
-      if (!(irradiance > 0)) continue;
-      const double mean =
-          (image.rgb[texel] + image.rgb[texels + texel] + image.rgb[2 * texels + texel]) / 3.0;
-      float& smallest = smallest_[static_cast<size_t>(j) * columns_ + i];
-      smallest = std::min(smallest, static_cast<float>(std::numbers::pi * mean / irradiance));
+  std::vector<float>& radiance = radiance_.emplace_back();
+  radiance.reserve(points());
+  for (const int row : rows_) {
+    for (const int column : columns_) {
+      const size_t i = static_cast<size_t>(row) * image.width + column;
+      const float mean = (image.rgb[i] + image.rgb[texels + i] + image.rgb[2 * texels + i]) / 3;
+      radiance.push_back(image.mask[i] < 0.5f ? -1.0f : mean);
     }
   }
 }
 
-double LightGuess::Power() const {
-  std::vector<float> seen;
-  for (const float q : smallest_) {
-    if (std::isfinite(q)) seen.push_back(q);
+double LightGuess::Power(const std::vector<View>& views) const {
+  std::vector<double> smallest;
+  for (size_t point = 0; point < points(); ++point) {
+    const double x_mm = plane_.x_mm(columns_[point % columns_.size()]);
+    const double y_mm = plane_.y_mm(rows_[point / columns_.size()]);
+    double q = std::numeric_limits<double>::infinity();
+    for (size_t v = 0; v < radiance_.size(); ++v) {
+      if (radiance_[v][point] < 0) continue;
+      const double irradiance =
+          UnitIrradiance(views[v], falloff_, x_mm, y_mm) * views[v].exposure;
+      if (irradiance > 0) q = std::min(q, std::numbers::pi * radiance_[v][point] / irradiance);
+    }
+    if (std::isfinite(q)) smallest.push_back(q);
   }
-  if (seen.empty()) return 0;
-  std::sort(seen.begin(), seen.end());
-  const double median = seen[seen.size() / 2];
-  const double bright = seen[seen.size() * 95 / 100];
+  if (smallest.empty()) return 0;
+  std::sort(smallest.begin(), smallest.end());
+  const double median = smallest[smallest.size() / 2];
+  const double bright = smallest[smallest.size() * 95 / 100];
   return std::max(median / kMedianAlbedo, bright / kBrightAlbedo);
 }
 

@@ -9,22 +9,27 @@ namespace glint {
 
 // Watches rectified views go by and ends with the power that makes the sample's diffuse albedo
 // plausible: with q = π·L / (irradiance of a light of power 1), the albedo of a Lambertian texel is
-// q / power. Per texel of a coarse grid the smallest q over the views counts, which leaves the
-// highlights out; the power then puts the median albedo at 0.3, or higher if bright texels would pass 0.95.
+// q / power. Per point of a coarse grid the smallest q over the views counts, which leaves the
+// highlights out; the power then puts the median albedo at 0.3, or lower where bright texels would
+// pass 0.95.
 class LightGuess {
  public:
   LightGuess(const SamplePlane& plane, LightFalloff falloff);
 
-  void Add(const View& view, const RectifiedImage& image);
+  // The next view; the grid is all that is kept of it.
+  void Add(const RectifiedImage& image);
 
-  // 0 when no view had a usable texel.
-  double Power() const;
+  // `views` in the order of Add; their positions and exposures are used, not their light_rgb.
+  // 0 when no view had a usable texel that is not black.
+  double Power(const std::vector<View>& views) const;
 
  private:
+  size_t points() const { return columns_.size() * rows_.size(); }
+
   SamplePlane plane_;
   LightFalloff falloff_;
-  int columns_, rows_;
-  std::vector<float> smallest_;  // per grid point; infinity: not seen
+  std::vector<int> columns_, rows_;           // of the grid's points
+  std::vector<std::vector<float>> radiance_;  // per view and point; negative: not usable
 };
 
 }  // namespace glint

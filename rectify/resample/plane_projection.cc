@@ -1,17 +1,40 @@
 #include "rectify/resample/plane_projection.h"
 
+#include <limits>
 #include <utility>
 
 namespace glint {
+namespace {
+
+// Squared radius in normalised coordinates up to which the radial distortion grows with the radius.
+double MonotoneRadius2(Camera camera) {
+  constexpr double kWidest = 4;  // tan of 76° off the axis, wider than any lens these models fit
+  constexpr double kStep = 1e-3;
+  const bool tangential = camera.parameters.size() >= 8;
+  if (tangential) camera.parameters[6] = camera.parameters[7] = 0;
+  double previous_px = -std::numeric_limits<double>::infinity();
+  for (double r = 0; r < kWidest; r += kStep) {
+    double x_px, y_px;
+    ImageFromNormalized(camera.model, camera.parameters.data(), r, 0.0, &x_px, &y_px);
+    if (!(x_px > previous_px)) return (r - kStep) * (r - kStep);
+    previous_px = x_px;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
 
 CameraProjection::CameraProjection(Camera camera, Rigid3 camera_from_sample)
-    : camera_(std::move(camera)), camera_from_sample_(std::move(camera_from_sample)) {}
+    : camera_(std::move(camera)),
+      camera_from_sample_(std::move(camera_from_sample)),
+      max_r2_(MonotoneRadius2(camera_)) {}
 
 std::optional<Eigen::Vector2d> CameraProjection::ImageFromPlane(double x_mm, double y_mm) const {
   const Eigen::Vector3d point = camera_from_sample_.rotation.col(0) * x_mm +
                                 camera_from_sample_.rotation.col(1) * y_mm +
                                 camera_from_sample_.translation;
   if (!(point.z() > 0)) return std::nullopt;
+  if (point.head<2>().squaredNorm() > max_r2_ * point.z() * point.z()) return std::nullopt;
   return ImageFromCamera(camera_, point);
 }
 

@@ -19,7 +19,8 @@ class PlaneProjection {
 };
 
 // A photograph: pose, then the camera's lens. The plane's homography and the lens distortion are one
-// mapping here, so that a photo is resampled once.
+// mapping here, so that a photo is resampled once. Points farther from the axis than where the radial
+// polynomial turns back have no image: beyond, it would show them a second time.
 class CameraProjection : public PlaneProjection {
  public:
   CameraProjection(Camera camera, Rigid3 camera_from_sample);
@@ -28,6 +29,7 @@ class CameraProjection : public PlaneProjection {
  private:
   Camera camera_;
   Rigid3 camera_from_sample_;
+  double max_r2_;  // of (u, v)
 };
 
 // A plain homography: image_from_plane · (x_mm, y_mm, 1).

@@ -1,0 +1,75 @@
+// glint-rectify: photographs and their calibration to linear top views.
+#include <fmt/format.h>
+
+#include "pipeline/contract/capture.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/program.h"
+#include "rectify/views/rectify_capture.h"
+
+namespace glint {
+namespace {
+
+ProgramResult Summarise(const Stage& stage, const RectifySummary& summary) {
+  const SamplePlane& plane = summary.set.plane;
+  ProgramResult result;
+  result.text = fmt::format("rectify: {} views of {}x{} texels ({:.3f} mm a texel)\n",
+                            summary.set.views.size(), plane.width, plane.height,
+                            plane.width_mm / plane.width);
+  for (size_t i = 0; i < summary.set.views.size(); ++i) {
+    const Json& metrics = summary.metrics["views"][i];
+    result.text += fmt::format(
+        "  {}  {:<28} usable {:5.1f} %  saturated {:4.1f} %  outside {:4.1f} %  {:.2f} px a texel\n",
+        summary.set.views[i].name, summary.set.views[i].photo, 100 * metrics["usable"].get<double>(),
+        100 * metrics["saturated"].get<double>(), 100 * metrics["outside"].get<double>(),
+        metrics["pixels_per_texel"].get<double>());
+  }
+  result.json = {{"stage", "rectify"},
+                 {"up_to_date", false},
+                 {"manifest", stage.manifest_file().string()},
+                 {"metrics", summary.metrics}};
+  return result;
+}
+
+ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RectifyOptions* options,
+                  const CommonOptions& common) {
+  const Capture capture = ReadCapture(folder);
+  set->LoadToml(capture.file, "rectify");
+  RectifyTask task = ResolveTask(capture, *options);
+  AddTask(set, &task);
+  if (!capture.has_board && capture.photos.empty()) {
+    throw UserError(capture.file, "photos", "an imported capture, which is rectified already",
+                    "go on with: glint run --from fit");
+  }
+  const auto calibration_file = capture.work() / "calib" / "manifest.json";
+  const Calibration calibration = ReadCalibration(calibration_file);
+  CheckPhotos(capture, calibration, calibration_file);
+  std::vector<std::filesystem::path> inputs = {calibration_file};
+  for (const CalibratedPhoto& photo : calibration.photos) {
+    inputs.push_back(capture.folder / photo.photo);
+  }
+  Stage stage(capture.work() / "rectify", {"rectify", kRectifyVersion}, *set, common, inputs);
+  if (stage.UpToDate()) {
+    return {stage.UpToDateText(), {{"stage", "rectify"},
+                                   {"up_to_date", true},
+                                   {"manifest", stage.manifest_file().string()}}};
+  }
+  return Summarise(stage, RectifyCapture(capture, calibration, *options, task, common, &stage));
+}
+
+}  // namespace
+}  // namespace glint
+
+int main(int argc, char** argv) {
+  std::filesystem::path folder = ".";
+  glint::RectifyOptions options;
+  glint::OptionSet set;
+  set.AddPositional("capture", &folder, "the capture's folder", false);
+  glint::AddRectifyOptions(&set, &options);
+  const glint::ProgramInfo info{
+      "glint-rectify",
+      "Resamples each calibrated photograph to a linear, undistorted top view of the sample.",
+      GLINT_VERSION, "Example: glint rectify wood --resolution 512"};
+  return glint::RunProgram(argc, argv, info, &set, [&](const glint::CommonOptions& common) {
+    return glint::Run(folder, &set, &options, common);
+  });
+}

@@ -1,0 +1,150 @@
+#include "rectify/views/rectify_capture.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/hash.h"
+#include "pipeline/contract/progress.h"
+#include "rectify/linearize/light_guess.h"
+#include "rectify/views/frame_mask.h"
+#include "rectify/views/photo_stream.h"
+#include "rectify/views/rectify_photo.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kWorthAWarning = 0.01;  // of the texels
+
+std::string ViewName(size_t index) {
+  char name[32];
+  std::snprintf(name, sizeof(name), "view_%03zu", index);
+  return name;
+}
+
+void CheckSize(const fs::path& file, const Camera& camera) {
+  const auto [width, height] = PhotoSize(file);
+  if (width == camera.width_px && height == camera.height_px) return;
+  throw UserError(file, "size", std::to_string(width) + "x" + std::to_string(height),
+                  "its camera was calibrated at " + std::to_string(camera.width_px) + "x" +
+                      std::to_string(camera.height_px) + "; run calib again");
+}
+
+// The frame's mask for a view; empty without a frame.
+std::vector<TexelStatus> FrameStatus(const RectifyTask& task, const RectifyOptions& options,
+                                     const SamplePlane& plane, const View& view) {
+  if (task.board_opening_mm.empty()) return {};
+  const BoardOpening opening{task.board_opening_mm[0], task.board_opening_mm[1],
+                             task.board_opening_mm[2], task.board_opening_mm[3]};
+  return MaskFrame(plane, opening, options.frame_height_mm, options.frame_margin_mm, view);
+}
+
+// Exposures relative to the first photograph's, where EXIF gives them for all.
+void SetExposures(const std::vector<double>& by_exif, const RectifyOptions& options,
+                  std::vector<RectifiedView>* views) {
+  const bool known = options.exposure == "exif" &&
+                     std::all_of(by_exif.begin(), by_exif.end(), [](double e) { return e > 0; });
+  if (!known) return;
+  for (size_t i = 0; i < views->size(); ++i) (*views)[i].view.exposure = by_exif[i] / by_exif[0];
+}
+
+// Puts a guess where calib had nothing to go by. Ambient light is in the same units, so it stays.
+void GuessLight(const LightGuess& guess, RectifiedSet* set) {
+  std::vector<View> views;
+  for (const RectifiedView& view : set->views) views.push_back(view.view);
+  const double power = guess.Power(views);
+  if (!(power > 0)) return;
+  for (RectifiedView& view : set->views) view.view.light_rgb = {power, power, power};
+}
+
+void Warn(const fs::path& file, const ViewCounts& counts) {
+  if (counts.outside > kWorthAWarning) {
+    spdlog::warn("{}: {:.0f} % of the sample lies outside of the photograph; show it whole",
+                 file.string(), 100 * counts.outside);
+  }
+  if (counts.saturated > 0.5) {
+    spdlog::warn("{}: {:.0f} % of the sample is saturated; expose less", file.string(),
+                 100 * counts.saturated);
+  }
+}
+
+}  // namespace
+
+void CheckPhotos(const Capture& capture, const Calibration& calibration,
+                 const fs::path& calibration_file) {
+  if (calibration.photos.empty()) {
+    throw UserError(calibration_file, "data.photos", "no calibrated photograph", "run calib again");
+  }
+  const Manifest manifest = ReadManifest(calibration_file, "calib");
+  const fs::path folder = fs::absolute(calibration_file).parent_path();
+  for (const CalibratedPhoto& photo : calibration.photos) {
+    const fs::path file = capture.folder / photo.photo;
+    CheckSize(file, calibration.cameras[static_cast<size_t>(photo.camera)]);
+    const fs::path relative = fs::absolute(file).lexically_normal().lexically_relative(folder);
+    for (const ManifestInput& input : manifest.inputs) {
+      if (fs::path(input.path).lexically_normal() != relative || input.hash == HashFile(file)) {
+        continue;
+      }
+      throw UserError(file, "", "another content than calib saw", "run calib again");
+    }
+  }
+}
+
+RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibration,
+                              const RectifyOptions& options, const RectifyTask& task,
+                              const CommonOptions& common, Stage* stage) {
+  RectifySummary summary;
+  RectifiedSet& set = summary.set;
+  set.plane = PlaneOf(task);
+  set.convention = ReflectanceConvention::Photograph();
+  set.light_power_known = calibration.light_power_known;
+
+  std::vector<fs::path> files;
+  for (const CalibratedPhoto& photo : calibration.photos) {
+    files.push_back(capture.folder / photo.photo);
+  }
+  PhotoStream stream(files, task.encoding, SaturationRuleOf(options), common.threads > 1);
+  LightGuess guess(set.plane, set.convention.falloff);
+  std::vector<double> exposures;
+  summary.metrics["views"] = Json::array();
+  Progress progress("rectify", static_cast<int64_t>(files.size()));
+
+  for (size_t i = 0; i < files.size(); ++i) {
+    const CalibratedPhoto& calibrated = calibration.photos[i];
+    const StreamedPhoto photo = stream.Next();
+    RectifiedView view;
+    view.name = ViewName(i);
+    view.file = view.name + ".exr";
+    view.photo = calibrated.photo;
+    view.ldr = photo.ldr;
+    view.view = ViewOf(calibration, calibrated, task.ambient,
+                       capture.work() / "calib" / "manifest.json");
+    const CameraProjection projection(calibration.cameras[static_cast<size_t>(calibrated.camera)],
+                                      calibrated.camera_from_sample);
+    ViewCounts counts;
+    const RectifiedImage image =
+        RectifyPhoto(photo.photo, projection, set.plane, ResampleOptionsOf(options, common.threads),
+                     FrameStatus(task, options, set.plane, view.view), files[i], &counts);
+    Warn(files[i], counts);
+    WriteRectifiedImage(stage->Output(view.file), image, set);
+
+    guess.Add(image);
+    exposures.push_back(photo.exposure);
+    Json metrics = {{"name", view.name}};
+    metrics.update(ToJson(counts));
+    summary.metrics["views"].push_back(metrics);
+    set.views.push_back(std::move(view));
+    progress.Advance(1, calibrated.photo);
+  }
+  SetExposures(exposures, options, &set.views);
+  if (!set.light_power_known) GuessLight(guess, &set);
+  stage->Commit(ToJson(set), summary.metrics);
+  set.manifest_file = stage->manifest_file();
+  return summary;
+}
+
+}  // namespace glint

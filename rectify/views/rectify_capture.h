@@ -1,0 +1,34 @@
+// The rectify stage: all accepted photographs of a capture to linear top views.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "pipeline/contract/calibration.h"
+#include "pipeline/contract/capture.h"
+#include "pipeline/contract/program.h"
+#include "pipeline/contract/rectified_set.h"
+#include "pipeline/contract/stage.h"
+#include "rectify/views/rectify_options.h"
+
+namespace glint {
+
+// Raised whenever the same inputs give other bytes.
+inline constexpr int kRectifyVersion = 1;
+
+// Throws UserError when a photograph is not the one that calib saw, or not of its camera's size.
+void CheckPhotos(const Capture& capture, const Calibration& calibration,
+                 const std::filesystem::path& calibration_file);
+
+struct RectifySummary {
+  RectifiedSet set;
+  Json metrics;  // per view its ViewCounts
+};
+
+// Writes view_000.exr … as outputs of `stage`, in capture order, and commits it. One or two
+// photographs are in memory at a time.
+RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibration,
+                              const RectifyOptions& options, const RectifyTask& task,
+                              const CommonOptions& common, Stage* stage);
+
+}  // namespace glint

@@ -1,0 +1,36 @@
+// One photograph to one rectified view.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "pipeline/contract/calibration.h"
+#include "pipeline/contract/json.h"
+#include "pipeline/contract/rectified_set.h"
+#include "rectify/resample/resample.h"
+#include "rectify/views/rectify_options.h"
+
+namespace glint {
+
+// Where the texels of a view went; fractions of all texels.
+struct ViewCounts {
+  double usable = 0, outside = 0, saturated = 0, masked = 0;
+  double black = 0;             // of the usable ones: radiance below 1e-4 in every channel
+  double pixels_per_texel = 0;  // side of a texel at the sample's centre in the photo, pixels
+};
+
+Json ToJson(const ViewCounts& counts);
+
+// Camera and light of a calibrated photo in the sample frame, with the calibration's power and an
+// exposure of 1. Throws UserError when either lies behind the sample.
+View ViewOf(const Calibration& calibration, const CalibratedPhoto& photo,
+            const std::vector<double>& ambient, const std::filesystem::path& calibration_file);
+
+// `status_before` as MaskFrame gives it (or empty). Throws UserError naming `file` when no texel is
+// usable (sample outside of the photo, all saturated, all under the frame) or all are black.
+RectifiedImage RectifyPhoto(const LinearPhoto& photo, const PlaneProjection& projection,
+                            const SamplePlane& plane, const ResampleOptions& options,
+                            const std::vector<TexelStatus>& status_before,
+                            const std::filesystem::path& file, ViewCounts* counts);
+
+}  // namespace glint

@@ -1,0 +1,284 @@
+#include "rectify/resample/resample.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "rectify/resample/footprint.h"
+#include "tests/rectify/plane_photo.h"
+
+namespace glint {
+namespace {
+
+SamplePlane Plane(int texels, double size_mm) {
+  SamplePlane plane;
+  plane.width = plane.height = texels;
+  plane.width_mm = plane.height_mm = size_mm;
+  return plane;
+}
+
+// A picture that is a top view already, one pixel a texel.
+ResampledView OneToOne(const LinearPhoto& photo, FilterKind filter) {
+  const SamplePlane plane = Plane(photo.width(), 1.0);
+  ResampleOptions options;
+  options.filter = filter;
+  return ResampleToPlane(photo, TopViewProjection(plane, photo.width(), photo.height()), plane,
+                         options);
+}
+
+Photo NoisePhoto(int side, int bits, unsigned seed) {
+  std::mt19937 random(seed);
+  Photo photo = FlatPhoto(side, side, 0, bits);
+  const unsigned max = bits == 8 ? 255 : 65535;
+  for (float& sample : photo.image.samples) {
+    sample = static_cast<float>(random() % (max - 10)) / static_cast<float>(max);
+  }
+  return photo;
+}
+
+TEST(Resample, ConstantsStayConstants) {
+  for (const FilterKind filter : {FilterKind::kSharp, FilterKind::kSoft, FilterKind::kLanczos}) {
+    for (const int bits : {8, 16, 32}) {
+      for (const double tilt : {0.0, 45.0}) {
+        const LinearPhoto photo(FlatPhoto(400, 400, 128 / 255.0f, bits), Encoding::kLinear);
+        const CameraProjection projection(TestCamera(400, 420, -0.05, 0.01),
+                                          LookAtSample(100, tilt, 20));
+        ResampleOptions options;
+        options.filter = filter;
+        const ResampledView view = ResampleToPlane(photo, projection, Plane(64, 50), options);
+        for (size_t i = 0; i < view.status.size(); ++i) {
+          ASSERT_EQ(view.status[i], TexelStatus::kUsable);
+          ASSERT_NEAR(view.rgb[i], 128 / 255.0f, 2e-5);
+        }
+      }
+    }
+  }
+}
+
+// Centres of mass of Gaussian blobs come out where they were painted, to a tenth of a texel, under
+// lens distortion, tilt and roll.
+TEST(Resample, BlobsLandWhereTheyWerePainted) {
+  const double size_mm = 60, sigma_mm = 1.2, pitch_mm = 12;
+  const auto radiance = [&](double x, double y) {
+    const double dx = x - pitch_mm * std::round(x / pitch_mm);
+    const double dy = y - pitch_mm * std::round(y / pitch_mm);
+    return std::exp(-(dx * dx + dy * dy) / (2 * sigma_mm * sigma_mm));
+  };
+  const Camera camera = TestCamera(480, 510, -0.12, 0.03);
+  for (const double tilt : {0.0, -40.0}) {
+    const Rigid3 pose = LookAtSample(100, tilt, 15);
+    const LinearPhoto photo(PhotographPlane(camera, pose, radiance, 1), Encoding::kLinear);
+    for (const int texels : {96, 400}) {
+      const SamplePlane plane = Plane(texels, size_mm);
+      const ResampledView view = ResampleToPlane(photo, CameraProjection(camera, pose), plane, {});
+      const double texel_mm = size_mm / texels;
+      for (int j = -2; j <= 2; ++j) {
+        for (int i = -2; i <= 2; ++i) {
+          double mass = 0, mx = 0, my = 0;
+          for (int row = 0; row < texels; ++row) {
+            for (int column = 0; column < texels; ++column) {
+              const double x = plane.x_mm(column) - i * pitch_mm, y = plane.y_mm(row) - j * pitch_mm;
+              if (x * x + y * y > 16 * sigma_mm * sigma_mm) continue;
+              const double value = view.rgb[static_cast<size_t>(row) * texels + column];
+              mass += value;
+              mx += value * x;
+              my += value * y;
+            }
+          }
+          EXPECT_NEAR(mx / mass / texel_mm, 0, 0.1) << "tilt " << tilt << " blob " << i << "," << j;
+          EXPECT_NEAR(my / mass / texel_mm, 0, 0.1) << "tilt " << tilt << " blob " << i << "," << j;
+        }
+      }
+    }
+  }
+}
+
+// Contrast that a sine wave keeps at 1:1, by its frequency in cycles per texel.
+double ContrastAtOneToOne(double frequency, FilterKind filter) {
+  const int side = 128;
+  Photo photo = FlatPhoto(side, side, 0, 32);
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      photo.image.channel(0)[static_cast<size_t>(y) * side + x] =
+          static_cast<float>(0.5 + 0.4 * std::cos(2 * std::numbers::pi * frequency * x));
+    }
+  }
+  const ResampledView view = OneToOne(LinearPhoto(std::move(photo), Encoding::kLinear), filter);
+  double re = 0, im = 0;
+  const size_t row = 64 * side;
+  for (int x = 14; x < 114; ++x) {
+    const double phase = 2 * std::numbers::pi * frequency * x;
+    re += (view.rgb[row + x] - 0.5) * std::cos(phase);
+    im += (view.rgb[row + x] - 0.5) * std::sin(phase);
+  }
+  return std::hypot(re, im) / 100 * 2 / 0.4;
+}
+
+TEST(Resample, StaysSharpAtOneToOne) {
+  EXPECT_GT(ContrastAtOneToOne(0.10, FilterKind::kSharp), 0.98);
+  EXPECT_GT(ContrastAtOneToOne(0.25, FilterKind::kSharp), 0.95);
+  EXPECT_GT(ContrastAtOneToOne(0.40, FilterKind::kSharp), 0.75);
+  EXPECT_GT(ContrastAtOneToOne(0.25, FilterKind::kLanczos), 0.95);
+  EXPECT_GT(ContrastAtOneToOne(0.25, FilterKind::kSoft), 0.88);
+}
+
+// The mean of black and white pixels is half the light, not the light of the mean code.
+TEST(Resample, AveragesRadianceAndNotCodes) {
+  Photo photo = FlatPhoto(256, 256, 0, 8);
+  for (size_t i = 0; i < photo.image.samples.size(); ++i) {
+    const size_t x = i % 256, y = i / 256 % 256;
+    photo.image.samples[i] = (x + y) % 2 == 0 ? 0.0f : 250 / 255.0f;
+  }
+  const float white = LinearFromEncoded(Encoding::kGamma22, 250 / 255.0f);
+  const LinearPhoto linear(std::move(photo), Encoding::kGamma22);
+  const SamplePlane plane = Plane(64, 1);
+  const ResampledView view =
+      ResampleToPlane(linear, TopViewProjection(plane, 256, 256), plane, {});
+  EXPECT_NEAR(view.rgb[32 * 64 + 32], white / 2, 0.005);
+}
+
+TEST(Resample, SameBytesForAnyNumberOfThreads) {
+  const LinearPhoto photo(NoisePhoto(500, 8, 7), Encoding::kSrgb);
+  const CameraProjection projection(TestCamera(500, 520, -0.1), LookAtSample(100, 35, 10));
+  const SamplePlane plane = Plane(300, 70);
+  ResampleOptions options;
+  const ResampledView one = ResampleToPlane(photo, projection, plane, options);
+  for (const int threads : {2, 3, 7}) {
+    options.threads = threads;
+    const ResampledView many = ResampleToPlane(photo, projection, plane, options);
+    EXPECT_EQ(one.rgb, many.rgb);
+    EXPECT_EQ(one.status, many.status);
+  }
+}
+
+TEST(Resample, EightAndSixteenBitAndFloatStorageAgree) {
+  const Photo eight = NoisePhoto(200, 8, 3);
+  Photo sixteen = eight, floats = eight;
+  sixteen.bits = 16;
+  floats.bits = 32;
+  const ResampledView a = OneToOne(LinearPhoto(eight, Encoding::kGamma22), FilterKind::kSharp);
+  const ResampledView b = OneToOne(LinearPhoto(sixteen, Encoding::kGamma22), FilterKind::kSharp);
+  const ResampledView c = OneToOne(LinearPhoto(floats, Encoding::kGamma22), FilterKind::kSharp);
+  for (size_t i = 0; i < a.rgb.size(); ++i) {
+    ASSERT_NEAR(a.rgb[i], b.rgb[i], 1e-4);
+    ASSERT_NEAR(a.rgb[i], c.rgb[i], 1e-6);
+  }
+}
+
+// One clipped pixel rules out the texels whose kernel reaches it, and no other.
+TEST(Resample, MasksWhatAClippedPixelTouches) {
+  for (const int scale : {1, 4}) {
+    const int side = 32 * scale;
+    Photo photo = FlatPhoto(side, side, 0.25f, 8);
+    const int at = 16 * scale + scale / 2;
+    photo.image.channel(1)[static_cast<size_t>(at) * side + at] = 1.0f;
+    const LinearPhoto linear(std::move(photo), Encoding::kGamma22);
+    const SamplePlane plane = Plane(32, 1);
+    const ResampledView view =
+        ResampleToPlane(linear, TopViewProjection(plane, side, side), plane, {});
+    for (int row = 0; row < 32; ++row) {
+      for (int column = 0; column < 32; ++column) {
+        const double dx = (column + 0.5) - (at + 0.5) / scale;
+        const double dy = (row + 0.5) - (at + 0.5) / scale;
+        const double r = std::hypot(dx, dy);
+        const TexelStatus status = view.status[static_cast<size_t>(row) * 32 + column];
+        if (std::abs(r - 2) > 0.1) {
+          EXPECT_EQ(status, r < 2 ? TexelStatus::kSaturated : TexelStatus::kUsable) << r;
+        }
+      }
+    }
+  }
+}
+
+TEST(Resample, FloatsClipOnlyWhereAsked) {
+  const Photo bright = FlatPhoto(32, 32, 3.5f, 32);
+  EXPECT_EQ(OneToOne(LinearPhoto(bright, Encoding::kLinear), FilterKind::kSharp).status[40],
+            TexelStatus::kUsable);
+  SaturationRule rule;
+  rule.float_level = 1.0;
+  const LinearPhoto clipped(bright, Encoding::kLinear, rule);
+  EXPECT_EQ(OneToOne(clipped, FilterKind::kSharp).status[40], TexelStatus::kSaturated);
+}
+
+TEST(Resample, TexelsOutsideThePhotoAreOutside) {
+  const LinearPhoto photo(FlatPhoto(100, 100, 0.5f, 8), Encoding::kLinear);
+  const SamplePlane plane = Plane(40, 40);
+  // One pixel a millimetre, the plane's centre at the photo's left edge.
+  Eigen::Matrix3d half;
+  half << 1, 0, 0, 0, -1, 50, 0, 0, 1;
+  const ResampledView view = ResampleToPlane(photo, HomographyProjection(half), plane, {});
+  for (int column = 0; column < 40; ++column) {
+    EXPECT_EQ(view.status[20 * 40 + column],
+              column < 20 ? TexelStatus::kOutside : TexelStatus::kUsable);
+    EXPECT_EQ(view.rgb[20 * 40 + column] == 0, column < 20);
+  }
+}
+
+TEST(Resample, NothingIsSeenFromBehindOrThroughAFoldedLens) {
+  const LinearPhoto photo(FlatPhoto(200, 200, 0.5f, 8), Encoding::kLinear);
+  const SamplePlane plane = Plane(32, 40);
+  Rigid3 behind = LookAtSample(100, 0, 0);
+  behind.rotation = Eigen::Matrix3d::Identity();  // sees the sample's back: mirrored
+  for (const TexelStatus status :
+       ResampleToPlane(photo, CameraProjection(TestCamera(200, 200), behind), plane, {}).status) {
+    ASSERT_EQ(status, TexelStatus::kOutside);
+  }
+  behind.translation.z() = -100;
+  for (const TexelStatus status :
+       ResampleToPlane(photo, CameraProjection(TestCamera(200, 200), behind), plane, {}).status) {
+    ASSERT_EQ(status, TexelStatus::kOutside);
+  }
+  // 1 + k1 r² with k1 = −5 turns back at r² = 1/15: texels beyond must not reappear mirrored.
+  const CameraProjection folding(TestCamera(200, 200, -5), LookAtSample(50, 0, 0));
+  const ResampledView view = ResampleToPlane(photo, folding, plane, {});
+  for (int row = 0; row < 32; ++row) {
+    for (int column = 0; column < 32; ++column) {
+      const double r = std::hypot(plane.x_mm(column), plane.y_mm(row)) / 50;
+      if (r * r > 1.05 / 15) {
+        ASSERT_EQ(view.status[static_cast<size_t>(row) * 32 + column], TexelStatus::kOutside);
+      }
+    }
+  }
+}
+
+TEST(Resample, NegativeLobesNeverMakeNegativeLight) {
+  Photo photo = FlatPhoto(64, 64, 0.0f, 32);
+  photo.image.channel(0)[32 * 64 + 32] = 1000.0f;
+  const LinearPhoto linear(std::move(photo), Encoding::kLinear);
+  for (const FilterKind filter : {FilterKind::kSharp, FilterKind::kLanczos}) {
+    const ResampledView view = OneToOne(linear, filter);
+    EXPECT_GE(*std::min_element(view.rgb.begin(), view.rgb.end()), 0.0f);
+  }
+}
+
+TEST(Resample, MaskedTexelsArePassedOver) {
+  const LinearPhoto photo(FlatPhoto(64, 64, 0.5f, 8), Encoding::kLinear);
+  const SamplePlane plane = Plane(64, 1);
+  std::vector<TexelStatus> before(64 * 64, TexelStatus::kOutside);
+  before[100] = TexelStatus::kMasked;
+  const ResampledView view =
+      ResampleToPlane(photo, TopViewProjection(plane, 64, 64), plane, {}, before);
+  EXPECT_EQ(view.status[100], TexelStatus::kMasked);
+  EXPECT_EQ(view.rgb[100], 0);
+  EXPECT_EQ(view.status[101], TexelStatus::kUsable);
+}
+
+TEST(Footprint, FollowsTheJacobian) {
+  // Axes 6 and 2 pixels, turned by 30°.
+  const double c = std::cos(std::numbers::pi / 6), s = std::sin(std::numbers::pi / 6);
+  const Footprint f = FootprintFromJacobian({6 * c, -2 * s, 6 * s, 2 * c});
+  const auto r2 = [&](double x, double y) { return f.xx * x * x + f.xy * x * y + f.yy * y * y; };
+  EXPECT_NEAR(r2(6 * c, 6 * s), 1, 1e-12);
+  EXPECT_NEAR(r2(-2 * s, 2 * c), 1, 1e-12);
+  EXPECT_NEAR(f.variance_xx, 36 * c * c + 4 * s * s, 1e-12);
+  // Finer than the pixels: a unit circle.
+  const Footprint fine = FootprintFromJacobian({0.1, 0, 0, 0.3});
+  EXPECT_NEAR(fine.xx, 1, 1e-12);
+  EXPECT_NEAR(fine.xy, 0, 1e-12);
+  EXPECT_NEAR(fine.yy, 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace glint
