@@ -1,0 +1,48 @@
+// One edge of build.ninja at work: runs a stage's program for `glint run`, which learns through a
+// descriptor what Ninja does not pass on: the exit code, and whether the result changed.
+//
+//   glint --edge STAGE PROGRAM [ARGUMENTS]     in the capture's folder
+//
+// The environment says what may differ from run to run without making a result stale:
+//   GLINT_RUN_FOLDER     the folder in which the person works
+//   GLINT_RUN_CAPTURE    the capture as the person named it, so that messages do too
+//   GLINT_RUN_ARGUMENTS  further arguments, one a line (threads, log level)
+//   GLINT_RUN_OUTCOMES   the descriptor's number
+// Without them the program runs on the current folder and nothing is noted.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace glint {
+
+inline constexpr char kEdgeFlag[] = "--edge";
+inline constexpr char kRunFolderVariable[] = "GLINT_RUN_FOLDER";
+inline constexpr char kRunCaptureVariable[] = "GLINT_RUN_CAPTURE";
+inline constexpr char kRunArgumentsVariable[] = "GLINT_RUN_ARGUMENTS";
+inline constexpr char kRunOutcomesVariable[] = "GLINT_RUN_OUTCOMES";
+
+struct EdgeOutcome {
+  std::string stage;
+  int code = 0;          // exit code, or 128 + signal
+  bool changed = false;  // the stage's manifest was written anew
+};
+
+// Returns the program's exit code. `words` are STAGE PROGRAM [ARGUMENTS].
+int RunEdge(const std::vector<std::string>& words);
+
+// An anonymous file that edges append their outcomes to; it takes no space on any disk.
+class OutcomeFile {
+ public:
+  OutcomeFile();
+  ~OutcomeFile();
+  OutcomeFile(const OutcomeFile&) = delete;
+  OutcomeFile& operator=(const OutcomeFile&) = delete;
+  int descriptor() const { return descriptor_; }
+  std::vector<EdgeOutcome> Read() const;
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace glint

@@ -1,0 +1,211 @@
+#include "pipeline/driver/init.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "calib/board/board.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kPhotoExtensions = {".jpg",  ".jpeg", ".png", ".tif", ".tiff", ".exr",
+                                         ".heic", ".dng",  ".nef", ".cr2", ".cr3",  ".arw"};
+constexpr int kFrameSquares = 2;        // squares left standing on each side of the default window
+constexpr double kSampleMargin_mm = 5;  // between the window's edge and the sample
+
+std::string Lower(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+// Extensions of photographs in a folder, and how many files have each.
+std::map<std::string, size_t> CountPhotos(const fs::path& folder) {
+  std::map<std::string, size_t> counts;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string extension = Lower(entry.path().extension());
+    const bool known = std::find(kPhotoExtensions.begin(), kPhotoExtensions.end(), extension) !=
+                       kPhotoExtensions.end();
+    const bool hidden = entry.path().filename().string()[0] == '.';
+    if (known && !hidden && entry.is_regular_file()) ++counts[extension];
+  }
+  return counts;
+}
+
+// ["photos/*.jpg", "photos/*.png"], and the number of files that match.
+std::string Patterns(const fs::path& folder, const std::string& subfolder, size_t* files) {
+  *files = 0;
+  std::string list;
+  for (const auto& [extension, count] : CountPhotos(folder / subfolder)) {
+    *files += count;
+    list += (list.empty() ? "" : ", ") + ("\"" + subfolder + "/*" + extension + "\"");
+  }
+  return list.empty() ? "" : "[" + list + "]";
+}
+
+std::string NumberText(double value) {
+  std::ostringstream text;
+  text.precision(12);
+  text << value;
+  return text.str();
+}
+
+std::string List(const std::vector<double>& numbers) {
+  std::string text;
+  for (const double number : numbers) text += (text.empty() ? "" : ", ") + NumberText(number);
+  return "[" + text + "]";
+}
+
+void RequireCount(const std::vector<double>& numbers, size_t count, const std::string& option,
+                  const std::string& what) {
+  if (numbers.size() == count) return;
+  throw UserError("--" + option + ": found " + std::to_string(numbers.size()) + " numbers; give " +
+                  what);
+}
+
+void RequireWhole(const std::vector<double>& numbers, const std::string& option) {
+  for (const double number : numbers) {
+    if (number >= 0 && number <= 1000 && number == std::floor(number)) continue;
+    throw UserError("--" + option + ": found " + NumberText(number) +
+                    "; give whole numbers from 0 to 1000");
+  }
+}
+
+Board DescribedBoard(const InitOptions& options, std::vector<double>* window) {
+  RequireCount(options.squares, 2, "squares", "COLUMNS,ROWS");
+  RequireWhole(options.squares, "squares");
+  Board board;
+  board.kind = options.board == "charuco" ? BoardKind::kCharuco : BoardKind::kCheckerboard;
+  board.squares_x = static_cast<int>(options.squares[0]);
+  board.squares_y = static_cast<int>(options.squares[1]);
+  board.square_mm = options.square_mm;
+  board.marker_mm = options.marker_mm;
+  board.dictionary = options.dictionary;
+  *window = options.window;
+  if (window->empty() && !options.full_board) {
+    *window = {kFrameSquares, kFrameSquares, options.squares[0] - 2 * kFrameSquares,
+               options.squares[1] - 2 * kFrameSquares};
+  }
+  if (!window->empty()) {
+    RequireCount(*window, 4, "window", "FIRST_COLUMN,FIRST_ROW,COLUMNS,ROWS");
+    RequireWhole(*window, "window");
+    board.window = BoardWindow{static_cast<int>((*window)[0]), static_cast<int>((*window)[1]),
+                               static_cast<int>((*window)[2]), static_cast<int>((*window)[3])};
+  }
+  if (const std::string wrong = CheckBoard(board); !wrong.empty()) {
+    throw UserError("board: " + wrong);
+  }
+  return board;
+}
+
+std::vector<double> SampleSize_mm(const InitOptions& options, const Board& board) {
+  if (!options.sample_mm.empty()) {
+    RequireCount(options.sample_mm, 2, "sample-mm", "WIDTH,HEIGHT");
+    for (const double side : options.sample_mm) {
+      if (side > 0) continue;
+      throw UserError("--sample-mm: found " + NumberText(side) + "; give sizes greater than 0");
+    }
+    return options.sample_mm;
+  }
+  const double columns = board.window ? board.window->columns : board.squares_x;
+  const double rows = board.window ? board.window->rows : board.squares_y;
+  return {std::max(columns * board.square_mm - 2 * kSampleMargin_mm, 1.0),
+          std::max(rows * board.square_mm - 2 * kSampleMargin_mm, 1.0)};
+}
+
+std::string BoardText(const InitOptions& options, const std::vector<double>& window,
+                      const std::string& board_photos) {
+  std::string text =
+      "[board]                          # what lies round the sample; glint board prints one\n";
+  text += "kind = \"" + options.board + "\"\n";
+  text += "squares = " + List(options.squares) + "               # columns, rows of squares\n";
+  text += "square_mm = " + NumberText(options.square_mm) +
+          "                  # measure the print: printers scale\n";
+  if (options.board == "charuco") {
+    text += "marker_mm = " + NumberText(options.marker_mm) + "\n";
+    text += "dictionary = \"" + options.dictionary + "\"\n";
+  }
+  if (window.empty()) {
+    text += "# window = [2, 2, 8, 8]          # first column, first row, columns, rows left out\n";
+  } else {
+    text += "window = " + List(window) +
+            "            # first column, first row, columns, rows left out for the sample\n";
+  }
+  if (board_photos.empty()) {
+    text +=
+        "# photos = [\"board/*.jpg\"]       # more photographs of the board, for the lens alone\n";
+  } else {
+    text +=
+        "photos = " + board_photos + "       # more photographs of the board, for the lens alone\n";
+  }
+  return text;
+}
+
+std::string PhotoPatterns(const fs::path& folder, size_t* files) {
+  const std::string patterns = Patterns(folder, "photos", files);
+  return patterns.empty() ? "[\"photos/*.jpg\"]" : patterns;
+}
+
+}  // namespace
+
+std::string InitResult::BriefReport() const {
+  std::string text = "wrote " + file.string() + " (" + std::to_string(photos) + " photographs";
+  if (board_photos > 0) text += ", " + std::to_string(board_photos) + " of the board alone";
+  text += ")\n";
+  const std::string folder = file.parent_path().string();
+  if (photos == 0) {
+    text += "put the photographs into " + (file.parent_path() / "photos").string() + "\n";
+  }
+  return text + "check the measures in it, then: glint run " + folder + "\n";
+}
+
+std::string CaptureText(const InitOptions& options, InitResult* result) {
+  std::vector<double> window;
+  const Board board = DescribedBoard(options, &window);
+  RequireCount(options.light_offset_mm, 3, "light-offset-mm", "X,Y,Z");
+  const std::string board_photos = Patterns(options.folder, "board", &result->board_photos);
+  std::string text = "# A capture for Glint; docs/capture.md explains every key.\n\n";
+  text += "[sample]                         # the part of the surface that becomes maps\n";
+  text += "size_mm = " + List(SampleSize_mm(options, board)) + "             # width, height\n";
+  text += "# centre_mm = [0, 0]             # from the board's centre, x right, y up\n";
+  text += "resolution_px = " + std::to_string(options.resolution_px) +
+          "             # width of the maps, or [width, height]\n\n";
+  text += "[photos]\nfiles = " + PhotoPatterns(options.folder, &result->photos) + "\n\n";
+  text += BoardText(options, window, board_photos) + "\n";
+  text += "[radiometry]\nencoding = \"" + options.encoding +
+          "\"                # auto, srgb, gamma2.2, linear\n\n";
+  text += "[light]\noffset_mm = " + List(options.light_offset_mm) +
+          "           # the flash from the lens: x right, y down, z forward\n";
+  text += "# power = 30000                  # radiance times mm^2; left out: estimated\n";
+  text += "# ambient = [0, 0, 0]\n\n";
+  text += "# Options of the stages, as on their command lines (glint help fit):\n";
+  text += "# [calib]\n# [rectify]\n# [fit]\n# [refine]\n# [export]\n# [report]\n";
+  return text;
+}
+
+InitResult WriteCapture(const InitOptions& options) {
+  InitResult result;
+  result.file = options.folder / "capture.toml";
+  if (fs::exists(fs::symlink_status(result.file))) {
+    throw UserError(result.file, "", "a capture.toml that is there already",
+                    "edit it, or move it away first");
+  }
+  const std::string text = CaptureText(options, &result);
+  std::error_code error;
+  fs::create_directories(options.folder, error);
+  if (error) {
+    throw EnvironmentError(options.folder.string() + ": cannot create the folder: " +
+                           error.message() + "; check the path and its permissions");
+  }
+  WriteFileAtomically(result.file, text);
+  return result;
+}
+
+}  // namespace glint

@@ -1,0 +1,37 @@
+// `glint init`: a commented capture.toml for a folder of photographs.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct InitOptions {
+  std::filesystem::path folder = ".";
+  std::string board = "charuco";  // or "checkerboard"
+  std::vector<double> squares = {12, 12};
+  double square_mm = 15;
+  double marker_mm = 11;  // charuco only
+  std::string dictionary = "DICT_5X5_1000";
+  std::vector<double> window;     // first column, first row, columns, rows; empty: see full_board
+  bool full_board = false;        // no window: the sample lies on or beside a whole board
+  std::vector<double> sample_mm;  // width, height; empty: the window less a margin
+  int resolution_px = 1024;
+  std::string encoding = "auto";
+  std::vector<double> light_offset_mm = {0, 0, 0};
+};
+
+struct InitResult {
+  std::filesystem::path file;
+  size_t photos = 0, board_photos = 0;
+  std::string BriefReport() const;
+};
+
+// The text that WriteCapture writes. Throws UserError for options that describe no board.
+std::string CaptureText(const InitOptions& options, InitResult* result);
+
+// Writes folder/capture.toml; never over one that is there (UserError).
+InitResult WriteCapture(const InitOptions& options);
+
+}  // namespace glint

@@ -1,0 +1,125 @@
+#include "pipeline/driver/programs.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <numeric>
+#include <set>
+#include <sstream>
+
+#include "pipeline/contract/errors.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct KnownVerb {
+  std::string_view name, summary;
+};
+
+// In the order in which a person meets them.
+constexpr KnownVerb kKnownVerbs[] = {
+    {"board", "print a calibration board"},
+    {"init", "write a capture.toml for a folder of photographs"},
+    {"run", "run every stage that is not up to date"},
+    {"status", "say which results are up to date, and why others are not"},
+    {"calib", "stage: cameras, poses and lights from the board"},
+    {"rectify", "stage: linear top views of the sample"},
+    {"import", "take over photographs that other programs have rectified"},
+    {"fit", "stage: material maps by latent or classic fitting"},
+    {"refine", "stage: material maps per texel"},
+    {"export", "stage: maps as PNG files"},
+    {"report", "stage: one HTML page of the whole result"},
+    {"eval", "compare maps or re-rendered views with the truth"},
+    {"synth", "make synthetic materials and captures"},
+    {"train", "train the auto-encoder"},
+};
+
+std::vector<fs::path> ProgramFolders() {
+  std::vector<fs::path> folders;
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  if (!error) folders.push_back(self.parent_path());
+  const char* path = std::getenv("PATH");
+  std::istringstream list(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(list, folder, ':');) {
+    if (!folder.empty()) folders.emplace_back(folder);
+  }
+  return folders;
+}
+
+bool IsProgram(const fs::path& file) {
+  std::error_code error;
+  return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
+}
+
+// Levenshtein's distance.
+size_t EditDistance(const std::string& a, const std::string& b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (size_t j = 0; j < b.size(); ++j) {
+      const size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+fs::path FindProgram(const std::string& name) {
+  for (const fs::path& folder : ProgramFolders()) {
+    if (IsProgram(folder / name)) return folder / name;
+  }
+  return {};
+}
+
+fs::path RequireGlintProgram(const std::string& name) {
+  const fs::path program = FindProgram(name);
+  if (program.empty()) {
+    throw EnvironmentError(name +
+                           ": no such program beside this one or in PATH; build or install Glint "
+                           "completely (./dev build)");
+  }
+  return program;
+}
+
+std::vector<Verb> ListVerbs() {
+  std::vector<Verb> verbs;
+  std::set<std::string> others;
+  for (const fs::path& folder : ProgramFolders()) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+      const std::string name = entry.path().filename();
+      if (name.rfind("glint-", 0) == 0 && IsProgram(entry.path())) others.insert(name.substr(6));
+    }
+  }
+  for (const KnownVerb& known : kKnownVerbs) {
+    const auto found = others.find(std::string(known.name));
+    if (found == others.end()) continue;
+    verbs.push_back({*found, std::string(known.summary)});
+    others.erase(found);
+  }
+  for (const std::string& name : others) verbs.push_back({name, ""});
+  return verbs;
+}
+
+std::string ClosestVerb(const std::string& mistyped, const std::vector<Verb>& verbs) {
+  std::string closest;
+  size_t least = std::max<size_t>(1, mistyped.size() / 2) + 1;
+  for (const Verb& verb : verbs) {
+    const size_t distance = EditDistance(mistyped, verb.name);
+    if (distance >= least) continue;
+    least = distance;
+    closest = verb.name;
+  }
+  return closest;
+}
+
+}  // namespace glint

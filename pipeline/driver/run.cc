@@ -1,0 +1,234 @@
+#include "pipeline/driver/run.h"
+
+#include <sys/stat.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
+#include "pipeline/contract/manifest.h"
+#include "pipeline/driver/child_process.h"
+#include "pipeline/driver/ninja_file.h"
+#include "pipeline/driver/programs.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSignalBase = 128;
+constexpr int kNinjaInterrupted = 2;
+// A run that was just killed takes its children with it, which is not instantaneous.
+constexpr int kLockAttempts = 20;
+constexpr auto kLockPause = std::chrono::milliseconds(100);
+
+std::unique_ptr<FileLock> LockRun(const fs::path& work) {
+  std::error_code error;
+  fs::create_directories(work, error);
+  if (error) {
+    throw EnvironmentError(work.string() + ": cannot create the folder: " + error.message() +
+                           "; make the capture's folder writable");
+  }
+  for (int attempt = 1;; ++attempt) {
+    try {
+      return std::make_unique<FileLock>(work / ".lock-run", "another glint run of this capture");
+    } catch (const UserError&) {
+      if (attempt == kLockAttempts) throw;
+    }
+    std::this_thread::sleep_for(kLockPause);
+  }
+}
+
+fs::path RequireNinja() {
+  const fs::path ninja = FindProgram("ninja");
+  if (!ninja.empty()) return ninja;
+  throw EnvironmentError(
+      "ninja: no such program in PATH; install it with: apt-get install ninja-build");
+}
+
+// -1: no such file.
+std::int64_t ModificationTime_ns(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return -1;
+  return static_cast<std::int64_t>(status.st_mtim.tv_sec) * 1'000'000'000 + status.st_mtim.tv_nsec;
+}
+
+// Adds to an edge what its last result says: files it read that the graph does not know, and
+// whether something is amiss that the times of the inputs do not show.
+void LookAtLastResult(const Capture& capture, NinjaEdge* edge) {
+  const fs::path file = capture.folder / edge->step.manifest;
+  const std::int64_t written_ns = ModificationTime_ns(file);
+  if (written_ns < 0) return;
+  Manifest manifest;
+  try {
+    manifest = ReadManifest(file, edge->step.stage);
+  } catch (const UserError&) {
+    edge->always = true;
+    return;
+  }
+  const fs::path stage_folder = fs::path("glint") / edge->step.stage;
+  for (const ManifestInput& input : manifest.inputs) {
+    const fs::path path = (stage_folder / input.path).lexically_normal();
+    if (fs::exists(capture.folder / path)) {
+      edge->more_inputs.push_back(path.generic_string());
+    } else {
+      edge->always = true;
+    }
+  }
+  for (const ManifestOutput& output : manifest.outputs) {
+    const std::int64_t output_ns = ModificationTime_ns(file.parent_path() / output.path);
+    if (output_ns < 0 || output_ns > written_ns) edge->always = true;
+  }
+}
+
+// Earlier stages' manifests that no step of this run writes must be there.
+void RequireEarlierResults(const Capture& capture, const std::vector<StageStep>& steps) {
+  for (const StageStep& step : steps) {
+    for (const std::string& earlier : step.waits_for) {
+      bool among_steps = false;
+      for (const StageStep& other : steps) among_steps |= other.stage == earlier;
+      const fs::path file = capture.folder / ManifestPath(earlier);
+      if (among_steps || fs::exists(file)) continue;
+      const bool imported = !capture.has_board && earlier == "rectify";
+      throw UserError(
+          file, "", "no such file",
+          imported
+              ? "write it with glint import, or describe [photos] and [board] in " +
+                    capture.file.string()
+              : "stage " + step.stage + " reads it: run without --from " + steps.front().stage);
+    }
+  }
+}
+
+std::vector<NinjaEdge> Edges(const Capture& capture, const std::vector<StageStep>& steps,
+                             bool force) {
+  std::vector<NinjaEdge> edges;
+  for (const StageStep& step : steps) {
+    NinjaEdge edge;
+    edge.step = step;
+    edge.program = RequireGlintProgram("glint-" + step.stage);
+    LookAtLastResult(capture, &edge);
+    edge.always |= force;
+    edges.push_back(std::move(edge));
+  }
+  return edges;
+}
+
+// Ninja's remarks are not results; its errors go to stderr by themselves.
+void PassLine(const std::string& line, const RunOptions& options) {
+  const bool from_ninja = line.rfind("ninja: ", 0) == 0;
+  if (from_ninja ? !options.verbose : options.quiet_stdout) return;
+  std::fprintf(from_ninja ? stderr : stdout, "%s\n", line.c_str());
+  std::fflush(stdout);
+}
+
+ChildProcess NinjaProcess(const fs::path& ninja, const Capture& capture, const RunOptions& options,
+                          const std::vector<StageStep>& steps, const OutcomeFile& outcomes) {
+  ChildProcess child;
+  child.arguments = {ninja.string(), "-C", capture.folder.string(), "-f", "glint/build.ninja"};
+  if (options.verbose) {
+    child.arguments.insert(child.arguments.end(), {"-v", "-d", "explain"});
+  } else {
+    child.arguments.push_back("--quiet");
+  }
+  for (const StageStep& step : steps) child.arguments.push_back(step.manifest);
+  std::string more;
+  if (options.threads > 0) more += "--threads\n" + std::to_string(options.threads) + "\n";
+  if (options.log_level != "info") more += "--log-level\n" + options.log_level + "\n";
+  if (options.force) more += "--force\n";
+  child.environment = {{kRunFolderVariable, fs::current_path().string()},
+                       {kRunCaptureVariable, capture.folder.string()},
+                       {kRunArgumentsVariable, more},
+                       {kRunOutcomesVariable, std::to_string(outcomes.descriptor())}};
+  child.kept_descriptors = {outcomes.descriptor()};
+  child.on_line = [&options](const std::string& line) { PassLine(line, options); };
+  return child;
+}
+
+// Says how a run failed, with the exit code of the stage that did.
+[[noreturn]] void ThrowFailure(const RunSummary& summary, int ninja_code) {
+  for (const EdgeOutcome& outcome : summary.outcomes) {
+    if (outcome.code == 0) continue;
+    if (outcome.code <= kSignalBase) throw Error(static_cast<ExitCode>(outcome.code), "");
+    const int signal = outcome.code - kSignalBase;
+    const std::string killed =
+        "glint-" + outcome.stage + " was ended by signal " + std::to_string(signal) + "; ";
+    if (signal == SIGKILL) {
+      throw EnvironmentError(killed +
+                             "perhaps memory ran out: lower sample.resolution_px; earlier results "
+                             "are kept, and glint run goes on from there");
+    }
+    throw ComputationError(killed + "earlier results are kept, and glint run goes on from there");
+  }
+  if (ninja_code == kNinjaInterrupted || ninja_code == kSignalBase + SIGINT) {
+    throw EnvironmentError(
+        "interrupted; earlier results are kept, and glint run goes on from there");
+  }
+  throw EnvironmentError("Ninja failed (exit code " + std::to_string(ninja_code) +
+                         ") before a stage did; is the disk full, or " +
+                         (summary.capture / "glint").string() + " not writable?");
+}
+
+}  // namespace
+
+bool RunSummary::Changed(const std::string& stage) const {
+  for (const EdgeOutcome& outcome : outcomes) {
+    if (outcome.stage == stage && outcome.changed) return true;
+  }
+  return false;
+}
+
+std::string RunSummary::BriefReport() const {
+  std::string computed, kept;
+  for (const std::string& stage : stages) {
+    std::string& list = Changed(stage) ? computed : kept;
+    list += (list.empty() ? "" : ", ") + stage;
+  }
+  std::string text = capture.string() + ": ";
+  if (!computed.empty()) text += "computed " + computed;
+  if (!computed.empty() && !kept.empty()) text += "; ";
+  if (!kept.empty()) text += "up to date: " + kept;
+  if (stages.back() == "report") {
+    text += "\nreport: " + (capture / "glint/report/index.html").string();
+  }
+  return text;
+}
+
+Json RunSummary::ToJson() const {
+  Json stages_json = Json::object();
+  for (const std::string& stage : stages) {
+    stages_json[stage] = {{"computed", Changed(stage)},
+                          {"manifest", (capture / ManifestPath(stage)).generic_string()}};
+  }
+  Json started = Json::array();
+  for (const EdgeOutcome& outcome : outcomes) started.push_back(outcome.stage);
+  return {{"capture", capture.generic_string()}, {"stages", stages_json}, {"started", started}};
+}
+
+RunSummary RunCapture(const RunOptions& options) {
+  const Capture capture = ReadCapture(options.capture);
+  const std::vector<StageStep> steps =
+      SelectSteps(StageSteps(capture, options.choices), options.from, options.until);
+  RequireEarlierResults(capture, steps);
+  const fs::path ninja = RequireNinja();
+  const auto lock = LockRun(capture.work());
+  const std::vector<NinjaEdge> edges = Edges(capture, steps, options.force);
+  WriteFileAtomically(capture.work() / "build.ninja",
+                      NinjaText(edges, RequireGlintProgram("glint"), options.choices));
+  const OutcomeFile outcomes;
+  ChildProcess child = NinjaProcess(ninja, capture, options, steps, outcomes);
+  child.kept_descriptors.push_back(lock->descriptor());
+  const int code = RunChild(child);
+  RunSummary summary;
+  summary.capture = capture.folder;
+  for (const StageStep& step : steps) summary.stages.push_back(step.stage);
+  summary.outcomes = outcomes.Read();
+  if (code != 0) ThrowFailure(summary, code);
+  return summary;
+}
+
+}  // namespace glint

@@ -1,0 +1,71 @@
+// glint-run: every stage that is not up to date.
+#include <string>
+
+#include "pipeline/contract/program.h"
+#include "pipeline/driver/run.h"
+#include "pipeline/driver/status.h"
+
+namespace {
+
+struct RunArguments {
+  glint::RunOptions run;
+  bool dry_run = false;
+  int jobs = 0;
+};
+
+void AddOptions(glint::OptionSet* options, RunArguments* o) {
+  options->AddPositional("CAPTURE", &o->run.capture, "folder of the capture", false);
+  options->Add("from", &o->run.from, "first stage that may run; earlier results stand");
+  options->Add("until", &o->run.until, "last stage that runs");
+  options->Add("dry-run", &o->dry_run, "only say which stages would run and why");
+  options->AddRange("jobs,-j", &o->jobs, 0, 1024, "threads for each stage, as --threads");
+  options->AddChoice("method", &o->run.choices.method, {"classic", "latent", "refined"},
+                     "classic: maps fitted texel by texel; latent: in the learned space; refined: "
+                     "latent, then per texel (what is done without this option)");
+  options->Add("exclude", &o->run.choices.exclude,
+               "photographs (file or view names) kept back from fit and refine");
+  options->Add("views", &o->run.choices.views, "the only photographs that fit and refine see");
+  options->Add("verbose", &o->run.verbose, "Ninja's own lines as well");
+}
+
+glint::ProgramResult DryRun(const RunArguments& o) {
+  const glint::Capture capture = glint::ReadCapture(o.run.capture);
+  const auto steps =
+      glint::SelectSteps(glint::StageSteps(capture, o.run.choices), o.run.from, o.run.until);
+  const glint::CaptureStatus status = glint::LookAtCapture(capture, steps);
+  return {status.Plan(), status.ToJson()};
+}
+
+int ThreadsForStages(int argc, char** argv, const glint::CommonOptions& common, int jobs) {
+  if (jobs > 0) return jobs;
+  for (int i = 1; i < argc; ++i) {
+    if (std::string(argv[i]).rfind("--threads", 0) == 0) return common.threads;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  RunArguments o;
+  glint::OptionSet options;
+  AddOptions(&options, &o);
+  return glint::RunProgram(
+      argc, argv,
+      {"glint-run",
+       "Runs the stages calib, rectify, fit, refine, export, report of a capture, as far as they "
+       "are not up to date.",
+       GLINT_VERSION,
+       "Examples:\n  glint run wood\n  glint run wood --until rectify\n"
+       "  glint run wood --exclude img_003.jpg,img_007.jpg --method latent"},
+      &options, [&](const glint::CommonOptions& common) -> glint::ProgramResult {
+        o.run.force = common.force;
+        o.run.choices.seed = common.seed;
+        if (o.dry_run) return DryRun(o);
+        o.run.threads = ThreadsForStages(argc, argv, common, o.jobs);
+        o.run.log_level = common.log_level;
+        o.run.quiet_stdout = common.json;
+        const glint::RunSummary summary = glint::RunCapture(o.run);
+        return {summary.BriefReport(), summary.ToJson()};
+      });
+}

@@ -1,0 +1,22 @@
+// glint-status: which results are up to date.
+#include "pipeline/contract/program.h"
+#include "pipeline/driver/ninja_file.h"
+#include "pipeline/driver/status.h"
+
+int main(int argc, char** argv) {
+  std::filesystem::path folder = ".";
+  glint::OptionSet options;
+  options.AddPositional("CAPTURE", &folder, "folder of the capture", false);
+  return glint::RunProgram(
+      argc, argv,
+      {"glint-status",
+       "Says of each stage whether its result is up to date for the choices of the last glint run, "
+       "why not, how large it is, and its main figures.",
+       GLINT_VERSION, ""},
+      &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
+        const glint::Capture capture = glint::ReadCapture(folder);
+        const auto choices = glint::ReadChoices(capture.work() / "build.ninja");
+        const auto status = glint::LookAtCapture(capture, glint::StageSteps(capture, choices));
+        return {status.BriefReport(), status.ToJson()};
+      });
+}

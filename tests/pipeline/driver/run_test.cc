@@ -1,0 +1,338 @@
+// `glint run`, `status` and `init` with stages that compute next to nothing.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "pipeline/contract/json.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using test::RunProgram;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr char kCaptureToml[] =
+    "[sample]\nsize_mm = [100, 100]\n[photos]\nfiles = [\"photos/*.jpg\"]\n"
+    "[board]\nsquares = [12, 12]\nsquare_mm = 15\nmarker_mm = 11\n";
+
+// A folder of programs (the real driver, fake stages) and a capture.
+class RunTest : public testing::Test {
+ protected:
+  RunTest() {
+    const fs::path bin = folder_.path() / "bin";
+    fs::create_directory(bin);
+    for (const char* name : {"glint", "glint-run", "glint-status", "glint-init"}) {
+      fs::copy_file(fs::path(GLINT_BIN_DIR) / name, bin / name);
+    }
+    for (const char* stage : {"calib", "rectify", "fit", "refine", "export", "report"}) {
+      fs::copy_file(fs::path(GLINT_BIN_DIR) / "fake_stage", bin / ("glint-" + std::string(stage)));
+    }
+    SetToml("");
+    for (const char* photo : {"a.jpg", "b.jpg"})
+      test::WriteAll(capture() / "photos" / photo, photo);
+  }
+
+  fs::path capture() const { return folder_.path() / "wood"; }
+  fs::path manifest(const std::string& stage) const {
+    return capture() / "glint" / stage / "manifest.json";
+  }
+  void SetToml(const std::string& more) const {
+    test::WriteAll(capture() / "capture.toml", kCaptureToml + more);
+  }
+  Outcome Glint(std::vector<std::string> words) const {
+    words.insert(words.begin(), (folder_.path() / "bin/glint").string());
+    return RunProgram(words);
+  }
+  // Stages that a run with these further arguments computes, and that it starts.
+  struct Ran {
+    std::vector<std::string> computed, started;
+  };
+  Ran RunJson(std::vector<std::string> words = {}) const {
+    words.insert(words.begin(), {"run", capture().string(), "--json"});
+    const Outcome outcome = Glint(words);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    Ran ran;
+    const Json json = Json::parse(outcome.out, nullptr, false);
+    if (!json.is_object()) {
+      ADD_FAILURE() << outcome.out << outcome.err;
+      return ran;
+    }
+    for (const auto& [stage, entry] : json["stages"].items()) {
+      if (entry["computed"] == true) ran.computed.push_back(stage);
+    }
+    ran.started = json["started"].get<std::vector<std::string>>();
+    return ran;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(RunTest, ASecondRunStartsNoStage) {
+  EXPECT_THAT(RunJson().computed,
+              ElementsAre("calib", "rectify", "fit", "refine", "export", "report"));
+  EXPECT_THAT(RunJson().started, IsEmpty());
+}
+
+TEST_F(RunTest, ASecondRunFromAnotherFolderUnderAnotherNameStartsNoStage) {
+  RunJson();
+  const fs::path moved = folder_.path() / "moved";
+  fs::rename(capture(), moved);
+  const Outcome outcome =
+      RunProgram({"/bin/sh", "-c", "cd '" + moved.string() + "' && ../bin/glint run --json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(Json::parse(outcome.out)["started"].empty()) << outcome.out;
+}
+
+TEST_F(RunTest, AChangedOptionComputesItsStageAndLaterOnesOnly) {
+  RunJson();
+  SetToml("[refine]\ngain = 2.0\n");
+  EXPECT_THAT(RunJson().computed, ElementsAre("refine", "export", "report"));
+  EXPECT_THAT(RunJson().started, IsEmpty());
+}
+
+TEST_F(RunTest, ATouchedPhotographComputesNothing) {
+  RunJson();
+  fs::last_write_time(capture() / "photos/a.jpg", fs::file_time_type::clock::now());
+  EXPECT_THAT(RunJson().computed, IsEmpty());
+  EXPECT_THAT(RunJson().started, IsEmpty());
+}
+
+TEST_F(RunTest, AChangedPhotographComputesAll) {
+  RunJson();
+  test::WriteAll(capture() / "photos/a.jpg", "other");
+  EXPECT_EQ(RunJson().computed.size(), 6u);
+}
+
+TEST_F(RunTest, AnAddedOrRemovedPhotographIsNoticed) {
+  RunJson();
+  test::WriteAll(capture() / "photos/c.jpg", "c");
+  // Older than every result: the list of photographs itself has to be compared.
+  fs::last_write_time(capture() / "photos/c.jpg",
+                      fs::file_time_type::clock::now() - std::chrono::hours(1));
+  EXPECT_EQ(RunJson().computed.size(), 6u);
+  fs::remove(capture() / "photos/c.jpg");
+  EXPECT_EQ(RunJson().computed.size(), 6u);
+}
+
+TEST_F(RunTest, AFileThatOnlyTheLastResultNamesIsWatched) {
+  test::WriteAll(capture() / "weights", "1");
+  RunJson();
+  test::WriteAll(capture() / "weights", "2");
+  EXPECT_THAT(RunJson().computed, ElementsAre("fit", "refine", "export", "report"));
+}
+
+TEST_F(RunTest, ADamagedOrRemovedOutputIsMadeAnew) {
+  RunJson();
+  fs::remove(capture() / "glint/fit/result.txt");
+  EXPECT_THAT(RunJson().computed, testing::Contains("fit"));
+  EXPECT_TRUE(fs::exists(capture() / "glint/fit/result.txt"));
+  test::WriteAll(capture() / "glint/rectify/result.txt", "damaged");
+  EXPECT_THAT(RunJson().computed, testing::Contains("rectify"));
+  test::WriteAll(manifest("refine"), "{}");
+  EXPECT_THAT(RunJson().computed, testing::Contains("refine"));
+  EXPECT_THAT(RunJson().started, IsEmpty());
+}
+
+TEST_F(RunTest, ForceComputesTheChosenStages) {
+  RunJson();
+  EXPECT_THAT(RunJson({"--force", "--from", "refine", "--until", "export"}).computed,
+              ElementsAre("refine", "export"));
+}
+
+TEST_F(RunTest, UntilStopsAndFromGoesOn) {
+  EXPECT_THAT(RunJson({"--until", "fit"}).computed, ElementsAre("calib", "rectify", "fit"));
+  EXPECT_THAT(RunJson({"--from", "refine"}).computed, ElementsAre("refine", "export", "report"));
+}
+
+TEST_F(RunTest, FromWithoutEarlierResultsSaysSo) {
+  const Outcome outcome = Glint({"run", capture().string(), "--from", "fit"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("rectify/manifest.json: found no such file; "));
+  EXPECT_FALSE(fs::exists(capture() / "glint"));
+}
+
+TEST_F(RunTest, PhotographsKeptBackReachFitAndRefineOnly) {
+  RunJson();
+  EXPECT_THAT(RunJson({"--exclude", "a.jpg"}).computed,
+              ElementsAre("fit", "refine", "export", "report"));
+  const Json options = Json::parse(test::ReadAll(manifest("refine")))["options"];
+  EXPECT_EQ(options["exclude"], Json::array({"a.jpg"}));
+  EXPECT_THAT(RunJson({"--exclude", "a.jpg"}).started, IsEmpty());
+}
+
+TEST_F(RunTest, MethodsWithoutRefinementLeaveItOut) {
+  RunJson({"--method", "classic"});
+  EXPECT_FALSE(fs::exists(manifest("refine")));
+  EXPECT_EQ(Json::parse(test::ReadAll(manifest("fit")))["options"]["method"], "classic");
+  EXPECT_EQ(Json::parse(test::ReadAll(manifest("export")))["options"]["from"], "fit");
+  const Outcome outcome =
+      Glint({"run", capture().string(), "--method", "latent", "--until", "refine"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("found 'refine', which this run does not have"));
+}
+
+TEST_F(RunTest, AnImportedCaptureStartsAtFit) {
+  RunJson();
+  const fs::path imported = folder_.path() / "imported";
+  test::WriteAll(imported / "capture.toml", "[sample]\nsize_mm = [10, 10]\n");
+  const Outcome missing = Glint({"run", imported.string()});
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_THAT(missing.err, HasSubstr("glint import"));
+  fs::create_directories(imported / "glint");
+  fs::copy(capture() / "glint/rectify", imported / "glint/rectify");
+  const Outcome outcome = Glint({"run", imported.string(), "--json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(Json::parse(outcome.out)["started"],
+            Json::array({"fit", "refine", "export", "report"}));
+}
+
+TEST_F(RunTest, AFailingStagesExitCodeAndMessagePassThroughOnce) {
+  RunJson();
+  const std::string before = test::ReadAll(manifest("refine"));
+  for (const int code : {1, 2, 3}) {
+    SetToml("[refine]\ngain = 3.0\nfail = " + std::to_string(code) + "\n");
+    const Outcome outcome = Glint({"run", capture().string()});
+    EXPECT_EQ(outcome.code, code);
+    EXPECT_THAT(outcome.err, HasSubstr("glint-refine: error: " + capture().string() +
+                                       "/capture.toml: made to fail\n"));
+    EXPECT_EQ(outcome.err.find("error"), outcome.err.rfind("error")) << outcome.err;
+    EXPECT_THAT(outcome.out + outcome.err, Not(HasSubstr("ninja")));
+    EXPECT_EQ(test::ReadAll(manifest("refine")), before);
+    EXPECT_EQ(test::ReadAll(capture() / "glint/report/manifest.json").empty(), false);
+  }
+}
+
+TEST_F(RunTest, AStageEndedBySignalIsNamed) {
+  SetToml("[fit]\ndie = true\n");
+  const Outcome outcome = Glint({"run", capture().string()});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("glint-fit was ended by signal 9"));
+  SetToml("");
+  EXPECT_THAT(RunJson().computed, ElementsAre("fit", "refine", "export", "report"));
+}
+
+TEST_F(RunTest, KillingTheRunAloneEndsItsStagesAndTheNextRunGoesOn) {
+  SetToml("[fit]\nsleep = 20\n");
+  const fs::path out = folder_.path() / "out", err = folder_.path() / "err";
+  const pid_t pid =
+      test::Start({folder_.path() / "bin/glint", "run", capture().string()}, out, err);
+  while (!fs::exists(capture() / "glint/.fit.new/result.txt")) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ::kill(pid, SIGKILL);
+  EXPECT_EQ(test::WaitFor(pid), 128 + SIGKILL);
+  SetToml("");
+  EXPECT_THAT(RunJson().computed, ElementsAre("fit", "refine", "export", "report"));
+}
+
+TEST_F(RunTest, TwoRunsAtOnceAreRefused) {
+  SetToml("[fit]\nsleep = 4\n");
+  const fs::path out = folder_.path() / "out", err = folder_.path() / "err";
+  const pid_t pid =
+      test::Start({folder_.path() / "bin/glint", "run", capture().string()}, out, err);
+  while (!fs::exists(capture() / "glint/.fit.new/result.txt")) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  const Outcome outcome = Glint({"run", capture().string()});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("found a lock held by another process (another glint run"));
+  ::kill(-pid, SIGKILL);
+  test::WaitFor(pid);
+}
+
+TEST_F(RunTest, UnknownStagesAndMissingCapturesAreNamed) {
+  const Outcome stage = Glint({"run", capture().string(), "--until", "bake"});
+  EXPECT_EQ(stage.code, 2);
+  EXPECT_THAT(stage.err, HasSubstr("--until: found the unknown stage 'bake'; use one of: calib, "));
+  const Outcome missing = Glint({"run", (folder_.path() / "nowhere").string()});
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_THAT(missing.err, HasSubstr("nowhere: found no such folder; "));
+  const Outcome order = Glint({"run", capture().string(), "--from", "fit", "--until", "calib"});
+  EXPECT_EQ(order.code, 2);
+}
+
+TEST_F(RunTest, WithoutNinjaSaysHowToInstallIt) {
+  const Outcome outcome = RunProgram({folder_.path() / "bin/glint-run", capture()},
+                                     [] { ::setenv("PATH", "/nowhere", 1); });
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("apt-get install ninja-build"));
+}
+
+TEST_F(RunTest, AwkwardFileNamesAreFine) {
+  for (const char* name :
+       {"a b.jpg", "c$d.jpg", "e:f.jpg", "g'h\"i.jpg", "k#l.jpg", "Wäsche.jpg"}) {
+    test::WriteAll(capture() / "photos" / name, name);
+  }
+  EXPECT_EQ(RunJson({"--exclude", "it's $x;y"}).computed.size(), 6u);
+  EXPECT_EQ(Json::parse(test::ReadAll(manifest("fit")))["options"]["exclude"][0], "it's $x;y");
+  EXPECT_THAT(RunJson({"--exclude", "it's $x;y"}).started, IsEmpty());
+}
+
+TEST_F(RunTest, DryRunAndStatusSayWhyAndWriteNothing) {
+  const Outcome nothing_yet = Glint({"run", capture().string(), "--dry-run"});
+  EXPECT_EQ(nothing_yet.code, 0) << nothing_yet.err;
+  EXPECT_THAT(nothing_yet.out, HasSubstr("calib    would run  there is no result yet"));
+  EXPECT_FALSE(fs::exists(capture() / "glint"));
+  RunJson({"--exclude", "a.jpg"});
+  SetToml("[refine]\ngain = 2.5\n");
+  const Outcome status = Glint({"status", capture().string()});
+  EXPECT_EQ(status.code, 0) << status.err;
+  EXPECT_THAT(status.out, HasSubstr("fit      up to date"));
+  EXPECT_THAT(status.out, HasSubstr("option gain was 1.0 and is 2.5"));
+  EXPECT_THAT(status.out, HasSubstr("it reads the result of refine, which is stale"));
+  const Outcome json = Glint({"status", capture().string(), "--json"});
+  EXPECT_EQ(Json::parse(json.out)["stages"][3]["state"], "stale");
+}
+
+TEST_F(RunTest, ThreadsNeverMakeAResultStale) {
+  RunJson({"-j", "2"});
+  EXPECT_THAT(RunJson({"-j", "1"}).started, IsEmpty());
+}
+
+TEST_F(RunTest, GlintListsAndSuggestsVerbs) {
+  const Outcome help = Glint({"--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_THAT(help.out, HasSubstr("  run       run every stage that is not up to date\n"));
+  const Outcome typo = Glint({"ran"});
+  EXPECT_EQ(typo.code, 2);
+  EXPECT_THAT(typo.err, HasSubstr("found the unknown verb 'ran'; did you mean: glint run"));
+  EXPECT_EQ(Glint({"help", "run"}).code, 0);
+}
+
+TEST_F(RunTest, InitDescribesWhatIsInTheFolderAndKeepsAnExistingFile) {
+  const fs::path folder = folder_.path() / "new";
+  test::WriteAll(folder / "photos/1.JPG", "x");
+  test::WriteAll(folder / "photos/2.png", "x");
+  test::WriteAll(folder / "board/1.jpg", "x");
+  const Outcome first =
+      Glint({"init", folder.string(), "--square-mm", "20", "--sample-mm", "90,80"});
+  EXPECT_EQ(first.code, 0) << first.err;
+  const std::string text = test::ReadAll(folder / "capture.toml");
+  EXPECT_THAT(text, HasSubstr("files = [\"photos/*.jpg\", \"photos/*.png\"]"));
+  EXPECT_THAT(text, HasSubstr("photos = [\"board/*.jpg\"]"));
+  EXPECT_THAT(text, HasSubstr("size_mm = [90, 80]"));
+  const Outcome plan = Glint({"run", folder.string(), "--dry-run"});
+  EXPECT_EQ(plan.code, 0) << plan.err;
+  const Outcome second = Glint({"init", folder.string()});
+  EXPECT_EQ(second.code, 2);
+  EXPECT_EQ(test::ReadAll(folder / "capture.toml"), text);
+}
+
+TEST_F(RunTest, InitRefusesABoardThatCannotBe) {
+  const fs::path folder = folder_.path() / "new";
+  const Outcome outcome = Glint({"init", folder.string(), "--marker-mm", "30"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("marker_mm"));
+  EXPECT_FALSE(fs::exists(folder / "capture.toml"));
+}
+
+}  // namespace
+}  // namespace glint
