@@ -15,7 +15,7 @@ using procedural::Family;
 using procedural::Mix64;
 using procedural::Rng;
 
-constexpr int kLargestSide = 16384;
+constexpr int kLargestSide = 8192;
 constexpr float kBlendShare = 0.3f;
 // Streams of one seed that must not repeat each other's draws.
 constexpr uint64_t kRecipeStream = 0x7265636970650001ull;

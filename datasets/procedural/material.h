@@ -33,7 +33,7 @@ MaterialRecipe DrawRecipe(uint64_t seed);
 // mask (convex mixtures as in Deschaintre et al. 2018, sec. 4.2) are all drawn from the seed.
 // Every plane is within its range of SvbrdfMaps: unit normals with z > 0, tilted at most 77°;
 // diffuse + specular ≤ 1 per channel; dielectric F0 .02 to .08; roughness .05 to 1.
-// Throws std::invalid_argument for a width or height outside 1 … 16384.
+// Throws std::invalid_argument for a width or height outside 1 … 8192.
 SvbrdfMaps MakeMaterial(uint64_t seed, int width, int height);
 
 // Maps of one family, never blended. Also throws std::invalid_argument for an unknown family.
