@@ -1,0 +1,21 @@
+// Standard deviations of a texel's values from the normal equations at its solution.
+#pragma once
+
+#include <array>
+
+#include "fitting/refine/refine.h"
+#include "fitting/refine/texel_kernel.h"
+
+namespace glint {
+
+// √diag(s²·(JᵀJ)⁻¹) with `gram` by the physical values, prior included (Gauss–Newton's covariance).
+// The residual variance s² joins the texel's own residuals with `residual_sigma`, the photographs'
+// common one, which counts as kCommonWeight residuals: a texel alone has too few to tell it.
+// The cost's place holds half the squared residuals, prior included.
+std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
+                                                     const TexelValues& texel, int residuals,
+                                                     double residual_sigma);
+
+inline constexpr double kCommonWeight = 12.0;
+
+}  // namespace glint

@@ -1,0 +1,27 @@
+#include "fitting/refine/gather.h"
+
+#include <algorithm>
+
+namespace glint {
+
+void GatherObservations(const RefineProblem& problem, size_t texel,
+                        TexelObservations* observations) {
+  const size_t texels = static_cast<size_t>(problem.plane.width) * problem.plane.height;
+  const double x = problem.plane.x_mm(static_cast<int>(texel % problem.plane.width));
+  const double y = problem.plane.y_mm(static_cast<int>(texel / problem.plane.width));
+  observations->Clear();
+  for (const RefineView& view : problem.views) {
+    if (!(view.mask[texel] >= 0.5f)) continue;
+    double radiance[3];
+    bool clipped[3];
+    for (int c = 0; c < 3; ++c) {
+      radiance[c] = std::max(static_cast<double>(view.rgb[c * texels + texel]), 0.0);
+      clipped[c] = view.ldr && radiance[c] >= kClipped;
+    }
+    observations->Add(TexelGeometryInView<double>(view.view, problem.convention.falloff, x, y),
+                      radiance, clipped);
+  }
+  observations->Finish();
+}
+
+}  // namespace glint

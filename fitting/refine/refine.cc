@@ -1,0 +1,319 @@
+#include "fitting/refine/refine.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+
+#include "fitting/refine/confidence.h"
+#include "fitting/refine/gather.h"
+#include "fitting/refine/refine_prior.h"
+#include "fitting/refine/texel_parameters.h"
+#include "fitting/refine/texel_search.h"
+#include "fitting/refine/tiles.h"
+
+namespace glint {
+namespace {
+
+constexpr int kTexelsPerPiece = 256;
+constexpr double kTypicalSigma = 0.02;  // of residuals, where too few views leave it open
+
+void CheckProblem(const RefineProblem& problem, const SvbrdfMaps& start) {
+  const SamplePlane& plane = problem.plane;
+  const size_t texels = static_cast<size_t>(plane.width) * plane.height;
+  if (problem.views.empty()) throw std::invalid_argument("refine: no photographs");
+  if (start.width != plane.width || start.height != plane.height) {
+    throw std::invalid_argument("refine: the start's size is not the photographs'");
+  }
+  for (const RefineView& view : problem.views) {
+    if (view.rgb.size() != 3 * texels || view.mask.size() != texels) {
+      throw std::invalid_argument("refine: a photograph's size is not the plane's");
+    }
+  }
+  const auto finite = [](float x) { return std::isfinite(x); };
+  if (!std::all_of(start.planes.begin(), start.planes.end(), finite)) {
+    throw std::invalid_argument("refine: the start has values that are not finite");
+  }
+}
+
+// The same sums whatever the order in which the photographs were given.
+std::vector<int> CanonicalOrder(const std::vector<RefineView>& views) {
+  std::vector<int> order(views.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  const auto key = [&](int i) {
+    const View& v = views[i].view;
+    return std::tie(v.camera_in_sample_mm, v.light_in_sample_mm, v.light_rgb, v.ambient_rgb,
+                    v.exposure);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+  return order;
+}
+
+// What one thread owns.
+struct Worker {
+  Worker(const KernelOptions& options, const RefineOptions& refine, int views)
+      : observations(views), search(options, refine.iterations, views, refine.starts), rows(views) {}
+  TexelObservations observations;
+  TexelSearch search;
+  KernelRows rows;
+};
+
+// One refinement in progress.
+class Refiner {
+ public:
+  Refiner(const RefineProblem& problem, const SvbrdfMaps& start, const RefineOptions& options,
+          int threads, const std::function<void(std::int64_t, std::int64_t)>& progress);
+  RefineResult Run();
+
+ private:
+  void EstimateNoise();
+  void SolveFromStarts();
+  void SolveFromNeighbours(int colour);
+  void Conclude();
+
+  void ForEachTexel(const std::function<void(size_t texel, Worker* worker)>& visit);
+  TexelSolution Current(size_t texel, const TexelPrior& prior, Worker* worker);
+  void Keep(size_t texel, const TexelSolution& solution);
+
+  RefineProblem problem_;  // views in canonical order
+  std::vector<int> order_;
+  const SvbrdfMaps& start_;
+  const RefineOptions& options_;
+  const int threads_;
+  const std::function<void(std::int64_t, std::int64_t)>& progress_;
+  std::int64_t done_ = 0;
+  std::mutex progress_mutex_;
+
+  KernelOptions kernel_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+  PriorWeights weights_;
+  RefineResult result_;
+  enum Origin : unsigned char { kConverged = 1, kOtherStart = 2, kNeighbour = 4 };
+  std::vector<unsigned char> origin_;
+};
+
+Refiner::Refiner(const RefineProblem& problem, const SvbrdfMaps& start,
+                 const RefineOptions& options, int threads,
+                 const std::function<void(std::int64_t, std::int64_t)>& progress)
+    : problem_(problem),
+      order_(CanonicalOrder(problem.views)),
+      start_(start),
+      options_(options),
+      threads_(std::max(threads, 1)),
+      progress_(progress) {
+  for (size_t i = 0; i < order_.size(); ++i) problem_.views[i] = problem.views[order_[i]];
+  kernel_.diffuse_weight = problem.convention.diffuse_weight;
+  kernel_.robust_scale = options.robust_scale;
+  for (int i = 0; i < threads_; ++i) {
+    workers_.push_back(
+        std::make_unique<Worker>(kernel_, options, static_cast<int>(problem.views.size())));
+  }
+  result_.maps = start;
+  result_.confidence.assign(start.texels() * kConfidencePlanes, 0.0f);
+  origin_.assign(start.texels(), 0);
+}
+
+void Refiner::ForEachTexel(const std::function<void(size_t, Worker*)>& visit) {
+  const size_t texels = start_.texels();
+  const int pieces = static_cast<int>((texels + kTexelsPerPiece - 1) / kTexelsPerPiece);
+  const std::int64_t visits =
+      static_cast<std::int64_t>(texels) * (2 + 2 * options_.neighbour_passes);
+  ForEachPiece(pieces, threads_, [&](int piece, int worker) {
+    const size_t first = static_cast<size_t>(piece) * kTexelsPerPiece;
+    const size_t last = std::min(first + kTexelsPerPiece, texels);
+    for (size_t texel = first; texel < last; ++texel) visit(texel, workers_[worker].get());
+    const std::lock_guard lock(progress_mutex_);
+    done_ += static_cast<std::int64_t>(last - first);
+    if (progress_) progress_(done_, visits);
+  });
+}
+
+void Refiner::EstimateNoise() {
+  RefineSummary& summary = result_.summary;
+  summary.information = DistinctViews(problem_);
+  constexpr size_t kSampled = 512;
+  const size_t texels = start_.texels();
+  const size_t sampled = std::min(kSampled, texels);
+  const PriorWeights weak = HoldToStart(1.0, 0.005, summary.information, {});
+  std::vector<double> variances(sampled, -1.0);
+  ForEachPiece(static_cast<int>(sampled), threads_, [&](int i, int worker) {
+    Worker& w = *workers_[worker];
+    const size_t texel = texels * i / sampled;
+    GatherObservations(problem_, texel, &w.observations);
+    const int freedom = 3 * w.observations.views() - kTexelParameters;
+    if (freedom < 6) return;
+    const TexelValues start = ReadTexel(start_, texel);
+    const TexelPrior prior(weak, start);
+    const TexelSolution solution =
+        w.search.FromStart(w.observations, prior, weak, start).solution;
+    variances[i] =
+        (2.0 * solution.cost - prior.SquaredNorm(solution.values)) / freedom;
+  });
+  std::erase_if(variances, [](double v) { return v < 0.0; });
+  summary.residual_sigma = kTypicalSigma;
+  if (variances.size() >= sampled / 4 && !variances.empty()) {
+    const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
+    std::nth_element(variances.begin(), middle, variances.end());
+    summary.residual_sigma = std::sqrt(std::max(*middle, 1e-8));
+  }
+  for (auto& worker : workers_) worker->search.SetNoise(summary.residual_sigma);
+  weights_ = HoldToStart(options_.prior, summary.residual_sigma, summary.information, {});
+}
+
+TexelSolution Refiner::Current(size_t texel, const TexelPrior& prior, Worker* worker) {
+  TexelSolution solution;
+  solution.values = ReadTexel(result_.maps, texel);
+  solution.cost = worker->search.solver().Cost(worker->observations, prior, solution.values);
+  solution.converged = (origin_[texel] & kConverged) != 0;
+  return solution;
+}
+
+void Refiner::Keep(size_t texel, const TexelSolution& solution) {
+  WriteTexel(solution.values, texel, &result_.maps);
+  origin_[texel] = static_cast<unsigned char>((origin_[texel] & ~kConverged) |
+                                              (solution.converged ? kConverged : 0));
+}
+
+void Refiner::SolveFromStarts() {
+  ForEachTexel([&](size_t texel, Worker* worker) {
+    GatherObservations(problem_, texel, &worker->observations);
+    if (worker->observations.views() == 0) {
+      origin_[texel] = kConverged;  // nothing to learn: the start stays
+      return;
+    }
+    const TexelValues start = ReadTexel(start_, texel);
+    const TexelPrior prior(weights_, start);
+    const TexelSearch::Found found =
+        worker->search.FromStart(worker->observations, prior, weights_, start);
+    if (found.other_start) origin_[texel] |= kOtherStart;
+    Keep(texel, found.solution);
+  });
+}
+
+// One colour of the checkerboard: the neighbours of a texel all have the other, and stand still.
+void Refiner::SolveFromNeighbours(int colour) {
+  const int width = start_.width, height = start_.height;
+  ForEachTexel([&](size_t texel, Worker* worker) {
+    const int column = static_cast<int>(texel % width), row = static_cast<int>(texel / width);
+    if ((row + column) % 2 != colour) return;
+    GatherObservations(problem_, texel, &worker->observations);
+    if (worker->observations.views() == 0) return;
+    std::array<TexelValues, 4> neighbours;
+    size_t count = 0;
+    const auto add = [&](int r, int c) {
+      if (r < 0 || r >= height || c < 0 || c >= width) return;
+      neighbours[count++] = ReadTexel(result_.maps, static_cast<size_t>(r) * width + c);
+    };
+    add(row - 1, column);
+    add(row, column - 1);
+    add(row, column + 1);
+    add(row + 1, column);
+    const TexelPrior prior(weights_, ReadTexel(start_, texel));
+    const TexelSolution current = Current(texel, prior, worker);
+    const TexelSearch::Found found = worker->search.FromNeighbours(
+        worker->observations, prior, weights_, current, std::span(neighbours).first(count));
+    if (!found.other_start) return;
+    origin_[texel] |= kNeighbour;
+    Keep(texel, found.solution);
+  });
+}
+
+void Refiner::Conclude() {
+  const size_t texels = start_.texels();
+  const size_t views = problem_.views.size();
+  // Sums by piece, added in the pieces' order.
+  const size_t pieces = (texels + kTexelsPerPiece - 1) / kTexelsPerPiece;
+  const size_t columns = 2 + 2 * views;
+  std::vector<double> sums(pieces * columns, 0.0);
+  ForEachTexel([&](size_t texel, Worker* worker) {
+    GatherObservations(problem_, texel, &worker->observations);
+    const TexelValues start = ReadTexel(start_, texel);
+    const TexelValues values = ReadTexel(result_.maps, texel);
+    const TexelPrior prior(weights_, start);
+    TexelGram gram;
+    worker->search.solver().Gram(worker->observations, prior, values, &gram);
+    const auto planes = TexelConfidence(gram, values, 3 * worker->observations.views(),
+                                        result_.summary.residual_sigma);
+    for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];
+
+    double* sum = &sums[texel / kTexelsPerPiece * columns];
+    sum[0] += worker->search.solver().Cost(worker->observations, prior, start);
+    sum[1] += 0.5 * gram[kTexelParameters][kTexelParameters];
+    EvaluateRows(kernel_, worker->observations, values, &worker->rows);
+    int row = 0;
+    for (size_t v = 0; v < views; ++v) {
+      if (!(problem_.views[v].mask[texel] >= 0.5f)) continue;
+      for (int c = 0; c < 3; ++c) {
+        sum[2 + v] += std::abs(LogResidual(worker->rows.row(c, KernelRows::kResidual)[row],
+                                           kernel_.robust_scale));
+      }
+      sum[2 + views + v] += 3.0;
+      ++row;
+    }
+  });
+  std::vector<double> total(columns, 0.0);
+  for (size_t i = 0; i < sums.size(); ++i) total[i % columns] += sums[i];
+  RefineSummary& summary = result_.summary;
+  summary.start_cost = total[0] / static_cast<double>(texels);
+  summary.final_cost = total[1] / static_cast<double>(texels);
+  summary.view_loss.assign(views, 0.0);
+  for (size_t v = 0; v < views; ++v) {
+    summary.view_loss[order_[v]] = total[2 + v] / total[2 + views + v];
+  }
+  const auto share = [&](unsigned char flag) {
+    const auto has = [flag](unsigned char o) { return (o & flag) != 0; };
+    return static_cast<double>(std::count_if(origin_.begin(), origin_.end(), has)) /
+           static_cast<double>(texels);
+  };
+  summary.converged = share(kConverged);
+  summary.other_start = share(kOtherStart);
+  summary.neighbour = share(kNeighbour);
+}
+
+RefineResult Refiner::Run() {
+  EstimateNoise();
+  SolveFromStarts();
+  for (int pass = 0; pass < options_.neighbour_passes; ++pass) {
+    SolveFromNeighbours(0);
+    SolveFromNeighbours(1);
+  }
+  Conclude();
+  return std::move(result_);
+}
+
+}  // namespace
+
+std::string RefineOptions::Check() const {
+  if (iterations < 1) return "iterations must be at least 1";
+  if (starts < 1) return "starts must be at least 1";
+  if (neighbour_passes < 0) return "neighbour passes must be at least 0";
+  if (!(prior >= 0.0)) return "the prior's weight must be at least 0";
+  if (!(robust_scale > 0.0)) return "the robust scale must be above 0";
+  return "";
+}
+
+std::string RefineSummary::BriefReport() const {
+  std::ostringstream text;
+  text.precision(4);
+  text << "cost " << start_cost << " -> " << final_cost << " per texel, " << 100.0 * converged
+       << " % converged, residual sigma " << residual_sigma << ", " << information
+       << " distinct views, " << 100.0 * other_start << " % from another start, "
+       << 100.0 * neighbour << " % from a neighbour";
+  return text.str();
+}
+
+RefineResult Refine(const RefineProblem& problem, const SvbrdfMaps& start,
+                    const RefineOptions& options, int threads,
+                    const std::function<void(std::int64_t, std::int64_t)>& progress) {
+  const std::string wrong = options.Check();
+  if (!wrong.empty()) throw std::invalid_argument("refine: " + wrong);
+  CheckProblem(problem, start);
+  return Refiner(problem, start, options, threads, progress).Run();
+}
+
+}  // namespace glint

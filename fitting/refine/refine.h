@@ -1,0 +1,94 @@
+// Refinement: every texel's reflectance fitted to its own observations, held to where it started.
+//
+// Per texel: min over x of  Σ ρ(log(R(x) + 0.01) − log(I + 0.01)) + prior(x − start).
+// What a photograph cannot tell (one photograph has three numbers for nine unknowns) stays with the
+// start, usually the result of latent fitting; what the photographs tell together replaces it.
+//   1. A sample of texels is solved with a weak prior; what remains tells how well photographs and
+//      model agree at all, and so how much the start is worth against them (refine_prior.h).
+//   2. Every texel is solved from its start, and from the roughness that a search proposes, with
+//      albedos fitted to it: too rough with too little specular is a minimum of its own
+//      (Gao et al. 2019, Fig. 16) that more photographs do not cure.
+//   3. Every texel tries the solutions of its neighbours, in checkerboard order.
+//   4. Standard deviations from the final normal equations.
+// Texels are independent within a step, so the result does not depend on the number of threads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fitting/reflectance/convention.h"
+#include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/reflectance/view.h"
+
+namespace glint {
+
+// One photograph of the problem. The spans belong to the caller.
+struct RefineView {
+  View view;
+  bool ldr = true;                // radiance ≥ 1 means "at least 1"
+  std::span<const float> rgb;     // planar, 3·H·W, linear
+  std::span<const float> mask;    // H·W; texels of less than ½ are left out
+};
+
+struct RefineProblem {
+  SamplePlane plane;
+  ReflectanceConvention convention;
+  std::vector<RefineView> views;
+};
+
+struct RefineOptions {
+  int iterations = 40;         // most Levenberg–Marquardt steps of one solve
+  int starts = 2;              // solves per texel: 1: the start alone; more: so many roughnesses
+  int neighbour_passes = 2;    // how often a texel tries its neighbours' solutions
+  double prior = 1.0;          // factor on the prior's weight; 0: none
+  double robust_scale = 0.1;   // residuals (log units) beyond it count linearly
+
+  // Empty: all is well; otherwise what is wrong.
+  std::string Check() const;
+};
+
+// Standard deviations, H×W each, in the maps' units.
+enum ConfidencePlane : int {
+  kSigmaNormalX,
+  kSigmaNormalY,
+  kSigmaDiffuseR,
+  kSigmaDiffuseG,
+  kSigmaDiffuseB,
+  kSigmaSpecularR,
+  kSigmaSpecularG,
+  kSigmaSpecularB,
+  kSigmaRoughness,
+  kTexelCost,  // half the sum of squared residuals
+  kConfidencePlanes
+};
+
+struct RefineSummary {
+  double start_cost = 0;  // means over texels
+  double final_cost = 0;
+  double residual_sigma = 0;         // noise found in the photographs, log units
+  double information = 0;            // what the prior's weight was divided by (refine_prior.h)
+  double converged = 0;              // share of texels
+  double other_start = 0;            // share of texels whose solution came from another start …
+  double neighbour = 0;              // … or from a neighbour
+  std::vector<double> view_loss;     // per view: mean |log(I + 0.01) − log(R + 0.01)|, NaN: masked
+
+  std::string BriefReport() const;
+};
+
+struct RefineResult {
+  SvbrdfMaps maps;
+  std::vector<float> confidence;  // kConfidencePlanes planes of H·W
+  RefineSummary summary;
+};
+
+// `start` has the plane's size. `progress` (may be empty) is called with texels done so far and all
+// texel visits to come, from one thread at a time.
+// Throws std::invalid_argument when sizes do not fit, values are not finite or an option is wrong.
+RefineResult Refine(const RefineProblem& problem, const SvbrdfMaps& start,
+                    const RefineOptions& options, int threads,
+                    const std::function<void(std::int64_t done, std::int64_t total)>& progress = {});
+
+}  // namespace glint

@@ -1,0 +1,67 @@
+#include "fitting/refine/texel_cost.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fitting/refine/texel_parameters.h"
+
+namespace glint {
+
+void FactorGram(const TexelGram& gram, TexelGram* factor) {
+  constexpr double kRankTolerance = 1e-14;
+  TexelGram& f = *factor;
+  f = gram;
+  for (int k = 0; k < kGramSize; ++k) {
+    const double pivot = f[k][k];
+    if (!(pivot > kRankTolerance * gram[k][k])) {
+      // The last pivot is the squared residual that no step can remove: zero at an exact fit.
+      for (int j = k; j < kGramSize; ++j) f[k][j] = 0.0;
+      continue;
+    }
+    const double root = std::sqrt(pivot);
+    const double inverse = 1.0 / root;
+    f[k][k] = root;
+    for (int j = k + 1; j < kGramSize; ++j) f[k][j] *= inverse;
+    for (int i = k + 1; i < kGramSize; ++i) {
+      const double across = f[k][i];
+      if (across == 0.0) continue;  // between the albedos of two channels
+      for (int j = i; j < kGramSize; ++j) f[i][j] -= across * f[k][j];
+    }
+  }
+}
+
+void TexelCost::Evaluate(const double* variables) const {
+  if (evaluated_valid_ && std::equal(evaluated_.begin(), evaluated_.end(), variables)) return;
+  TexelValues values, derivatives;
+  ToTexelValues(variables, &values, &derivatives);
+  EvaluateGram(options_, observations_, values, rows_, &gram_);
+  prior_.AddTo(values, &gram_);
+  for (int i = 0; i < kTexelParameters; ++i) {
+    if (derivatives[i] == 1.0) continue;
+    for (int j = 0; j < kGramSize; ++j) {
+      gram_[i][j] *= derivatives[i];
+      gram_[j][i] *= derivatives[i];
+    }
+  }
+  std::copy(variables, variables + kTexelParameters, evaluated_.begin());
+  evaluated_valid_ = true;
+}
+
+bool TexelCost::operator()(const double* variables, double* residuals, double* jacobian) const {
+  Evaluate(variables);
+  if (jacobian == nullptr) {  // only the norm is asked for
+    std::fill(residuals, residuals + kGramSize, 0.0);
+    residuals[0] = std::sqrt(gram_[kTexelParameters][kTexelParameters]);
+    return true;
+  }
+  TexelGram factor;
+  FactorGram(gram_, &factor);
+  for (int j = 0; j < kGramSize; ++j) {
+    double* column = j < kTexelParameters ? jacobian + j * kGramSize : residuals;
+    for (int i = 0; i <= j; ++i) column[i] = factor[i][j];
+    for (int i = j + 1; i < kGramSize; ++i) column[i] = 0.0;
+  }
+  return true;
+}
+
+}  // namespace glint

@@ -1,0 +1,60 @@
+// More than one start per texel: the local minimum next to the start need not be the best.
+#pragma once
+
+#include <span>
+
+#include "fitting/refine/texel_solver.h"
+
+namespace glint {
+
+// Solver with memory for one thread; see texel_solver.h.
+class TexelSearch {
+ public:
+  TexelSearch(const KernelOptions& options, int most_iterations, int most_views, int starts);
+
+  // Squared residuals of a texel expected from noise alone, per residual. Solves end when they gain a
+  // hundredth of it, and texels that fit so well are not searched further.
+  void SetNoise(double residual_sigma);
+
+  struct Found {
+    TexelSolution solution;
+    bool other_start = false;  // it did not come from the start itself
+  };
+
+  // The best local minimum among those reached from `start` and from up to `starts − 1` other
+  // roughnesses, each with albedos fitted to it. Never costlier than `start`.
+  Found FromStart(const TexelObservations& observations, const TexelPrior& prior,
+                  const PriorWeights& weights, const TexelValues& start);
+
+  // The best of `current` and the minimum near the neighbour that promises least: its normal and
+  // roughness, or its roughness alone, with albedos fitted to this texel.
+  Found FromNeighbours(const TexelObservations& observations, const TexelPrior& prior,
+                       const PriorWeights& weights, const TexelSolution& current,
+                       std::span<const TexelValues> neighbours);
+
+  TexelSolver& solver() { return solver_; }
+
+ private:
+  struct Candidate {
+    TexelValues values;
+    AlbedoFit fit;
+  };
+  // `values` with albedos fitted to the texel.
+  Candidate WithFittedAlbedos(const TexelObservations& observations, const PriorWeights& weights,
+                              const TexelValues& values);
+  void TryRoughnesses(const TexelObservations& observations, const TexelPrior& prior,
+                      const PriorWeights& weights, Found* best);
+  bool TrySolve(const TexelObservations& observations, const TexelPrior& prior,
+                const TexelValues& from, TexelSolution* best);
+
+  KernelOptions options_;
+  // Whether the texel's cost leaves room for a better minimum.
+  bool Unexplained(const TexelObservations& observations, double cost) const;
+
+  int starts_;
+  double variance_ = 0.0;
+  TexelSolver solver_;
+  KernelRows rows_;
+};
+
+}  // namespace glint

@@ -1,0 +1,126 @@
+#include "fitting/refine/texel_solver.h"
+
+// The solver's products of 9×10 matrices: unrolled, rather than packed for a general product.
+#define EIGEN_GEMM_TO_COEFFBASED_THRESHOLD 32
+#include <ceres/tiny_solver.h>
+
+#include <cmath>
+
+#include "fitting/refine/texel_cost.h"
+#include "fitting/refine/texel_parameters.h"
+
+namespace glint {
+namespace {
+
+// Cholesky of the damped normal equations, keeping the zeros between channels. TinySolver's own
+// choice, a pivoting LDLT, costs more than all residuals of 20 views.
+class NormalCholesky {
+ public:
+  using Matrix = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
+  using Vector = Eigen::Matrix<double, kTexelParameters, 1>;
+
+  void compute(const Matrix& matrix) {
+    constexpr int n = kTexelParameters;
+    for (int i = 0; i < n; ++i) {
+      for (int j = i; j < n; ++j) factor_[i][j] = matrix(j, i);
+    }
+    for (int k = 0; k < n; ++k) {
+      // The damping keeps pivots positive; a NaN or a rounded-off pivot makes a step of NaN, which
+      // the solver rejects.
+      const double inverse = 1.0 / std::sqrt(factor_[k][k]);
+      inverse_[k] = inverse;
+      for (int j = k + 1; j < n; ++j) factor_[k][j] *= inverse;
+      for (int i = k + 1; i < n; ++i) {
+        const double across = factor_[k][i];
+        if (across == 0.0) continue;
+        for (int j = i; j < n; ++j) factor_[i][j] -= across * factor_[k][j];
+      }
+    }
+  }
+
+  Vector solve(const Vector& right) const {
+    constexpr int n = kTexelParameters;
+    Vector x = right;
+    for (int i = 0; i < n; ++i) {
+      x[i] *= inverse_[i];
+      for (int j = i + 1; j < n; ++j) x[j] -= factor_[i][j] * x[i];
+    }
+    for (int i = n - 1; i >= 0; --i) {
+      for (int j = i + 1; j < n; ++j) x[i] -= factor_[i][j] * x[j];
+      x[i] *= inverse_[i];
+    }
+    return x;
+  }
+
+ private:
+  double factor_[kTexelParameters][kTexelParameters];
+  double inverse_[kTexelParameters];
+};
+
+using Solver = ceres::TinySolver<TexelCost, NormalCholesky>;
+
+// Of a sum of squared logarithms: far below what 8 or 16 bit leave undetermined.
+constexpr double kSquaresTolerance = 1e-9;
+constexpr double kStepTolerance = 1e-6;
+// Full Gauss–Newton steps from a rough start throw texels into corners that hold them (no specular
+// at all; the smoothest lobe): with TinySolver's radius of 1e4 a third of texels ended in one, with 1
+// a twentieth (20 views), in no more steps.
+constexpr double kFirstRadius = 1.0;
+
+}  // namespace
+
+struct TexelSolver::State {
+  State(const KernelOptions& options_in, int most_iterations, int most_views)
+      : options(options_in), rows(most_views) {
+    solver.options.max_num_iterations = most_iterations;
+    solver.options.function_tolerance = kSquaresTolerance;
+    solver.options.parameter_tolerance = kStepTolerance;
+    solver.options.gradient_tolerance = 1e-10;
+    solver.options.cost_threshold = 1e-14;
+    solver.options.initial_trust_region_radius = kFirstRadius;
+  }
+
+  EIGEN_MAKE_ALIGNED_OPERATOR_NEW
+  KernelOptions options;
+  KernelRows rows;
+  Solver solver;
+};
+
+TexelSolver::TexelSolver(const KernelOptions& options, int most_iterations, int most_views)
+    : state_(std::make_unique<State>(options, most_iterations, most_views)) {}
+
+TexelSolver::~TexelSolver() = default;
+
+void TexelSolver::SetTolerance(double squares) {
+  state_->solver.options.function_tolerance = squares;
+}
+
+double TexelSolver::Cost(const TexelObservations& observations, const TexelPrior& prior,
+                         const TexelValues& texel) {
+  TexelGram gram;
+  EvaluateGram(state_->options, observations, texel, &state_->rows, &gram);
+  return 0.5 * (gram[kTexelParameters][kTexelParameters] + prior.SquaredNorm(texel));
+}
+
+void TexelSolver::Gram(const TexelObservations& observations, const TexelPrior& prior,
+                       const TexelValues& texel, TexelGram* gram) {
+  EvaluateGram(state_->options, observations, texel, &state_->rows, gram);
+  prior.AddTo(texel, gram);
+}
+
+TexelSolution TexelSolver::Solve(const TexelObservations& observations, const TexelPrior& prior,
+                                 const TexelValues& start) {
+  const TexelCost cost(state_->options, observations, prior, &state_->rows);
+  Solver::Parameters variables;
+  ToVariables(start, variables.data());
+  const Solver::Summary& summary = state_->solver.Solve(cost, &variables);
+  TexelSolution solution;
+  TexelValues derivatives;
+  ToTexelValues(variables.data(), &solution.values, &derivatives);
+  solution.cost = summary.final_cost;
+  solution.iterations = summary.iterations;
+  solution.converged = summary.status != Solver::HIT_MAX_ITERATIONS;
+  return solution;
+}
+
+}  // namespace glint

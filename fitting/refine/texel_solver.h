@@ -1,0 +1,42 @@
+// Least squares of one texel: ceres::TinySolver on the variables of texel_parameters.h.
+#pragma once
+
+#include <memory>
+
+#include "fitting/refine/texel_kernel.h"
+#include "fitting/refine/texel_prior.h"
+
+namespace glint {
+
+struct TexelSolution {
+  TexelValues values{};
+  double cost = 0;  // half the sum of squared residuals, prior included
+  int iterations = 0;
+  bool converged = false;
+};
+
+// Everything one thread needs to solve texel after texel without allocating.
+class TexelSolver {
+ public:
+  TexelSolver(const KernelOptions& options, int most_iterations, int most_views);
+
+  // A step that lowers the sum of squared residuals by less ends a solve.
+  void SetTolerance(double squares);
+  ~TexelSolver();
+
+  // Cost of `texel` as it is.
+  double Cost(const TexelObservations& observations, const TexelPrior& prior,
+              const TexelValues& texel);
+  // The local minimum that Levenberg–Marquardt reaches from `start`; never costlier than `start`.
+  TexelSolution Solve(const TexelObservations& observations, const TexelPrior& prior,
+                      const TexelValues& start);
+  // [J f]ᵀ[J f] by the physical values, prior included.
+  void Gram(const TexelObservations& observations, const TexelPrior& prior,
+            const TexelValues& texel, TexelGram* gram);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace glint
