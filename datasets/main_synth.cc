@@ -128,12 +128,12 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
                     "tone curve of 8-bit photographs");
   options.AddRange("resolution", &capture.resolution_px, 8, 8192,
                    "resolution_px that capture.toml asks for");
-  options.Add("force", &capture.overwrite, "replace a capture that is there");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     if (distance_mm.size() != 2) {
       throw UserError("distance-mm: give two numbers, as in 270,330");
     }
     plan.seed = common.seed;
+    capture.overwrite = common.force;
     plan.nearest_mm = distance_mm[0];
     plan.farthest_mm = distance_mm[1];
     plan.flash_offset_mm = Triple(flash_mm, "flash-offset-mm");

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "datasets/evaluation/subprocess.h"
 #include "datasets/evaluation/view_error.h"
@@ -57,11 +59,11 @@ class Experiment {
   Table1Row Evaluate(const std::string& method, bool* kept) {
     const fs::path file = folder_ / (method + ".json");
     const Json settings = Settings(method);
-    if (*kept = fs::exists(file); *kept) {
-      const Json json = Json::parse(ReadTextFile(file), nullptr, false);
-      *kept = json.is_object() && json.value("settings", Json()) == settings;
-      if (*kept) return RowOf(file, RequireField(file, json, "", "errors"));
+    if (const auto row = Kept(file, settings)) {
+      *kept = true;
+      return *row;
     }
+    *kept = false;
     const FitResult result = ReadFitResult(Run(method));
     const Table1Row row =
         EvaluateMaps(ToUnitWeight(result.maps, result.convention), material_.maps, common_.threads);
@@ -71,6 +73,13 @@ class Experiment {
   }
 
  private:
+  std::optional<Table1Row> Kept(const fs::path& file, const Json& settings) const {
+    if (common_.force || !fs::exists(file)) return std::nullopt;
+    const Json json = Json::parse(ReadTextFile(file), nullptr, false);
+    if (!json.is_object() || json.value("settings", Json()) != settings) return std::nullopt;
+    return RowOf(file, RequireField(file, json, "", "errors"));
+  }
+
   Json Settings(const std::string& method) const {
     Json settings = {{"method", method},
                      {"size", options_.size},
@@ -101,6 +110,7 @@ class Experiment {
     argv.insert(argv.end(), first.begin(), first.end());
     argv.insert(argv.end(), {"--threads", std::to_string(common_.threads), "--seed",
                              std::to_string(common_.seed)});
+    if (common_.force) argv.push_back("--force");
     argv.insert(argv.end(), more.begin(), more.end());
     RunToLog(argv, folder_ / (capture.filename().string() + ".log"));
   }

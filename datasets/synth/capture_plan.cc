@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "datasets/procedural/random.h"
 #include "pipeline/contract/errors.h"
@@ -65,20 +66,26 @@ struct DrawnPose {
   double roll;
 };
 
+// Range of tilts of a photo: about none in the first, then in turn small ones, which put the
+// flash's reflection on the sample, and large ones, which tie down focal length and diffuse colour.
+std::pair<double, double> TiltRange_deg(int index, double largest) {
+  if (index == 0) return {0.0, std::min(2.0, largest)};
+  const double middle = std::min(15.0, largest);
+  return index % 2 == 0 ? std::pair{std::min(4.0, largest), middle} : std::pair{middle, largest};
+}
+
 DrawnPose DrawPose(const CapturePlanOptions& options, int index, double first_azimuth, Rng& rng) {
-  const bool top_view = index == 0;
+  const auto [low, high] = TiltRange_deg(index, options.largest_tilt_deg);
   const double azimuth = first_azimuth + index * kGoldenAngle + 0.3 * (2.0 * rng.Unit() - 1.0);
-  const double low = std::min(10.0, options.largest_tilt_deg);
-  const double tilt = kDegree * (top_view ? std::min(2.0, low) * rng.Unit()
-                                          : low + (options.largest_tilt_deg - low) * rng.Unit());
-  const double jitter_mm = (top_view ? 0.03 : 0.08) * options.sample_mm;
+  const double tilt = kDegree * (low + (high - low) * rng.Unit());
+  const double jitter_mm = (index == 0 ? 0.03 : 0.08) * options.sample_mm;
   DrawnPose pose;
   pose.direction = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
                     std::cos(tilt)};
   pose.distance_mm = options.nearest_mm + (options.farthest_mm - options.nearest_mm) * rng.Unit();
   pose.target_mm.x() = jitter_mm * (2.0 * rng.Unit() - 1.0);
   pose.target_mm.y() = jitter_mm * (2.0 * rng.Unit() - 1.0);
-  pose.roll = kDegree * (top_view ? 3.0 : 12.0) * (2.0 * rng.Unit() - 1.0);
+  pose.roll = kDegree * (index == 0 ? 3.0 : 12.0) * (2.0 * rng.Unit() - 1.0);
   return pose;
 }
 

@@ -1,7 +1,7 @@
 // Renders the photographs of a planned capture as linear radiance, anti-aliased.
 //
 // What a pixel sees is the average over its footprint. Inside the sample it is averaged over a grid
-// of shaded points no farther apart than a texel of the maps (bilinear between texels), so neither
+// of shaded points half a texel of the maps apart (bilinear between texels), so neither
 // relief nor highlights alias; the sheet is flat paper and ink, so a pixel is subdivided only where
 // an edge passes through it.
 #pragma once

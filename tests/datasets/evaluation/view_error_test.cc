@@ -1,0 +1,111 @@
+#include "datasets/evaluation/view_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "datasets/procedural/material.h"
+#include "datasets/synth/view_set.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
+#include "pipeline/contract/hash.h"
+#include "pipeline/contract/svbrdf_file.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+RectifiedImage Constant(float value, int width = 4, int height = 3) {
+  const size_t texels = static_cast<size_t>(width) * height;
+  return {width, height, std::vector<float>(3 * texels, value), std::vector<float>(texels, 1.0f)};
+}
+
+TEST(CompareView, KnownDifference) {
+  const ViewError error = CompareView(Constant(0.3f).rgb, Constant(0.5f), true);
+  EXPECT_NEAR(error.mse, 0.04, 1e-7);
+  EXPECT_NEAR(error.rmse, 0.2, 1e-7);
+  EXPECT_NEAR(error.log_l1, std::log(0.51 / 0.31), 1e-6);
+  EXPECT_EQ(error.texels, 12u);
+}
+
+TEST(CompareView, ClipsForLdrOnly) {
+  EXPECT_EQ(CompareView(Constant(3).rgb, Constant(1), true).mse, 0);
+  EXPECT_NEAR(CompareView(Constant(3).rgb, Constant(1), false).mse, 4, 1e-6);
+}
+
+TEST(CompareView, MaskedTexelsDoNotCount) {
+  RectifiedImage photograph = Constant(0.5f);
+  std::vector<float> rendered = photograph.rgb;
+  photograph.mask[5] = 0;
+  for (size_t c = 0; c < 3; ++c) rendered[c * 12 + 5] = 100;
+  EXPECT_EQ(CompareView(rendered, photograph, false).mse, 0);
+  EXPECT_EQ(CompareView(rendered, photograph, false).texels, 11u);
+  for (float& m : photograph.mask) m = 0;
+  EXPECT_EQ(CompareView(rendered, photograph, false).texels, 0u);
+}
+
+TEST(CompareView, SizesMustAgree) {
+  EXPECT_THROW(CompareView(Constant(1, 2, 2).rgb, Constant(1), true), std::invalid_argument);
+}
+
+class FitResultTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    options_.count = 2;
+    options_.bits = "float";
+    options_.rule = "photo";
+    common_.threads = 1;
+    WriteViewSet(capture(), material_, options_, common_);
+    set_ = ReadRectifiedSet(capture() / "glint/rectify/manifest.json");
+  }
+  fs::path capture() const { return folder_.path() / "capture"; }
+
+  // What fit would leave behind: maps and the scale of the light.
+  fs::path WriteFit(const std::string& stage, const Json& data) {
+    const fs::path fit = folder_.path() / stage;
+    fs::create_directories(fit);
+    WriteSvbrdf(fit / "svbrdf.exr", material_.maps, set_.convention);
+    Manifest manifest;
+    manifest.stage = stage;
+    manifest.outputs = {{"svbrdf.exr", HashFile(fit / "svbrdf.exr"), 0, 0, {}}};
+    manifest.data = data;
+    WriteFileAtomically(fit / "manifest.json", ToJson(manifest).dump());
+    return fit;
+  }
+  ViewError ErrorOf(const FitResult& fit) const {
+    return CompareView(RenderFit(fit, set_, set_.views[1], 1),
+                       ReadRectifiedImage(set_, set_.views[1]), false);
+  }
+
+  test::TemporaryFolder folder_;
+  const MaterialSource material_{"m", MakeMaterial(77, 24, 24)};
+  ViewSetOptions options_;
+  CommonOptions common_;
+  RectifiedSet set_;
+};
+
+TEST_F(FitResultTest, TrueMapsReRenderTheViewsExactly) {
+  EXPECT_EQ(ErrorOf(ReadFitResult(capture() / "truth/svbrdf.exr")).mse, 0);
+  EXPECT_EQ(ErrorOf(ReadFitResult(WriteFit("fit", Json::object()))).mse, 0);
+}
+
+TEST_F(FitResultTest, LightScaleMultipliesTheRendering) {
+  const FitResult fit = ReadFitResult(WriteFit("refine", {{"light_scale_rgb", {2, 2, 2}}}));
+  const auto doubled = RenderFit(fit, set_, set_.views[0], 1);
+  const auto image = ReadRectifiedImage(set_, set_.views[0]);
+  for (size_t i = 0; i < doubled.size(); ++i) {
+    ASSERT_NEAR(doubled[i], 2 * image.rgb[i], 1e-5 * (1 + image.rgb[i]));
+  }
+}
+
+TEST_F(FitResultTest, OtherStagesAndBrokenScalesAreUserErrors) {
+  EXPECT_THROW(ReadFitResult(capture() / "glint/rectify"), UserError);
+  EXPECT_THROW(ReadFitResult(WriteFit("fit", {{"light_scale_rgb", "bright"}})), UserError);
+  EXPECT_THROW(ReadFitResult(folder_.path() / "nothing"), UserError);
+}
+
+}  // namespace
+}  // namespace glint
