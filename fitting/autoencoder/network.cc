@@ -138,7 +138,7 @@ Tensor AutoencoderNetwork::EncodeRaw(const Tensor& encoded, torch::Dtype compute
     if (i > 0) x = at::leaky_relu(x, kLeak);
     x = at::conv2d(x, AsType(encoder_weights[i], compute), encoder_biases[i].to(compute), 2, 1);
   }
-  return x.to(encoder_weights[0].scalar_type());
+  return x.to(encoded.scalar_type());
 }
 
 Tensor AutoencoderNetwork::NormaliseByBatch(const Tensor& raw, double momentum) {
@@ -158,7 +158,7 @@ Tensor AutoencoderNetwork::Decode(const Tensor& z, torch::Dtype compute) const {
     x = at::conv2d(x, AsType(decoder_weights[i], compute), decoder_biases[i].to(compute), 1, 1);
     x = Interleave::apply(x);
   }
-  return at::tanh(x.to(decoder_weights[0].scalar_type()));
+  return at::tanh(x.to(z.scalar_type()));
 }
 
 torch::Dtype FastComputeType() {

@@ -37,14 +37,14 @@ struct AutoencoderNetwork {
   std::vector<std::pair<std::string, torch::Tensor*>> State();
 
   // `encoded` [B, 9, H, W], H and W multiples of 32 → code [B, C, H/32, W/32] before normalisation.
-  // Convolutions run in `compute` (bfloat16 or the parameters' own type); result float32 (or double).
+  // Convolutions run in `compute`; result in the type of `encoded`.
   torch::Tensor EncodeRaw(const torch::Tensor& encoded, torch::Dtype compute) const;
 
   // Normalised by the batch's own statistics, which also move the running ones by `momentum`.
   torch::Tensor NormaliseByBatch(const torch::Tensor& raw, double momentum);
   torch::Tensor NormaliseByRunning(const torch::Tensor& raw) const;
 
-  // z [B, C, h, w] → encoded maps [B, 9, 32·h, 32·w] in [−1, 1].
+  // z [B, C, h, w] → encoded maps [B, 9, 32·h, 32·w] in [−1, 1], in z's type.
   torch::Tensor Decode(const torch::Tensor& z, torch::Dtype compute) const;
 };
 

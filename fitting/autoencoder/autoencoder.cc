@@ -1,0 +1,188 @@
+#include "fitting/autoencoder/autoencoder.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "fitting/autoencoder/network.h"
+#include "fitting/autoencoder/train_state.h"
+
+namespace glint {
+namespace {
+
+using torch::Tensor;
+
+int Cells(int texels) { return (texels + kDownsampling - 1) / kDownsampling; }
+
+// Index into n texels of position i ≥ 0 when the texels go on as in a mirror: 0 1 2 1 0 1 2 …
+int Reflected(int i, int n) {
+  if (n == 1) return 0;
+  const int period = 2 * (n - 1);
+  const int k = i % period;
+  return k < n ? k : period - k;
+}
+
+Tensor PaddedTensor(const EncodedMaps& maps) {
+  const int height = Cells(maps.height) * kDownsampling, width = Cells(maps.width) * kDownsampling;
+  Tensor padded = torch::empty({1, kEncodedChannels, height, width});
+  float* to = padded.data_ptr<float>();
+  for (int p = 0; p < kEncodedChannels; ++p) {
+    // A mirror turns a slope across it; the channel's own sign is enough, its place follows.
+    for (int row = 0; row < height; ++row) {
+      const bool mirrored_y = row >= maps.height && (row / std::max(1, maps.height - 1)) % 2 == 1;
+      const size_t source_row = static_cast<size_t>(Reflected(row, maps.height));
+      const float* from = maps.planes.data() + p * maps.texels() + source_row * maps.width;
+      for (int column = 0; column < width; ++column) {
+        const bool mirrored_x =
+            column >= maps.width && (column / std::max(1, maps.width - 1)) % 2 == 1;
+        const bool turned = (p == kEncodedNormal && mirrored_x) ||
+                            (p == kEncodedNormal + 1 && mirrored_y);
+        const float value = from[Reflected(column, maps.width)];
+        *to++ = turned ? -value : value;
+      }
+    }
+  }
+  return padded;
+}
+
+EncodedMaps Cropped(const Tensor& decoded, int width, int height) {
+  EncodedMaps maps(width, height);
+  const Tensor all = decoded.contiguous();
+  const int64_t full_height = all.size(2), full_width = all.size(3);
+  const float* from = all.data_ptr<float>();
+  float* to = maps.planes.data();
+  for (int p = 0; p < kEncodedChannels; ++p) {
+    for (int row = 0; row < height; ++row, to += width) {
+      std::copy_n(from + (p * full_height + row) * full_width, width, to);
+    }
+  }
+  return maps;
+}
+
+Tensor CodeTensor(const LatentCode& code) {
+  Tensor z = torch::empty({1, code.channels, code.height, code.width});
+  std::copy(code.values.begin(), code.values.end(), z.data_ptr<float>());
+  return z;
+}
+
+void CheckCode(const LatentCode& code, int channels, int width, int height) {
+  const size_t values = static_cast<size_t>(code.channels) * code.height * code.width;
+  if (code.channels != channels || code.values.size() != values || width < 1 || height < 1 ||
+      width > code.width * kDownsampling || height > code.height * kDownsampling) {
+    throw std::invalid_argument("Autoencoder: the latent code does not fit the network or the size");
+  }
+}
+
+}  // namespace
+
+struct Autoencoder::Impl {
+  AutoencoderNetwork network;
+};
+
+Autoencoder::Autoencoder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Autoencoder::~Autoencoder() = default;
+Autoencoder::Autoencoder(Autoencoder&&) noexcept = default;
+Autoencoder& Autoencoder::operator=(Autoencoder&&) noexcept = default;
+
+Autoencoder Autoencoder::Load(const std::filesystem::path& weights) {
+  return Autoencoder(std::make_unique<Impl>(Impl{LoadNetwork(weights)}));
+}
+
+Autoencoder Autoencoder::Random(const std::array<int, 5>& channels, std::uint64_t seed) {
+  return Autoencoder(std::make_unique<Impl>(Impl{AutoencoderNetwork::Random(channels, seed)}));
+}
+
+int Autoencoder::latent_channels() const { return impl_->network.channels[kLevels - 1]; }
+
+LatentCode Autoencoder::Encode(const SvbrdfMaps& maps, int threads) const {
+  if (maps.width < 1 || maps.height < 1) {
+    throw std::invalid_argument("Autoencoder: maps without texels");
+  }
+  torch::NoGradGuard no_gradient;
+  torch::set_num_threads(threads);
+  const Tensor raw = impl_->network.EncodeRaw(PaddedTensor(EncodeMaps(maps)), torch::kFloat32);
+  const Tensor z = impl_->network.NormaliseByRunning(raw).contiguous();
+  LatentCode code{static_cast<int>(z.size(1)), static_cast<int>(z.size(2)),
+                  static_cast<int>(z.size(3)), {}};
+  code.values.assign(z.data_ptr<float>(), z.data_ptr<float>() + z.numel());
+  return code;
+}
+
+EncodedMaps Autoencoder::Decode(const LatentCode& code, int width, int height, int threads) const {
+  CheckCode(code, latent_channels(), width, height);
+  torch::NoGradGuard no_gradient;
+  torch::set_num_threads(threads);
+  return Cropped(impl_->network.Decode(CodeTensor(code), torch::kFloat32), width, height);
+}
+
+struct Autoencoder::Tape::State {
+  AutoencoderNetwork network;  // its decoder in the type `compute`
+  torch::Dtype compute;
+  int threads;
+  Tensor z, decoded;
+};
+
+Autoencoder::Tape::Tape(const Autoencoder& network, bool fast, int threads)
+    : state_(std::make_unique<State>()) {
+  state_->network = network.impl_->network;
+  state_->compute = fast ? FastComputeType() : torch::kFloat32;
+  state_->threads = threads;
+  for (int i = 0; i < kLevels; ++i) {  // cast once, not at every decode
+    Tensor& weight = state_->network.decoder_weights[i];
+    weight = weight.to(state_->compute).contiguous(torch::MemoryFormat::ChannelsLast);
+    Tensor& bias = state_->network.decoder_biases[i];
+    bias = bias.to(state_->compute);
+  }
+}
+
+Autoencoder::Tape::~Tape() = default;
+
+EncodedMaps Autoencoder::Tape::Forward(const LatentCode& code, int width, int height) {
+  CheckCode(code, state_->network.channels[kLevels - 1], width, height);
+  torch::set_num_threads(state_->threads);
+  state_->z = CodeTensor(code).requires_grad_();
+  state_->decoded = state_->network.Decode(state_->z, state_->compute);
+  return Cropped(state_->decoded.detach(), width, height);
+}
+
+std::vector<float> Autoencoder::Tape::Backward(const EncodedMaps& gradient) {
+  if (!state_->decoded.defined()) throw std::logic_error("Tape::Backward before Forward");
+  Tensor full = torch::zeros_like(state_->decoded, torch::MemoryFormat::Contiguous);
+  const int64_t height = full.size(2), width = full.size(3);
+  const float* from = gradient.planes.data();
+  for (int p = 0; p < kEncodedChannels; ++p) {
+    for (int row = 0; row < gradient.height; ++row, from += gradient.width) {
+      std::copy_n(from, gradient.width, full.data_ptr<float>() + (p * height + row) * width);
+    }
+  }
+  const Tensor g = torch::autograd::grad({state_->decoded}, {state_->z}, {full})[0].contiguous();
+  state_->decoded.reset();
+  return {g.data_ptr<float>(), g.data_ptr<float>() + g.numel()};
+}
+
+std::filesystem::path FindModel(const std::string& name, const std::filesystem::path& given) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (!given.empty()) {
+    if (fs::exists(given, ignored)) return given;
+    throw std::runtime_error(given.string() + ": weights: found no such file; give the path of a " +
+                             name + " or leave the option out");
+  }
+  std::vector<fs::path> places;
+  if (const char* folder = std::getenv("GLINT_MODELS")) places.emplace_back(folder);
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  if (!program.empty()) {
+    places.push_back(program.parent_path().parent_path() / "share/glint/models");
+    places.push_back(program.parent_path().parent_path().parent_path() / "fitting/models");
+  }
+  places.emplace_back(GLINT_MODELS_SOURCE_DIR);
+  std::string looked;
+  for (const fs::path& place : places) {
+    if (fs::exists(place / name, ignored)) return place / name;
+    looked += (looked.empty() ? "" : ", ") + place.string();
+  }
+  throw std::runtime_error(name + ": weights: found in none of " + looked +
+                           "; set GLINT_MODELS to the folder that holds it");
+}
+
+}  // namespace glint

@@ -1,0 +1,75 @@
+// The trained auto-encoder as the rest of Glint uses it: maps to a code, a code to maps, and the
+// gradient back to the code. No torch in this header.
+//
+// Source: Gao et al. 2019 (DIR), Fig. 3. Codes live on a grid 32 times coarser than the maps.
+// Results are the same bits for any number of threads (on one machine; bf16 needs the CPU's support).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fitting/autoencoder/encoding.h"
+#include "fitting/reflectance/svbrdf_maps.h"
+
+namespace glint {
+
+struct LatentCode {
+  int channels = 0;
+  int height = 0;  // of the grid: maps' height / 32, rounded up
+  int width = 0;
+  std::vector<float> values;  // [channels, height, width]; about N(0, 1) for codes of materials
+};
+
+class Autoencoder {
+ public:
+  // Reads weights written by glint-train. Throws std::runtime_error "FILE: PART: found …; MEND".
+  static Autoencoder Load(const std::filesystem::path& weights);
+  // Untrained, for tests.
+  static Autoencoder Random(const std::array<int, 5>& channels, std::uint64_t seed);
+
+  ~Autoencoder();
+  Autoencoder(Autoencoder&&) noexcept;
+  Autoencoder& operator=(Autoencoder&&) noexcept;
+
+  int latent_channels() const;
+
+  // Any size from 1×1; sizes that are not multiples of 32 are continued by reflection. float32.
+  LatentCode Encode(const SvbrdfMaps& maps, int threads) const;
+
+  // The top left width × height texels of the decoded maps. float32. Throws std::invalid_argument
+  // when the code is not of this network or its grid is too small.
+  EncodedMaps Decode(const LatentCode& code, int width, int height, int threads) const;
+
+  // A decode that can be differentiated; keeps its buffers between calls.
+  class Tape {
+   public:
+    // `fast`: multiplies in bf16 where the CPU does so natively. `network` must outlive the tape.
+    Tape(const Autoencoder& network, bool fast, int threads);
+    ~Tape();
+    EncodedMaps Forward(const LatentCode& code, int width, int height);
+    // ∂L/∂code of the last Forward from ∂L/∂encoded; in the code's layout.
+    std::vector<float> Backward(const EncodedMaps& gradient);
+
+   private:
+    struct State;
+    std::unique_ptr<State> state_;
+  };
+
+ private:
+  struct Impl;
+  explicit Autoencoder(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+// Where a trained file of fitting/models lies at run time. Looked for in this order: `given` (when not
+// empty), $GLINT_MODELS/NAME, ../share/glint/models and ../../fitting/models beside the running
+// program, the source tree of the build. Throws std::runtime_error that lists the places.
+std::filesystem::path FindModel(const std::string& name, const std::filesystem::path& given = {});
+
+inline constexpr char kAutoencoderModel[] = "autoencoder.safetensors";
+
+}  // namespace glint

@@ -1,0 +1,143 @@
+#include "fitting/bootstrap/photographs.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+namespace glint {
+namespace {
+
+// Where output texel i of n lies over m input texels, and the weights of those it covers.
+struct Footprint {
+  int first;
+  std::vector<double> weights;
+};
+
+std::vector<Footprint> Footprints(int input, int output) {
+  std::vector<Footprint> all(output);
+  for (int i = 0; i < output; ++i) {
+    const double begin = static_cast<double>(i) * input / output;
+    const double end = static_cast<double>(i + 1) * input / output;
+    Footprint& f = all[i];
+    f.first = static_cast<int>(begin);
+    for (int k = f.first; k < input && k < end; ++k) {
+      f.weights.push_back(std::min(end, k + 1.0) - std::max(begin, static_cast<double>(k)));
+    }
+  }
+  return all;
+}
+
+Photograph Downsample(const Photograph& from, const SamplePlane& big, int width, int height,
+                      int threads) {
+  const size_t texels = static_cast<size_t>(width) * height;
+  const size_t big_texels = static_cast<size_t>(big.width) * big.height;
+  Photograph to{from.view, from.ldr, std::vector<float>(3 * texels), std::vector<float>(texels)};
+  const std::vector<Footprint> across = Footprints(big.width, width);
+  const std::vector<Footprint> down = Footprints(big.height, height);
+  ParallelBlocks(height, 16, threads, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) {
+      for (int column = 0; column < width; ++column) {
+        double area = 0, usable = 0, sum[3] = {0, 0, 0};
+        for (size_t u = 0; u < down[row].weights.size(); ++u) {
+          for (size_t v = 0; v < across[column].weights.size(); ++v) {
+            const size_t i = (down[row].first + u) * big.width + across[column].first + v;
+            const double weight = down[row].weights[u] * across[column].weights[v];
+            const double used = weight * from.mask[i];
+            area += weight;
+            if (used <= 0) continue;
+            usable += used;
+            for (int c = 0; c < 3; ++c) sum[c] += used * from.rgb[c * big_texels + i];
+          }
+        }
+        const size_t o = static_cast<size_t>(row) * width + column;
+        to.mask[o] = static_cast<float>(usable / area);
+        for (int c = 0; c < 3; ++c) {
+          to.rgb[c * texels + o] = usable > 0 ? static_cast<float>(sum[c] / usable) : 0.0f;
+        }
+      }
+    }
+  });
+  return to;
+}
+
+std::string CheckPhotograph(const Photograph& p, size_t texels) {
+  if (p.rgb.size() != 3 * texels || p.mask.size() != texels) return "is not of the set's size";
+  bool usable = false;
+  for (size_t i = 0; i < texels; ++i) {
+    if (!(p.mask[i] >= 0.0f && p.mask[i] <= 1.0f)) return "has a mask value outside 0 to 1";
+    if (p.mask[i] == 0.0f) continue;
+    usable = true;
+    for (int c = 0; c < 3; ++c) {
+      if (!std::isfinite(p.rgb[c * texels + i])) return "has a usable value that is not finite";
+    }
+  }
+  return usable ? "" : "has no usable texel: its mask is 0 everywhere";
+}
+
+}  // namespace
+
+std::string PhotographSet::Check() const {
+  if (plane.width < 1 || plane.height < 1) return "the sample has no texels";
+  if (photographs.empty()) return "there is no photograph";
+  const size_t texels = static_cast<size_t>(plane.width) * plane.height;
+  std::string unusable;
+  size_t bad = 0;
+  for (size_t i = 0; i < photographs.size(); ++i) {
+    const std::string wrong = CheckPhotograph(photographs[i], texels);
+    if (wrong.empty()) continue;
+    const std::string named = "photograph " + std::to_string(i) + " " + wrong;
+    // A photograph that shows nothing is no harm as long as another does.
+    if (wrong.rfind("has no usable", 0) != 0) return named;
+    ++bad;
+    unusable = named;
+  }
+  return bad == photographs.size() ? unusable : "";
+}
+
+PhotographSet Downsampled(const PhotographSet& set, int width, int height, int threads) {
+  if (width < 1 || height < 1 || width > set.plane.width || height > set.plane.height) {
+    throw std::invalid_argument("Downsampled: the size must be from 1 to the set's");
+  }
+  if (width == set.plane.width && height == set.plane.height) return set;
+  PhotographSet small;
+  small.plane = set.plane;
+  small.plane.width = width;
+  small.plane.height = height;
+  small.convention = set.convention;
+  small.light_power_known = set.light_power_known;
+  for (const Photograph& p : set.photographs) {
+    small.photographs.push_back(Downsample(p, set.plane, width, height, threads));
+  }
+  return small;
+}
+
+void ParallelBlocks(int count, int block, int threads,
+                    const std::function<void(int begin, int end)>& body) {
+  const int blocks = (count + block - 1) / block;
+  if (threads <= 0) threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::atomic<int> next{0};
+  std::exception_ptr failure;
+  std::mutex mutex;
+  const auto work = [&] {
+    for (int b = next++; b < blocks; b = next++) {
+      try {
+        body(b * block, std::min(count, (b + 1) * block));
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+        next = blocks;
+      }
+    }
+  };
+  std::vector<std::thread> workers;
+  for (int t = 1; t < std::min(threads, blocks); ++t) workers.emplace_back(work);
+  work();
+  for (std::thread& worker : workers) worker.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace glint

@@ -1,0 +1,31 @@
+// The loss of maps against a set of photographs, LDR and HDR mixed, with a common light scale.
+#pragma once
+
+#include <vector>
+
+#include "fitting/autoencoder/encoding.h"
+#include "fitting/bootstrap/photographs.h"
+#include "fitting/reflectance/svbrdf_maps.h"
+
+namespace glint {
+
+struct FitLossValue {
+  double loss = 0;
+  EncodedMaps gradient;               // ∂loss/∂encoded maps
+  double log_light_scale_gradient = 0;
+  std::vector<double> view_loss;      // NaN where a photograph has no usable texel
+};
+
+class FitLoss {
+ public:
+  // `set` must outlive this.
+  FitLoss(const PhotographSet& set, int threads) : set_(set), threads_(threads) {}
+
+  FitLossValue Evaluate(const EncodedMaps& encoded, double light_scale, bool want_gradient) const;
+
+ private:
+  const PhotographSet& set_;
+  int threads_;
+};
+
+}  // namespace glint

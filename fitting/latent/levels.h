@@ -1,0 +1,20 @@
+// The pyramid of a coarse-to-fine fit.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "fitting/autoencoder/encoding.h"
+#include "fitting/reflectance/svbrdf_maps.h"
+
+namespace glint {
+
+// Sizes (width, height) from coarse to the full one; each is half the next, rounded up, and the
+// first has no side above `coarse_size` (if the full size allows).
+std::vector<std::pair<int, int>> LevelSizes(int width, int height, int coarse_size);
+
+// Encoded maps at another size: bilinear where larger, area average where smaller (slopes average
+// as they should; a normal's length plays no part).
+EncodedMaps Resized(const EncodedMaps& maps, int width, int height);
+
+}  // namespace glint
