@@ -16,7 +16,7 @@ int PrintHelp(std::FILE* stream, int code) {
       "Glint turns flash photographs of a flat material sample into relightable maps.\n\n"
       "Usage: glint VERB [ARGUMENTS]\n\nVerbs:\n",
       stream);
-  for (const Verb& verb : ListVerbs()) {
+  for (const ProgramVerb& verb : ListVerbs()) {
     std::fprintf(stream, "  %-9s %s\n", verb.name.c_str(), verb.summary.c_str());
   }
   std::fputs(

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array kPhotoExtensions = {".jpg",  ".jpeg", ".png", ".tif", ".tiff", ".exr",
                                          ".heic", ".dng",  ".nef", ".cr2", ".cr3",  ".arw"};
-constexpr int kFrameSquares = 2;        // squares left standing on each side of the default window
+constexpr double kFrameSquares = 3;     // squares left standing at each side of the default window
 constexpr double kSampleMargin_mm = 5;  // between the window's edge and the sample
 
 std::string Lower(std::string text) {
@@ -90,8 +90,14 @@ Board DescribedBoard(const InitOptions& options, std::vector<double>* window) {
   board.dictionary = options.dictionary;
   *window = options.window;
   if (window->empty() && !options.full_board) {
-    *window = {kFrameSquares, kFrameSquares, options.squares[0] - 2 * kFrameSquares,
-               options.squares[1] - 2 * kFrameSquares};
+    const double columns = options.squares[0] - 2 * kFrameSquares;
+    const double rows = std::min(columns, options.squares[1] - 2 * kFrameSquares);
+    if (columns < 1 || rows < 1) {
+      throw UserError(
+          "--squares: found a board too small for a window of its own; give --window, or "
+          "--full-board");
+    }
+    *window = {kFrameSquares, std::floor((options.squares[1] - rows) / 2), columns, rows};
   }
   if (!window->empty()) {
     RequireCount(*window, 4, "window", "FIRST_COLUMN,FIRST_ROW,COLUMNS,ROWS");
@@ -133,7 +139,7 @@ std::string BoardText(const InitOptions& options, const std::vector<double>& win
     text += "dictionary = \"" + options.dictionary + "\"\n";
   }
   if (window.empty()) {
-    text += "# window = [2, 2, 8, 8]          # first column, first row, columns, rows left out\n";
+    text += "# window = [3, 5, 7, 7]          # first column, first row, columns, rows left out\n";
   } else {
     text += "window = " + List(window) +
             "            # first column, first row, columns, rows left out for the sample\n";

@@ -10,11 +10,11 @@ namespace glint {
 struct InitOptions {
   std::filesystem::path folder = ".";
   std::string board = "charuco";  // or "checkerboard"
-  std::vector<double> squares = {12, 12};
+  std::vector<double> squares = {13, 17};
   double square_mm = 15;
   double marker_mm = 11;  // charuco only
   std::string dictionary = "DICT_5X5_1000";
-  std::vector<double> window;     // first column, first row, columns, rows; empty: see full_board
+  std::vector<double> window;     // first column, first row, columns, rows; empty: in the middle
   bool full_board = false;        // no window: the sample lies on or beside a whole board
   std::vector<double> sample_mm;  // width, height; empty: the window less a margin
   int resolution_px = 1024;

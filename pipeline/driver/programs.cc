@@ -90,8 +90,8 @@ fs::path RequireGlintProgram(const std::string& name) {
   return program;
 }
 
-std::vector<Verb> ListVerbs() {
-  std::vector<Verb> verbs;
+std::vector<ProgramVerb> ListVerbs() {
+  std::vector<ProgramVerb> verbs;
   std::set<std::string> others;
   for (const fs::path& folder : ProgramFolders()) {
     std::error_code error;
@@ -110,10 +110,10 @@ std::vector<Verb> ListVerbs() {
   return verbs;
 }
 
-std::string ClosestVerb(const std::string& mistyped, const std::vector<Verb>& verbs) {
+std::string ClosestVerb(const std::string& mistyped, const std::vector<ProgramVerb>& verbs) {
   std::string closest;
   size_t least = std::max<size_t>(1, mistyped.size() / 2) + 1;
-  for (const Verb& verb : verbs) {
+  for (const ProgramVerb& verb : verbs) {
     const size_t distance = EditDistance(mistyped, verb.name);
     if (distance >= least) continue;
     least = distance;

@@ -14,15 +14,15 @@ std::filesystem::path FindProgram(const std::string& name);
 // FindProgram ("glint-fit"). Throws EnvironmentError when missing.
 std::filesystem::path RequireGlintProgram(const std::string& name);
 
-struct Verb {
+struct ProgramVerb {
   std::string name;     // "fit"
   std::string summary;  // one line; empty for programs that Glint does not know
 };
 
 // Every verb whose program is there, Glint's own in the order of the work, others after them.
-std::vector<Verb> ListVerbs();
+std::vector<ProgramVerb> ListVerbs();
 
 // The verb of `verbs` closest in spelling; empty: none is close.
-std::string ClosestVerb(const std::string& mistyped, const std::vector<Verb>& verbs);
+std::string ClosestVerb(const std::string& mistyped, const std::vector<ProgramVerb>& verbs);
 
 }  // namespace glint

@@ -319,6 +319,7 @@ TEST_F(RunTest, InitDescribesWhatIsInTheFolderAndKeepsAnExistingFile) {
   EXPECT_THAT(text, HasSubstr("files = [\"photos/*.jpg\", \"photos/*.png\"]"));
   EXPECT_THAT(text, HasSubstr("photos = [\"board/*.jpg\"]"));
   EXPECT_THAT(text, HasSubstr("size_mm = [90, 80]"));
+  EXPECT_THAT(text, HasSubstr("window = [3, 5, 7, 7]"));
   const Outcome plan = Glint({"run", folder.string(), "--dry-run"});
   EXPECT_EQ(plan.code, 0) << plan.err;
   const Outcome second = Glint({"init", folder.string()});

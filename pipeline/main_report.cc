@@ -1,0 +1,47 @@
+// glint-report: one HTML page of the whole result.
+#include "pipeline/contract/capture.h"
+#include "pipeline/contract/files.h"
+#include "pipeline/contract/program.h"
+#include "pipeline/contract/stage.h"
+#include "pipeline/report/report.h"
+
+namespace {
+
+using namespace glint;
+
+ProgramResult WriteReport(const std::filesystem::path& folder, OptionSet* set,
+                          ReportOptions* options, const CommonOptions& common) {
+  const Capture capture = ReadCapture(folder);
+  set->LoadToml(capture.file, "report");
+  Stage stage(capture.work() / "report", {"report", kReportVersion}, *set, common,
+              ReportManifests(capture.work(), options->from));
+  const std::string page = (capture.work() / "report" / "index.html").string();
+  if (stage.UpToDate()) {
+    return {stage.UpToDateText(), {{"stage", "report"}, {"up_to_date", true}, {"page", page}}};
+  }
+  const ReportInput input = ReadReportInput(capture.work(), options->from);
+  const Report report = MakeReport(input, *options, common.threads);
+  WriteFileAtomically(stage.Output("index.html"), report.html);
+  stage.Commit(Json::object(), report.metrics);
+  return {
+      "report: " + page,
+      {{"stage", "report"}, {"up_to_date", false}, {"page", page}, {"metrics", report.metrics}}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::filesystem::path folder = ".";
+  ReportOptions options;
+  OptionSet set;
+  set.AddPositional("CAPTURE", &folder, "folder of the capture", false);
+  AddReportOptions(&set, &options);
+  return RunProgram(
+      argc, argv,
+      {"glint-report",
+       "Writes one HTML file with maps, photographs beside re-renderings, cameras, lights and the "
+       "figures of every stage.",
+       GLINT_VERSION, "Example: glint report wood --from fit"},
+      &set,
+      [&](const CommonOptions& common) { return WriteReport(folder, &set, &options, common); });
+}

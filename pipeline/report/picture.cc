@@ -1,0 +1,107 @@
+#include "pipeline/report/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/report/html.h"
+
+namespace glint {
+namespace {
+
+// 8 bit, BGR or grey.
+cv::Mat Bytes(const Image& image) {
+  const int channels = image.channels.size() >= 3 ? 3 : 1;
+  cv::Mat bytes(image.height, image.width, CV_8UC(channels));
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      for (int c = 0; c < channels; ++c) {
+        const float value = image.channel(
+            c)[static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x)];
+        const float clamped = std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f;
+        bytes.ptr<unsigned char>(y)[x * channels + (channels - 1 - c)] =
+            static_cast<unsigned char>(std::lround(255 * clamped));
+      }
+    }
+  }
+  return bytes;
+}
+
+std::string Encoded(const Image& image, const std::string& extension, const std::string& type,
+                    const std::vector<int>& parameters) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(extension, Bytes(image), bytes, parameters)) {
+    throw ComputationError("report: a picture cannot be encoded as " + type);
+  }
+  return "data:image/" + type + ";base64," +
+         Base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+}  // namespace
+
+Image Shrunk(const Image& image, int largest_side) {
+  const int side = std::max(image.width, image.height);
+  if (side <= largest_side) return image;
+  const auto scaled = [&](int length) {
+    return std::max(
+        1, static_cast<int>(std::lround(static_cast<double>(length) * largest_side / side)));
+  };
+  Image small(scaled(image.width), scaled(image.height), image.channels);
+  for (int c = 0; c < static_cast<int>(image.channels.size()); ++c) {
+    const cv::Mat from(image.height, image.width, CV_32F,
+                       const_cast<float*>(image.channel(c).data()));
+    cv::Mat to(small.height, small.width, CV_32F, small.channel(c).data());
+    cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);
+  }
+  return small;
+}
+
+std::string JpegUri(const Image& image, int quality) {
+  return Encoded(image, ".jpg", "jpeg", {cv::IMWRITE_JPEG_QUALITY, quality});
+}
+
+std::string PngUri(const Image& image) {
+  return Encoded(image, ".png", "png", {cv::IMWRITE_PNG_COMPRESSION, 9});
+}
+
+std::string ImageHtml(const std::string& uri, const std::string& alternative) {
+  return "<img src=\"" + uri + "\" alt=\"" + HtmlText(alternative) + "\">";
+}
+
+Image DisplayImage(std::span<const float> rgb_planar, int width, int height, float gain) {
+  Image image(width, height, {"R", "G", "B"});
+  std::transform(rgb_planar.begin(), rgb_planar.end(), image.samples.begin(),
+                 [gain](float v) { return std::pow(std::clamp(gain * v, 0.0f, 1.0f), 1 / 2.2f); });
+  return image;
+}
+
+Image ColorMapped(std::span<const float> values, int width, int height, float low, float high) {
+  // Nine points of viridis (matplotlib), linear between them.
+  constexpr std::array<std::array<float, 3>, 9> kViridis = {{{0.267f, 0.005f, 0.329f},
+                                                             {0.279f, 0.175f, 0.483f},
+                                                             {0.230f, 0.322f, 0.546f},
+                                                             {0.173f, 0.449f, 0.558f},
+                                                             {0.128f, 0.567f, 0.551f},
+                                                             {0.158f, 0.684f, 0.502f},
+                                                             {0.369f, 0.789f, 0.383f},
+                                                             {0.678f, 0.864f, 0.190f},
+                                                             {0.993f, 0.906f, 0.144f}}};
+  Image image(width, height, {"R", "G", "B"});
+  for (size_t i = 0; i < image.pixels(); ++i) {
+    const float share =
+        high > low ? std::clamp((values[i] - low) / (high - low), 0.0f, 1.0f) : 0.0f;
+    const float place = (std::isfinite(share) ? share : 0.0f) * (kViridis.size() - 1);
+    const size_t index = std::min(static_cast<size_t>(place), kViridis.size() - 2);
+    const float part = place - static_cast<float>(index);
+    for (size_t c = 0; c < 3; ++c) {
+      image.channel(static_cast<int>(c))[i] =
+          kViridis[index][c] + part * (kViridis[index + 1][c] - kViridis[index][c]);
+    }
+  }
+  return image;
+}
+
+}  // namespace glint

@@ -1,0 +1,81 @@
+#include "pipeline/report/report.h"
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/report/html.h"
+#include "pipeline/report/sections.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> StagesShown(const std::string& from) {
+  std::vector<std::string> stages = {"calib", "rectify", "fit"};
+  if (from == "refine") stages.push_back("refine");
+  return stages;
+}
+
+// Names of the views that the maps were fitted to; all of the set where the fit does not say.
+std::vector<std::string> UsedViews(const Manifest& manifest, const RectifiedSet& set) {
+  std::vector<std::string> names;
+  const auto found = manifest.data.find("views");
+  if (found != manifest.data.end() && found->is_array()) {
+    for (const Json& name : *found) {
+      if (name.is_string()) names.push_back(name.get<std::string>());
+    }
+    return names;
+  }
+  for (const RectifiedView& view : set.views) names.push_back(view.name);
+  return names;
+}
+
+}  // namespace
+
+void AddReportOptions(OptionSet* set, ReportOptions* options) {
+  set->AddChoice("from", &options->from, {"refine", "fit"}, "stage whose maps are shown");
+  set->AddRange("picture-px", &options->picture_px, 64, 4096,
+                "longest side of a map's picture; photographs have half of that");
+}
+
+std::vector<fs::path> ReportManifests(const fs::path& work, const std::string& from) {
+  std::vector<fs::path> files;
+  for (const std::string& stage : StagesShown(from)) {
+    const fs::path file = work / stage / "manifest.json";
+    if (fs::exists(file)) files.push_back(file);
+  }
+  return files;
+}
+
+ReportInput ReadReportInput(const fs::path& work, const std::string& from) {
+  ReportInput input;
+  input.work = work;
+  for (const std::string& stage : StagesShown(from)) {
+    const fs::path file = work / stage / "manifest.json";
+    const bool needed = stage == "rectify" || stage == from;
+    if (!needed && !fs::exists(file)) continue;
+    const Manifest manifest = ReadManifest(file, stage);
+    VerifyOutputs(file, manifest);
+    input.manifests.emplace(stage, manifest);
+  }
+  input.set = ReadRectifiedSet(work / "rectify" / "manifest.json");
+  input.fit = ReadFitResult(work / from / "manifest.json");
+  input.used_views = UsedViews(input.manifests.at(from), input.set);
+  return input;
+}
+
+Report MakeReport(const ReportInput& input, const ReportOptions& options, int threads) {
+  Report report;
+  report.metrics = Json::object();
+  const std::string views = ViewsSection(input, options, threads, &report.metrics);
+  std::string body = OverviewSection(input, report.metrics);
+  body += MapsSection(input, options);
+  body += views;
+  body += GeometrySection(input);
+  for (const std::string& stage : StagesShown(options.from)) {
+    if (input.Has(stage)) body += StageSection(input, stage);
+  }
+  report.html = HtmlPage("Glint: material report", body);
+  return report;
+}
+
+}  // namespace glint

@@ -1,0 +1,54 @@
+// One HTML file that shows a whole result: maps, photographs beside re-renderings, cameras, lights,
+// calibration residuals, loss curves, options. Everything is inside the file; nothing is loaded and
+// nothing runs. Every number carries the manifest and field it comes from (hover over it); those
+// that the report computes itself are in its own manifest.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "datasets/evaluation/view_error.h"
+#include "pipeline/contract/json.h"
+#include "pipeline/contract/manifest.h"
+#include "pipeline/contract/options.h"
+#include "pipeline/contract/rectified_set.h"
+
+namespace glint {
+
+inline constexpr int kReportVersion = 1;
+
+struct ReportOptions {
+  std::string from = "refine";  // stage whose maps are shown: refine, fit
+  int picture_px = 512;         // longest side of a map's picture; views have half of that
+};
+
+void AddReportOptions(OptionSet* set, ReportOptions* options);
+
+// What the stages left in a capture's glint/ folder.
+struct ReportInput {
+  std::filesystem::path work;                 // CAPTURE/glint
+  std::map<std::string, Manifest> manifests;  // by stage; those that are there, up to `from`
+  RectifiedSet set;
+  FitResult fit;
+  std::vector<std::string> used_views;  // by name: those that the maps were fitted to
+
+  bool Has(const std::string& stage) const { return manifests.count(stage) > 0; }
+};
+
+// Manifests of the stages that a report of `from` shows, in order; those absent are left out.
+std::vector<std::filesystem::path> ReportManifests(const std::filesystem::path& work,
+                                                   const std::string& from);
+
+// Throws UserError when rectify's or `from`'s result is missing or damaged.
+ReportInput ReadReportInput(const std::filesystem::path& work, const std::string& from);
+
+struct Report {
+  std::string html;
+  Json metrics;  // for the report's manifest: errors of the views
+};
+
+Report MakeReport(const ReportInput& input, const ReportOptions& options, int threads);
+
+}  // namespace glint

@@ -1,0 +1,272 @@
+#include "pipeline/report/sections.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/report/figure.h"
+#include "pipeline/report/html.h"
+#include "pipeline/report/metrics_html.h"
+#include "pipeline/report/picture.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kOwnManifest[] = "manifest.json";
+constexpr float kDifferenceGain = 4;
+constexpr int kStagePicture_px = 900;
+constexpr double kPi = 3.14159265358979323846;
+
+std::string ManifestLink(const std::string& stage) { return "../" + stage + "/manifest.json"; }
+
+std::string Section(const std::string& title, const std::string& source, const std::string& body) {
+  return "<section>\n" + (source.empty() ? "" : SourceLink(source)) + "<h2>" + HtmlText(title) +
+         "</h2>\n" + body + "</section>\n";
+}
+
+std::string Figure(const std::string& uri, const std::string& caption) {
+  return "<figure>" + ImageHtml(uri, caption) + "<figcaption>" + HtmlText(caption) +
+         "</figcaption></figure>\n";
+}
+
+Image MapImage(const SvbrdfMaps& maps, int first_plane, const std::string& kind) {
+  Image image(maps.width, maps.height, {"R", "G", "B"});
+  for (int c = 0; c < 3; ++c) {
+    const auto from = maps.plane(kind == "grey" ? first_plane : first_plane + c);
+    std::transform(from.begin(), from.end(), image.channel(c).begin(), [&kind](float v) {
+      if (kind == "normal") return 0.5f * v + 0.5f;
+      return kind == "color" ? std::pow(std::clamp(v, 0.0f, 1.0f), 1 / 2.2f) : v;
+    });
+  }
+  return image;
+}
+
+bool Used(const ReportInput& input, const RectifiedView& view) {
+  return std::find(input.used_views.begin(), input.used_views.end(), view.name) !=
+         input.used_views.end();
+}
+
+// Photograph, rendering and four times their difference, as three table cells.
+std::string PanelCells(const RectifiedImage& photograph, std::span<const float> rendered,
+                       const RectifiedView& view, int side_px) {
+  std::vector<float> difference(rendered.size());
+  const size_t texels = photograph.mask.size();
+  for (size_t i = 0; i < rendered.size(); ++i) {
+    const float high = view.ldr ? 1.0f : std::numeric_limits<float>::infinity();
+    const bool usable = photograph.mask[i % texels] >= 0.5f;
+    difference[i] = usable ? std::abs(std::clamp(photograph.rgb[i], 0.0f, high) -
+                                      std::clamp(rendered[i], 0.0f, high))
+                           : 0.0f;
+  }
+  const auto cell = [&](std::span<const float> rgb, float gain, const std::string& what) {
+    const Image shown =
+        Shrunk(DisplayImage(rgb, photograph.width, photograph.height, gain), side_px);
+    return "<td>" + ImageHtml(JpegUri(shown), what + " " + view.name) + "</td>";
+  };
+  return cell(photograph.rgb, 1, "photograph") + cell(rendered, 1, "rendering") +
+         cell(difference, kDifferenceGain, "difference");
+}
+
+double Distance_mm(const Vec3d& point) {
+  return std::sqrt(point[0] * point[0] + point[1] * point[1] + point[2] * point[2]);
+}
+
+Json Rounded(const Vec3d& point) {
+  Json list = Json::array();
+  for (const double value : point) list.push_back(std::round(10 * value) / 10);
+  return list;
+}
+
+}  // namespace
+
+std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
+  const Trace own{kOwnManifest, "metrics"};
+  const Trace rectify{ManifestLink("rectify"), "data"};
+  std::string figures = "<div class=\"figures\">\n";
+  figures += HeadFigure("photographs fitted", input.used_views.size(), own.Field("views[].fitted"));
+  figures +=
+      HeadFigure("width of the maps", input.fit.maps.width, rectify.Field("width"), "texels");
+  figures += HeadFigure("a texel", input.set.plane.width_mm / input.set.plane.width,
+                        rectify.Field("width_mm"), "mm");
+  if (input.Has("calib")) {
+    const Json& metrics = input.manifests.at("calib").metrics;
+    for (const char* name : {"rms_px", "reprojection_rms_px"}) {
+      if (!metrics.contains(name) || !metrics[name].is_number()) continue;
+      figures += HeadFigure("reprojection error (RMS)", metrics[name],
+                            {ManifestLink("calib"), std::string("metrics.") + name}, "px");
+      break;
+    }
+  }
+  for (const auto& [name, label] : {std::pair{"fitted", "fitted photographs"},
+                                    std::pair{"kept_back", "photographs kept back"}}) {
+    if (!own_metrics.contains(name)) continue;
+    const Trace trace = own.Field(name);
+    figures += HeadFigure(std::string("mean log-L1, ") + label, own_metrics[name]["log_l1"],
+                          trace.Field("log_l1"));
+    figures += HeadFigure(std::string("mean RMSE, ") + label, own_metrics[name]["rmse"],
+                          trace.Field("rmse"));
+  }
+  figures += "</div>\n";
+  return "<h1>Material report</h1>\n<p>Every number names the manifest and the field it comes from "
+         "when the pointer rests on it.</p>\n" +
+         Section("Overview", "", figures);
+}
+
+std::string MapsSection(const ReportInput& input, const ReportOptions& options) {
+  struct Shown {
+    const char* name;
+    int plane;
+    const char* kind;
+    const char* caption;
+  };
+  constexpr Shown kShown[] = {
+      {"diffuse", kDiffuseR, "color", "diffuse albedo"},
+      {"specular", kSpecularR, "color", "specular albedo (F0)"},
+      {"roughness", kRoughness, "grey", "roughness, 0 black to 1 white"},
+      {"normal", kNormalX, "normal", "normal, (n + 1)/2, +Y up"},
+  };
+  std::string body = "<div class=\"pictures\">\n";
+  for (const Shown& shown : kShown) {
+    const Image image = MapImage(input.fit.maps, shown.plane, shown.kind);
+    body += Figure(JpegUri(Shrunk(image, options.picture_px), 92), shown.caption);
+  }
+  const fs::path confidence = input.work / "refine" / "confidence.exr";
+  if (options.from == "refine" && fs::exists(confidence)) {
+    const Image image = ReadExr(confidence);
+    const int plane = image.ChannelIndex("roughness.Y");
+    if (plane >= 0) {
+      body += Figure(
+          PngUri(Shrunk(ColorMapped(image.channel(plane), image.width, image.height, 0, 0.2f),
+                        options.picture_px / 2)),
+          "standard deviation of the roughness, blue 0 to yellow 0.2");
+    }
+  }
+  body += "</div>\n";
+  return Section("Maps (" + options.from + ")", ManifestLink(options.from), body);
+}
+
+std::string ViewsSection(const ReportInput& input, const ReportOptions& options, int threads,
+                         Json* own_metrics) {
+  Json views = Json::array();
+  std::string rows;
+  struct Mean {
+    double log_l1 = 0, rmse = 0;
+    int count = 0;
+  } means[2];
+  for (const RectifiedView& view : input.set.views) {
+    const RectifiedImage photograph = ReadRectifiedImage(input.set, view);
+    const std::vector<float> rendered = RenderFit(input.fit, input.set, view, threads);
+    const ViewError error = CompareView(rendered, photograph, view.ldr);
+    const bool used = Used(input, view);
+    const Trace trace = Trace{kOwnManifest, "metrics.views"}.Index(views.size());
+    views.push_back({{"name", view.name},
+                     {"photo", view.photo},
+                     {"fitted", used},
+                     {"log_l1", error.log_l1},
+                     {"rmse", error.rmse},
+                     {"usable_texels", error.texels}});
+    if (error.texels > 0) {
+      Mean& mean = means[used ? 0 : 1];
+      mean.log_l1 += error.log_l1;
+      mean.rmse += error.rmse;
+      ++mean.count;
+    }
+    const Json& entry = views.back();
+    rows += "<tr><td>" + HtmlText(view.name) + "<br><code>" + HtmlText(view.photo) + "</code>" +
+            (used ? "" : "<br><span class=\"kept\">kept back</span>") + "</td>" +
+            PanelCells(photograph, rendered, view, options.picture_px / 2) +
+            "<td class=\"number\">" + FigureHtml(entry["log_l1"], trace.Field("log_l1")) +
+            "</td><td class=\"number\">" + FigureHtml(entry["rmse"], trace.Field("rmse")) +
+            "</td></tr>\n";
+  }
+  (*own_metrics)["views"] = views;
+  for (const int i : {0, 1}) {
+    if (means[i].count == 0) continue;
+    (*own_metrics)[i == 0 ? "fitted" : "kept_back"] = {{"photographs", means[i].count},
+                                                       {"log_l1", means[i].log_l1 / means[i].count},
+                                                       {"rmse", means[i].rmse / means[i].count}};
+  }
+  const std::string body =
+      "<p>Rectified photographs, the maps rendered under the same camera and light, and four times "
+      "the absolute difference; gamma 2.2. log-L1: mean of |log(I + 0.01) − log(R + 0.01)|; RMSE: "
+      "of linear radiance.</p>\n<div class=\"scroll\"><table class=\"views\">"
+      "<tr><th>view</th><th>photograph</th><th>rendering</th><th>difference ×4</th>"
+      "<th class=\"number\">log-L1</th><th class=\"number\">RMSE</th></tr>\n" +
+      rows + "</table></div>\n";
+  return Section("Photographs and re-renderings", kOwnManifest, body);
+}
+
+std::string GeometrySection(const ReportInput& input) {
+  const Trace trace{ManifestLink("rectify"), "data.views"};
+  std::string rows;
+  for (size_t i = 0; i < input.set.views.size(); ++i) {
+    const View& view = input.set.views[i].view;
+    const Trace row = trace.Index(i);
+    const double distance_mm = Distance_mm(view.camera_in_sample_mm);
+    const double tilt_deg =
+        std::acos(
+            std::clamp(view.camera_in_sample_mm[2] / std::max(distance_mm, 1e-9), -1.0, 1.0)) *
+        180 / kPi;
+    const auto cell = [](const Json& value, const Trace& from) {
+      return "<td class=\"number\">" + FigureHtml(value, from) + "</td>";
+    };
+    rows += "<tr><td>" + HtmlText(input.set.views[i].name) + "</td>" +
+            cell(Rounded(view.camera_in_sample_mm), row.Field("camera_in_sample_mm")) +
+            cell(distance_mm, row.Field("camera_in_sample_mm")) +
+            cell(std::round(10 * tilt_deg) / 10, row.Field("camera_in_sample_mm")) +
+            cell(Rounded(view.light_in_sample_mm), row.Field("light_in_sample_mm")) +
+            cell(Json(view.light_rgb), row.Field("light_rgb")) +
+            cell(Json(view.ambient_rgb), row.Field("ambient_rgb")) +
+            cell(view.exposure, row.Field("exposure")) + "</tr>\n";
+  }
+  std::string body =
+      "<p>Positions in the sample frame: millimetres from the sample's centre, x right, y up, z "
+      "toward the viewer. Tilt: angle between the viewing direction of the sample's centre and its "
+      "normal.</p>\n<div class=\"scroll\"><table><tr><th>view</th><th class=\"number\">camera "
+      "mm</th><th class=\"number\">distance mm</th><th class=\"number\">tilt °</th><th "
+      "class=\"number\">light mm</th><th class=\"number\">light power</th><th class=\"number\">"
+      "ambient</th><th class=\"number\">exposure</th></tr>\n" +
+      rows + "</table></div>\n";
+  const Json scale = Json(input.fit.light_scale_rgb);
+  const std::string from = input.Has("refine") ? "refine" : "fit";
+  body += "<p>Light scale found with the maps: " +
+          FigureHtml(scale, {ManifestLink(from), "data.light_scale_rgb"}) +
+          ". Reflectance convention: <code>" + HtmlText(ToString(input.fit.convention)) +
+          "</code>.</p>\n";
+  return Section("Cameras and lights", ManifestLink("rectify"), body);
+}
+
+std::string StageSection(const ReportInput& input, const std::string& stage) {
+  const Manifest& manifest = input.manifests.at(stage);
+  const std::string link = ManifestLink(stage);
+  std::string body = MetricsHtml(manifest.metrics, {link, "metrics"});
+  if (stage == "calib" && manifest.data.contains("cameras")) {
+    body += "<h3>cameras</h3>\n" + ObjectsTable(manifest.data["cameras"], {link, "data.cameras"});
+  }
+  std::string pictures;
+  for (const ManifestOutput& output : manifest.outputs) {
+    const std::string extension = fs::path(output.path).extension();
+    if (extension != ".png" && extension != ".jpg") continue;
+    const Photo photo = ReadPhoto(input.work / stage / output.path);
+    pictures += Figure(PngUri(Shrunk(photo.image, kStagePicture_px)), output.path);
+  }
+  if (!pictures.empty()) body += "<div class=\"pictures\">" + pictures + "</div>\n";
+  std::string files;
+  for (const auto& [label, list] :
+       {std::pair{"read", ToJson(manifest)["inputs"]}, {"written", ToJson(manifest)["outputs"]}}) {
+    for (const Json& entry : list) {
+      files += "<tr><td>" + std::string(label) + "</td><td><code>" +
+               HtmlText(entry["path"].get<std::string>()) + "</code></td><td><code>" +
+               HtmlText(entry["hash"].get<std::string>()) + "</code></td></tr>\n";
+    }
+  }
+  body += "<details><summary>Options, stage version " + std::to_string(manifest.stage_version) +
+          "</summary>\n" + PairsTable(manifest.options, {link, "options"}) + "</details>\n";
+  body += "<details><summary>Files</summary><div class=\"scroll\"><table>" + files +
+          "</table></div></details>\n";
+  return Section("Stage " + stage, link, body);
+}
+
+}  // namespace glint

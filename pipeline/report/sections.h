@@ -1,0 +1,19 @@
+// The sections of the page, top to bottom.
+#pragma once
+
+#include <string>
+
+#include "pipeline/report/report.h"
+
+namespace glint {
+
+std::string OverviewSection(const ReportInput& input, const Json& own_metrics);
+std::string MapsSection(const ReportInput& input, const ReportOptions& options);
+// Renders every view; adds the errors to `own_metrics`.
+std::string ViewsSection(const ReportInput& input, const ReportOptions& options, int threads,
+                         Json* own_metrics);
+std::string GeometrySection(const ReportInput& input);
+// Metrics, pictures, options, inputs and outputs of one stage.
+std::string StageSection(const ReportInput& input, const std::string& stage);
+
+}  // namespace glint
