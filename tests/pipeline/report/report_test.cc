@@ -1,0 +1,185 @@
+#include "pipeline/report/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "fitting/render/renderer.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/stage.h"
+#include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/report/chart.h"
+#include "pipeline/report/html.h"
+#include "pipeline/report/metrics_html.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr int kSize = 24;
+
+SvbrdfMaps Maps() {
+  SvbrdfMaps maps(kSize, kSize);
+  for (size_t i = 0; i < maps.texels(); ++i) {
+    const float wave = 0.5f + 0.4f * std::sin(0.3f * static_cast<float>(i));
+    maps.plane(kNormalZ)[i] = 1;
+    for (int c = 0; c < 3; ++c) {
+      maps.plane(kDiffuseR + c)[i] = 0.6f * wave;
+      maps.plane(kSpecularR + c)[i] = 0.05f;
+    }
+    maps.plane(kRoughness)[i] = 0.2f + 0.5f * wave;
+  }
+  return maps;
+}
+
+// A capture's glint/ folder with three views rendered from Maps(), of which the fit used two.
+class ReportTest : public testing::Test {
+ protected:
+  ReportTest() {
+    WriteRectify();
+    WriteFit(Maps());
+  }
+
+  fs::path work() const { return folder_.path() / "glint"; }
+
+  void WriteRectify() {
+    RectifiedSet set;
+    set.plane = {kSize, kSize, 100, 100, TexelSampling::kPixelCentres};
+    OptionSet options;
+    test::WriteAll(folder_.path() / "input", "x");
+    Stage stage(work() / "rectify", {"rectify", 1}, options, CommonOptions(),
+                {folder_.path() / "input"});
+    for (int i = 0; i < 3; ++i) {
+      RectifiedView view;
+      view.name = "view_00" + std::to_string(i);
+      view.file = view.name + ".exr";
+      view.photo = "photos/<" + std::to_string(i) + ">.jpg";
+      view.view.camera_in_sample_mm = view.view.light_in_sample_mm = {30.0 * i, 10, 300};
+      view.view.light_rgb = {2e5, 2e5, 2e5};
+      RectifiedImage image;
+      image.width = image.height = kSize;
+      image.mask.assign(kSize * kSize, 1.0f);
+      image.rgb.resize(3 * kSize * kSize);
+      RenderView(Maps(), set.plane, view.view, set.convention, image.rgb.data());
+      WriteRectifiedImage(stage.Output(view.file), image, set);
+      set.views.push_back(view);
+    }
+    stage.Commit(ToJson(set), Json::object());
+  }
+
+  void WriteFit(const SvbrdfMaps& maps) {
+    OptionSet options;
+    Stage stage(work() / "fit", {"fit", 1}, options, CommonOptions(),
+                {work() / "rectify/manifest.json"}, true);
+    WriteSvbrdf(stage.Output("svbrdf.exr"), maps, ReflectanceConvention());
+    Json curve = Json::array();
+    for (int i = 0; i < 50; ++i) curve.push_back(1.0 / (1 + i));
+    stage.Commit({{"views", {"view_000", "view_001"}}, {"light_scale_rgb", {1.0, 1.0, 1.0}}},
+                 {{"loss", curve}, {"seconds_per_step", 0.25}});
+  }
+
+  Report Make() const {
+    ReportOptions options;
+    options.from = "fit";
+    return MakeReport(ReadReportInput(work(), "fit"), options, 1);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ReportTest, IsOnePageThatLoadsNothing) {
+  const std::string html = Make().html;
+  EXPECT_THAT(html, Not(HasSubstr("<script")));
+  EXPECT_THAT(html, Not(HasSubstr("http")));
+  for (size_t at = html.find("src=\""); at != std::string::npos; at = html.find("src=\"", at + 1)) {
+    EXPECT_EQ(html.compare(at + 5, 11, "data:image/"), 0);
+  }
+}
+
+TEST_F(ReportTest, ViewsOfTheTruthHaveNoErrorAndKeptBackOnesAreMarked) {
+  const Report report = Make();
+  EXPECT_LT(report.metrics["fitted"]["log_l1"].get<double>(), 1e-6);
+  EXPECT_EQ(report.metrics["fitted"]["photographs"], 2);
+  EXPECT_EQ(report.metrics["kept_back"]["photographs"], 1);
+  EXPECT_EQ(report.metrics["views"][2]["fitted"], false);
+  EXPECT_THAT(report.html, HasSubstr("kept back"));
+}
+
+TEST_F(ReportTest, WrongMapsShowAsErrors) {
+  SvbrdfMaps wrong = Maps();
+  for (float& value : wrong.plane(kDiffuseG)) value *= 0.5f;
+  WriteFit(wrong);
+  EXPECT_GT(Make().metrics["fitted"]["log_l1"].get<double>(), 0.05);
+}
+
+TEST_F(ReportTest, NumbersNameTheirManifestAndField) {
+  const std::string html = Make().html;
+  EXPECT_THAT(html,
+              HasSubstr("<span title=\"../fit/manifest.json: metrics.seconds_per_step\">0.25<"));
+  EXPECT_THAT(html, HasSubstr("title=\"manifest.json: metrics.views[2].log_l1\""));
+  EXPECT_THAT(html, HasSubstr("title=\"../fit/manifest.json: metrics.loss\""));
+}
+
+TEST_F(ReportTest, IsTheSameBytesForAnyThreadCount) {
+  const std::string one = Make().html;
+  ReportOptions options;
+  options.from = "fit";
+  EXPECT_EQ(MakeReport(ReadReportInput(work(), "fit"), options, 3).html, one);
+}
+
+TEST_F(ReportTest, NamesFromOutsideAreEscaped) {
+  const std::string html = Make().html;
+  EXPECT_THAT(html, HasSubstr("photos/&lt;2&gt;.jpg"));
+  EXPECT_THAT(html, Not(HasSubstr("photos/<2>.jpg")));
+}
+
+TEST_F(ReportTest, ADamagedResultIsRefused) {
+  test::WriteAll(work() / "fit/svbrdf.exr", "damaged");
+  EXPECT_THROW(ReadReportInput(work(), "fit"), UserError);
+}
+
+// RFC 4648, section 10.
+TEST(HtmlTest, Base64AgreesWithTheStandard) {
+  EXPECT_EQ(Base64(""), "");
+  EXPECT_EQ(Base64("f"), "Zg==");
+  EXPECT_EQ(Base64("fo"), "Zm8=");
+  EXPECT_EQ(Base64("foo"), "Zm9v");
+  EXPECT_EQ(Base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(Base64("\xff\xfe\xfd"), "//79");
+}
+
+TEST(ChartTest, LeavesOutWhatIsNotFinite) {
+  Chart chart;
+  chart.lines = {{"a", {0, 1, 2, 3}, {1, std::nan(""), INFINITY, 2}}};
+  const std::string svg = ChartSvg(chart);
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, Not(HasSubstr("inf")));
+  EXPECT_EQ(ChartSvg({"", "", {{"a", {0}, {1}}}, true}), "");
+}
+
+TEST(ChartTest, AConstantLineIsDrawn) {
+  const std::string svg = ChartSvg({"t", "x", {{"a", {0, 1}, {0, 0}}}, true});
+  EXPECT_THAT(svg, HasSubstr("polyline"));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+}
+
+TEST(MetricsTest, ShowsEveryNumberWhateverItsPlace) {
+  const Json metrics = Json::parse(R"({"a": 1.5, "deep": {"b": 2.5, "c": {"d": 3.5}},
+      "list": [4.5, 5.5], "photos": [{"name": "x", "rms": 6.5}, {"name": "y", "rms": 7.5}]})");
+  const std::string html = MetricsHtml(metrics, {"m.json", "metrics"});
+  for (const char* number : {"1.5", "2.5", "3.5", "4.5, 5.5", "6.5", "7.5"}) {
+    EXPECT_THAT(html, HasSubstr(">" + std::string(number) + "<")) << html;
+  }
+  EXPECT_THAT(html, HasSubstr("m.json: metrics.deep.c.d"));
+  EXPECT_THAT(html, HasSubstr("m.json: metrics.photos[1].rms"));
+}
+
+}  // namespace
+}  // namespace glint
