@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace glint {
@@ -51,23 +50,24 @@ void LightGuess::Add(const RectifiedImage& image) {
 }
 
 double LightGuess::Power(const std::vector<View>& views) const {
-  std::vector<double> smallest;
+  std::vector<double> typical;
   for (size_t point = 0; point < points(); ++point) {
     const double x_mm = plane_.x_mm(columns_[point % columns_.size()]);
     const double y_mm = plane_.y_mm(rows_[point / columns_.size()]);
-    double q = std::numeric_limits<double>::infinity();
+    std::vector<double> q;
     for (size_t v = 0; v < radiance_.size(); ++v) {
       if (radiance_[v][point] < 0) continue;
-      const double irradiance =
-          UnitIrradiance(views[v], falloff_, x_mm, y_mm) * views[v].exposure;
-      if (irradiance > 0) q = std::min(q, std::numbers::pi * radiance_[v][point] / irradiance);
+      const double irradiance = UnitIrradiance(views[v], falloff_, x_mm, y_mm) * views[v].exposure;
+      if (irradiance > 0) q.push_back(std::numbers::pi * radiance_[v][point] / irradiance);
     }
-    if (std::isfinite(q)) smallest.push_back(q);
+    if (q.empty()) continue;
+    std::sort(q.begin(), q.end());
+    typical.push_back(q[(q.size() - 1) / 2]);
   }
-  if (smallest.empty()) return 0;
-  std::sort(smallest.begin(), smallest.end());
-  const double median = smallest[smallest.size() / 2];
-  const double bright = smallest[smallest.size() * 95 / 100];
+  if (typical.empty()) return 0;
+  std::sort(typical.begin(), typical.end());
+  const double median = typical[typical.size() / 2];
+  const double bright = typical[typical.size() * 95 / 100];
   return std::max(median / kMedianAlbedo, bright / kBrightAlbedo);
 }
 

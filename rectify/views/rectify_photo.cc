@@ -45,16 +45,16 @@ void RequireUsable(const ViewCounts& counts, const std::filesystem::path& file) 
   if (counts.usable > 0) {
     if (counts.black < counts.usable) return;
     throw UserError(file, "sample", "a black sample: no texel reflects any light",
-                    "check that the flash fired, or take the photograph out of [photos] files");
+                    "check that the flash fired, or leave this photograph out");
   }
   if (counts.saturated > 0) {
     throw UserError(file, "sample", "a saturated sample: every texel has clipped pixels",
-                    "expose less, or take the photograph out of [photos] files");
+                    "expose less, or leave this photograph out");
   }
   if (counts.outside > 0) {
     throw UserError(file, "sample", "a sample that lies outside of the photograph",
-                    "show the sample whole, check [sample] size_mm and centre_mm, or take the "
-                    "photograph out of [photos] files");
+                    "show the sample whole, check [sample] size_mm and centre_mm, or leave this "
+                    "photograph out");
   }
   throw UserError(file, "sample", "a sample that lies under the board's frame",
                   "check [sample] size_mm and centre_mm and [board] window");
@@ -87,19 +87,24 @@ View ViewOf(const Calibration& calibration, const CalibratedPhoto& photo,
   return view;
 }
 
-RectifiedImage RectifyPhoto(const LinearPhoto& photo, const PlaneProjection& projection,
-                            const SamplePlane& plane, const ResampleOptions& options,
-                            const std::vector<TexelStatus>& status_before,
-                            const std::filesystem::path& file, ViewCounts* counts) {
-  ResampledView view = ResampleToPlane(photo, projection, plane, options, status_before);
+RectifiedImage MaskView(ResampledView view, const std::filesystem::path& file, ViewCounts* counts) {
   *counts = Count(view);
-  counts->pixels_per_texel = PixelsPerTexel(projection, plane);
   RequireUsable(*counts, file);
   RectifiedImage image{view.width, view.height, std::move(view.rgb), {}};
   image.mask.reserve(view.status.size());
   for (const TexelStatus status : view.status) {
     image.mask.push_back(status == TexelStatus::kUsable ? 1.0f : 0.0f);
   }
+  return image;
+}
+
+RectifiedImage RectifyPhoto(const LinearPhoto& photo, const PlaneProjection& projection,
+                            const SamplePlane& plane, const ResampleOptions& options,
+                            const std::vector<TexelStatus>& status_before,
+                            const std::filesystem::path& file, ViewCounts* counts) {
+  RectifiedImage image = MaskView(
+      ResampleToPlane(photo, projection, plane, options, status_before), file, counts);
+  counts->pixels_per_texel = PixelsPerTexel(projection, plane);
   return image;
 }
 

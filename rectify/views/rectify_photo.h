@@ -26,8 +26,11 @@ Json ToJson(const ViewCounts& counts);
 View ViewOf(const Calibration& calibration, const CalibratedPhoto& photo,
             const std::vector<double>& ambient, const std::filesystem::path& calibration_file);
 
-// `status_before` as MaskFrame gives it (or empty). Throws UserError naming `file` when no texel is
-// usable (sample outside of the photo, all saturated, all under the frame) or all are black.
+// Counts the texels of a view and makes status into a mask. Throws UserError naming `file` when no
+// texel is usable (sample outside of the photo, all saturated, all under the frame) or all are black.
+RectifiedImage MaskView(ResampledView view, const std::filesystem::path& file, ViewCounts* counts);
+
+// ResampleToPlane and MaskView. `status_before` as MaskFrame gives it (or empty).
 RectifiedImage RectifyPhoto(const LinearPhoto& photo, const PlaneProjection& projection,
                             const SamplePlane& plane, const ResampleOptions& options,
                             const std::vector<TexelStatus>& status_before,
