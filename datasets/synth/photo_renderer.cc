@@ -144,15 +144,20 @@ PhotoRenderer::Rgb PhotoRenderer::ShadePixel(const PhotoGeometry& geometry, cons
   const Vector2d& b = above.position_mm[column + 1];
   const Vector2d& c = below.position_mm[column];
   const Vector2d& d = below.position_mm[column + 1];
-  const Surface surface = above.surface[column];
-  const bool uniform = surface == above.surface[column + 1] && surface == below.surface[column] &&
-                       surface == below.surface[column + 1];
-  if (uniform && surface != kSample) {
-    return ShadeSurface(geometry, surface, 0.25 * (a + b + c + d));
-  }
   const auto at = [&](double u, double v) {
     return Between(Between(a, b, u), Between(c, d, u), v);
   };
+  const Surface surface = above.surface[column];
+  bool uniform = surface == above.surface[column + 1] && surface == below.surface[column] &&
+                 surface == below.surface[column + 1];
+  if (uniform && surface != kSample) {
+    // A corner of ink may poke in between the pixel's corners.
+    const Vector2d centre = at(0.5, 0.5);
+    uniform = SurfaceAt(at(0.5, 0)) == surface && SurfaceAt(at(0.5, 1)) == surface &&
+              SurfaceAt(at(0, 0.5)) == surface && SurfaceAt(at(1, 0.5)) == surface &&
+              SurfaceAt(centre) == surface;
+    if (uniform) return ShadeSurface(geometry, surface, centre);
+  }
   const auto add = [](const Rgb& rgb, Rgb* sum) {
     for (int k = 0; k < 3; ++k) (*sum)[k] += rgb[k];
   };

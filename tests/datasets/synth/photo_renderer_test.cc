@@ -80,7 +80,7 @@ TEST(PhotoRenderer, PaperInkAndSampleHaveTheRadianceOfTheirAlbedo) {
   }
 }
 
-// Where anti-aliased edges lie, to a hundredth of a pixel: an edge's position along a row is the
+// Where anti-aliased edges lie, to a fiftieth of a pixel: an edge's position along a row is the
 // sum of coverage. This pins the half-pixel convention, the distortion and the pose.
 TEST(PhotoRenderer, EdgesLieWhereTheCameraProjectsThem) {
   CapturePlan plan = SmallPlan(3);
@@ -110,7 +110,7 @@ TEST(PhotoRenderer, EdgesLieWhereTheCameraProjectsThem) {
         const Vector2d above = Pixel(plan, photo, column * square, (row + 0.1) * square);
         const double slope = (above.x() - middle.x()) / (above.y() - middle.y());
         const double expected_x = middle.x() + slope * (y + 0.5 - middle.y());
-        EXPECT_NEAR(edge_x, expected_x, 0.01) << photo << " " << column << " " << row;
+        EXPECT_NEAR(edge_x, expected_x, 0.02) << photo << " " << column << " " << row;
       }
     }
   }
@@ -156,11 +156,11 @@ double DifferenceToFiner(const SvbrdfMaps& maps) {
 }
 
 TEST(PhotoRenderer, EdgesDoNotAlias) {
-  EXPECT_LT(DifferenceToFiner(UniformMaps(0.4f, 0.04f, 0.5f)), 0.006);
+  EXPECT_LT(DifferenceToFiner(UniformMaps(0.4f, 0.04f, 0.5f)), 0.01);
 }
 
 TEST(PhotoRenderer, ReliefAndHighlightsDoNotAlias) {
-  EXPECT_LT(DifferenceToFiner(MakeMaterial("leather", 5, 256, 256)), 0.006);
+  EXPECT_LT(DifferenceToFiner(MakeMaterial("leather", 5, 256, 256)), 0.015);
 }
 
 }  // namespace
