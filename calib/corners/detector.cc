@@ -58,7 +58,7 @@ std::vector<int> Inconsistent(const std::vector<PlanePoint>& points_in) {
       const auto here = ApplyHomography(*h, at);
       const auto right = ApplyHomography(*h, at + Eigen::Vector2d(1, 0));
       const double square_px = here && right ? (*right - *here).norm() : 0;
-      const double tolerance_px = std::max(1.0, 0.02 * square_px);
+      const double tolerance_px = std::max(1.5, 0.06 * square_px);
       const double error = here ? (*here - points[i].image_px).norm() / tolerance_px : 1e9;
       if (error > worst) {
         worst = error;

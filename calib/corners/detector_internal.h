@@ -23,7 +23,8 @@ std::optional<SaddleGuess> GuessCorner(const std::vector<PlanePoint>& points,
                                        double radius_squares);
 
 // Indices of points that do not go with their neighbours: each is predicted from all others, and
-// the worst is taken away until none is off by more than max(1 px, 2 % of a square).
+// the worst is taken away until none is off by more than max(1.5 px, 6 % of a square). Lens
+// distortion at the rim of a board takes up to 4 %.
 std::vector<int> Inconsistent(const std::vector<PlanePoint>& points);
 
 }  // namespace glint::corners

@@ -1,0 +1,98 @@
+#include "calib/light/paper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "calib/corners/local_homography.h"
+
+namespace glint {
+namespace {
+
+constexpr float kClipped = 0.985f;       // stored value
+constexpr double kLeastRadius_px = 1.5;  // of plain paper round a spot, blur taken off
+
+struct Spot {
+  Eigen::Vector2d squares;  // board coordinates
+  double radius_squares;    // of plain paper
+};
+
+std::vector<Spot> Spots(const Board& board) {
+  std::vector<Spot> spots;
+  const bool markers = board.kind == BoardKind::kCharuco;
+  const double gap = markers ? 0.5 * (1 - board.marker_mm / board.square_mm) : 0;
+  for (int row = 0; row < board.squares_y; ++row) {
+    for (int column = 0; column < board.squares_x; ++column) {
+      if (!SquareExists(board, column, row) || SquareIsBlack(board, column, row)) continue;
+      if (!markers) {
+        spots.push_back({{column + 0.5, row + 0.5}, 0.5});
+        continue;
+      }
+      for (const double x : {0.5 * gap, 1 - 0.5 * gap}) {
+        for (const double y : {0.5 * gap, 1 - 0.5 * gap}) {
+          spots.push_back({{column + x, row + y}, 0.5 * gap});
+        }
+      }
+    }
+  }
+  return spots;
+}
+
+// Mean linear radiance over a disc; nullopt: not wholly in the picture, or clipped.
+std::optional<Eigen::Vector3d> DiscMean(const Photo& photo, Encoding encoding,
+                                        const Eigen::Vector2d& centre_px, double radius_px) {
+  const Image& image = photo.image;
+  const int x0 = static_cast<int>(std::floor(centre_px.x() - radius_px));
+  const int x1 = static_cast<int>(std::floor(centre_px.x() + radius_px));
+  const int y0 = static_cast<int>(std::floor(centre_px.y() - radius_px));
+  const int y1 = static_cast<int>(std::floor(centre_px.y() + radius_px));
+  if (x0 < 0 || y0 < 0 || x1 >= image.width || y1 >= image.height) return std::nullopt;
+  Eigen::Vector3d sum(0, 0, 0);
+  int count = 0;
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      if ((Eigen::Vector2d(x + 0.5, y + 0.5) - centre_px).norm() > radius_px) continue;
+      for (int c = 0; c < 3; ++c) {
+        const float stored = image.channel(c)[static_cast<size_t>(y) * image.width + x];
+        if (!photo.is_float() && stored >= kClipped) return std::nullopt;
+        sum[c] += LinearFromEncoded(encoding, stored);
+      }
+      ++count;
+    }
+  }
+  if (count == 0) return std::nullopt;
+  return Eigen::Vector3d(sum / count);
+}
+
+}  // namespace
+
+std::vector<PaperSample> SamplePaper(const Photo& photo, Encoding encoding, const Board& board,
+                                     const std::vector<CornerObservation>& corners) {
+  std::vector<PlanePoint> points;
+  for (const CornerObservation& corner : corners) {
+    points.push_back({SquaresFromSample(board, corner.position_in_sample_mm), corner.point_px});
+  }
+  std::vector<PaperSample> samples;
+  for (const Spot& spot : Spots(board)) {
+    const bool near = std::any_of(points.begin(), points.end(), [&](const PlanePoint& point) {
+      return (point.board - spot.squares).norm() <= 1;
+    });
+    if (!near) continue;
+    const auto h = LocalHomography(points, spot.squares, 1.5);
+    if (!h) continue;
+    const auto at = ApplyHomography(*h, spot.squares);
+    const auto right = ApplyHomography(*h, spot.squares + Eigen::Vector2d(spot.radius_squares, 0));
+    const auto down = ApplyHomography(*h, spot.squares + Eigen::Vector2d(0, spot.radius_squares));
+    if (!at || !right || !down) continue;
+    // Two thirds of the way to the next ink is left to blur.
+    const double plain_px = std::min((*right - *at).norm(), (*down - *at).norm());
+    if (plain_px < 2 * kLeastRadius_px) continue;
+    const double radius_px = std::min(12.0, std::max(kLeastRadius_px, plain_px / 3));
+    if (const auto radiance = DiscMean(photo, encoding, *at, radius_px)) {
+      samples.push_back({GridPointInSample(board, spot.squares.x(), spot.squares.y()), *radiance});
+    }
+  }
+  return samples;
+}
+
+}  // namespace glint
