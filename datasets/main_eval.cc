@@ -21,14 +21,17 @@ using namespace glint;
 namespace fs = std::filesystem;
 
 constexpr int kTable1Materials = 8;
+constexpr int kPaperSize = 256;  // texels a side of the paper's materials
 
-// Maps of any layout with diffuse weight 1; of a result also by its manifest or folder.
-SvbrdfMaps ReadAnyMaps(const fs::path& path) {
+// Maps of any layout with diffuse weight 1; of a result also by its manifest; procedural ones at
+// `procedural_size`.
+SvbrdfMaps ReadAnyMaps(const fs::path& path, int procedural_size) {
   if (path.extension() == ".exr" || path.filename() == "manifest.json") {
     const FitResult result = ReadFitResult(path);
     return ToUnitWeight(result.maps, result.convention);
   }
-  return LoadMaterial(path.string(), 0).maps;
+  const bool procedural = path.string().starts_with("procedural:");
+  return LoadMaterial(path.string(), procedural ? procedural_size : 0).maps;
 }
 
 ProgramResult ReportMaps(const Table1Row& row, bool resampled) {
@@ -55,8 +58,8 @@ int RunMaps(int argc, char** argv, const ProgramInfo& info) {
                         true);
   options.AddPositional("truth", &truth_path, "likewise", true);
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
-    SvbrdfMaps estimate = ReadAnyMaps(estimate_path);
-    const SvbrdfMaps truth = ReadAnyMaps(truth_path);
+    SvbrdfMaps estimate = ReadAnyMaps(estimate_path, kPaperSize);
+    const SvbrdfMaps truth = ReadAnyMaps(truth_path, estimate.width);
     const bool resample = estimate.width != truth.width || estimate.height != truth.height;
     if (resample) estimate = ResampleSvbrdf(estimate, truth.width, truth.height);
     return ReportMaps(EvaluateMaps(estimate, truth, common.threads), resample);

@@ -100,7 +100,8 @@ void WritePair(const fs::path& file, const RectifiedImage& photograph,
     for (size_t i = 0; i < texels; ++i) {
       const size_t row = i / width, column = i % width;
       float* out = image.channel(c).data() + row * image.width + column;
-      const float photo = photograph.rgb[c * texels + i], render = rendered[c * texels + i];
+      const float photo = std::clamp(photograph.rgb[c * texels + i], 0.0f, 1.0f);
+      const float render = std::clamp(rendered[c * texels + i], 0.0f, 1.0f);
       const float values[3] = {photo, render, kDifferenceGain * std::abs(photo - render)};
       for (int panel = 0; panel < 3; ++panel) {
         out[static_cast<ptrdiff_t>(panel) * width] =

@@ -42,7 +42,7 @@ std::vector<float> RenderFit(const FitResult& fit, const RectifiedSet& set,
                              const RectifiedView& view, int threads);
 
 // Writes FOLDER/NAME.png: photograph, rendering and four times their absolute difference, side by
-// side, gamma 2.2.
+// side, each clipped to [0, 1], gamma 2.2.
 void WritePair(const std::filesystem::path& file, const RectifiedImage& photograph,
                std::span<const float> rendered);
 

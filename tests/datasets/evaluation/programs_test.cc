@@ -1,0 +1,139 @@
+// glint-synth and glint-eval as a person uses them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/contract/json.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using testing::HasSubstr;
+
+const fs::path kBin = GLINT_BIN_DIR;
+
+Outcome Synth(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), (kBin / "glint-synth").string());
+  return test::RunProgram(arguments);
+}
+
+Outcome Eval(std::vector<std::string> arguments, const fs::path& bin = kBin) {
+  arguments.insert(arguments.begin(), (bin / "glint-eval").string());
+  return test::RunProgram(arguments);
+}
+
+class ProgramsTest : public testing::Test {
+ protected:
+  std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ProgramsTest, MaterialIsWrittenListedAndCompared) {
+  const Outcome list = Synth({"material", "--list"});
+  EXPECT_EQ(list.code, 0);
+  EXPECT_THAT(list.out, HasSubstr("leather\n"));
+  EXPECT_GE(std::count(list.out.begin(), list.out.end(), '\n'), 12);
+  EXPECT_EQ(
+      Synth({"material", "--family", "wood", "--seed", "3", "--size", "64", "--png", Path("wood")})
+          .code,
+      0);
+  EXPECT_TRUE(fs::exists(Path("wood/svbrdf.png")));
+  const Outcome same = Eval({"maps", Path("wood"), "procedural:wood:3", "--json"});
+  ASSERT_EQ(same.code, 0) << same.err;
+  EXPECT_EQ(Json::parse(same.out)["render"], 0.0);
+  const Outcome other = Eval({"maps", Path("wood"), "procedural:wood:4", "--json"});
+  EXPECT_GT(Json::parse(other.out)["map_average"].get<double>(), 1e-4);
+}
+
+TEST_F(ProgramsTest, TruthOfACaptureHasNoError) {
+  const Outcome capture = Synth({"capture", Path("c"), "--photos", "2", "--megapixels", "0.1",
+                                 "--texels", "32", "--seed", "5", "--json"});
+  ASSERT_EQ(capture.code, 0) << capture.err;
+  EXPECT_EQ(Json::parse(capture.out)["photos"], 2);
+  const Outcome cameras =
+      Eval({"cameras", Path("c/truth"), Path("c/truth/calib/manifest.json"), "--json"});
+  ASSERT_EQ(cameras.code, 0) << cameras.err;
+  EXPECT_LT(Json::parse(cameras.out)["corner_rms_texel"].get<double>(), 1e-6);
+}
+
+TEST_F(ProgramsTest, ViewsReRenderToTheirQuantisation) {
+  ASSERT_EQ(Synth({"views", "procedural:9", Path("v"), "--count", "3", "--resolution", "32"}).code,
+            0);
+  const Outcome views = Eval({"views", Path("v/truth/svbrdf.exr"), Path("v/glint/rectify"),
+                              "--exclude", "view_001", "--pairs", Path("pairs"), "--json"});
+  ASSERT_EQ(views.code, 0) << views.err;
+  const Json json = Json::parse(views.out);
+  EXPECT_EQ(json["views"].size(), 2u);
+  EXPECT_LT(json["mean"]["rmse"].get<double>(), 0.003);
+  EXPECT_GT(json["mean"]["rmse"].get<double>(), 0);
+  EXPECT_TRUE(fs::exists(Path("pairs/view_002.png")));
+  EXPECT_FALSE(fs::exists(Path("pairs/view_001.png")));
+}
+
+TEST_F(ProgramsTest, WrongUsageEndsWithTwoAndSaysWhy) {
+  const auto expect = [](const Outcome& outcome, const std::string& word) {
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(word));
+  };
+  expect(Synth({}), "a verb is needed");
+  expect(Synth({"paint"}), "'paint'");
+  expect(Synth({"material"}), "out");
+  expect(Synth({"material", "--family", "cheese", Path("m")}), "cheese");
+  expect(Synth({"views", "procedural:x", Path("v")}), "procedural:SEED");
+  expect(Synth({"views", Path("none.exr"), Path("v")}), "none.exr");
+  expect(Synth({"capture", Path("c"), "--distance-mm", "3,2"}), "distance-mm");
+  expect(Synth({"capture", Path("c"), "--flash-offset-mm", "1,2"}), "flash-offset-mm");
+  expect(Eval({"maps", Path("a.exr"), Path("b.exr")}), "a.exr");
+  expect(Eval({"cameras", Path("t"), Path("m")}), "truth.json");
+  expect(Eval({"table1"}), "work");
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
+}
+
+TEST_F(ProgramsTest, HelpAndVersionEndWithZero) {
+  for (const std::string option : {"--help", "--version"}) {
+    EXPECT_EQ(Synth({option}).code, 0);
+    EXPECT_EQ(Eval({option}).code, 0);
+    EXPECT_EQ(Eval({"views", option}).code, 0);
+  }
+}
+
+// The table's bookkeeping, with programs that copy the truth in place of fitting, and say how they
+// were called.
+TEST_F(ProgramsTest, Table1RunsTheProgramsBesideItAndKeepsResults) {
+  const fs::path bin = folder_.path() / "bin";
+  fs::create_directories(bin);
+  fs::copy_file(kBin / "glint-eval", bin / "glint-eval");
+  for (const std::string stage : {"fit", "refine"}) {
+    const fs::path program = bin / ("glint-" + stage);
+    test::WriteAll(
+        program, "#!/bin/sh\necho \"$0 $*\" >> " + Path("calls") + "\nmkdir -p $1/glint/" + stage +
+                     "\ncp $1/truth/svbrdf.exr $1/glint/" + stage +
+                     "/\necho '{\"glint_manifest\":1,\"stage\":\"" + stage +
+                     "\",\"stage_version\":1,\"inputs\":[],\"options\":{},\"outputs\":[],"
+                     "\"data\":{},\"metrics\":{}}' > $1/glint/" +
+                     stage + "/manifest.json\n");
+    fs::permissions(program, fs::perms::owner_all);
+  }
+  const std::vector<std::string> arguments = {"table1",     "procedural:1000000001",
+                                              "--counts",   "1,3",
+                                              "--size",     "16",
+                                              "--work",     Path("work"),
+                                              "--fit-args", "--levels=2"};
+  const Outcome first = Eval(arguments, bin);
+  ASSERT_EQ(first.code, 0) << first.err;
+  EXPECT_THAT(first.out, HasSubstr("|  3 | refined | 0.000000 |"));
+  const std::string calls = test::ReadAll(Path("calls"));
+  EXPECT_THAT(calls, HasSubstr("n03/classic --method classic"));
+  EXPECT_THAT(calls, HasSubstr("glint-refine " + Path("work/procedural_1000000001/n01/latent")));
+  EXPECT_THAT(calls, HasSubstr("--levels=2"));
+  EXPECT_THAT(test::ReadAll(Path("work/table1.csv")), HasSubstr("mean,3,latent,0,0,0,0,0,0"));
+
+  const Outcome again = Eval(arguments, bin);
+  EXPECT_EQ(again.out, first.out);
+  EXPECT_EQ(test::ReadAll(Path("calls")), calls);  // nothing ran
+}
+
+}  // namespace
+}  // namespace glint
