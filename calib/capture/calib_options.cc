@@ -1,0 +1,79 @@
+#include "calib/capture/calib_options.h"
+
+#include <fmt/format.h>
+
+namespace glint {
+namespace {
+
+std::string BoardInOneLine(const Board& board) {
+  std::string line = fmt::format("{} {}x{} squares of {} mm",
+                                 board.kind == BoardKind::kCharuco ? "charuco" : "checkerboard",
+                                 board.squares_x, board.squares_y, board.square_mm);
+  if (board.kind == BoardKind::kCharuco) {
+    line += fmt::format(", {} of {} mm{}", board.dictionary, board.marker_mm,
+                        board.legacy_layout ? ", legacy layout" : "");
+  }
+  if (board.window) {
+    line += fmt::format(", window {} {} {} {}", board.window->first_column, board.window->first_row,
+                        board.window->columns, board.window->rows);
+  }
+  return line;
+}
+
+}  // namespace
+
+void AddCalibOptions(OptionSet* set, CalibOptions* options) {
+  set->AddChoice("model", &options->model, {"SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV"},
+                 "COLMAP's camera model");
+  set->AddChoice(
+      "cameras", &options->cameras, {"auto", "one", "each"},
+      "auto: photos of the same size and EXIF focal length share their intrinsics; one: all "
+      "do; each: none do");
+  set->Add("hold", &options->hold, "distortion parameters held at 0, such as p1 p2");
+  set->Add("fix-intrinsics", &options->fix_intrinsics,
+           "manifest of another calibration whose intrinsics are taken as they are",
+           Invalidates::kNo);  // its content is an input, and the place of the file tells nothing
+  set->AddRange("reject-sigmas", &options->reject_sigmas, 2, 1000,
+                "corners farther off than this many robust standard deviations are rejected");
+  set->AddRange("min-reject-px", &options->min_reject_px, 0, 1000,
+                "corners nearer than this are never rejected");
+  set->AddRange("min-corners", &options->min_corners, 4, 10000, "a photo with fewer is rejected");
+  set->AddRange("detect-px", &options->detect_px, 200, 20000,
+                "boards are looked for in a copy whose longer side is at most this; their corners "
+                "are placed in the photo itself");
+  set->AddRange("paper-reflectance", &options->paper_reflectance, 0.05, 1,
+                "of the board's white, from which the light's power is estimated");
+}
+
+BundleOptions BundleOptionsOf(const CalibOptions& options) {
+  BundleOptions bundle;
+  bundle.model = CameraModelFromName(options.model).value_or(CameraModel::kOpenCv);
+  bundle.hold = options.hold;
+  bundle.reject_sigmas = options.reject_sigmas;
+  bundle.min_reject_px = options.min_reject_px;
+  bundle.min_corners = options.min_corners;
+  return bundle;
+}
+
+CalibTask ResolveTask(const Capture& capture) {
+  CalibTask task;
+  task.board = BoardInOneLine(capture.board);
+  task.board_centre_mm = {capture.board.board_centre_in_sample_mm.x(),
+                          capture.board.board_centre_in_sample_mm.y()};
+  task.encoding = capture.encoding;
+  task.light_offset_mm.assign(capture.light_offset_mm.begin(), capture.light_offset_mm.end());
+  task.light_power.assign(capture.light_power.begin(), capture.light_power.end());
+  task.ambient.assign(capture.ambient.begin(), capture.ambient.end());
+  return task;
+}
+
+void AddTask(OptionSet* set, CalibTask* task) {
+  set->Add("board", &task->board, "from [board]");
+  set->Add("board-centre-mm", &task->board_centre_mm, "from [sample] centre_mm");
+  set->Add("encoding", &task->encoding, "from [radiometry]");
+  set->Add("light-offset-mm", &task->light_offset_mm, "from [light]");
+  set->Add("light-power", &task->light_power, "from [light]");
+  set->Add("ambient", &task->ambient, "from [light]");
+}
+
+}  // namespace glint

@@ -1,0 +1,41 @@
+// What can be chosen about calibration, and what a capture settles.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calib/bundle/bundle.h"
+#include "pipeline/contract/capture.h"
+#include "pipeline/contract/options.h"
+
+namespace glint {
+
+struct CalibOptions {
+  std::string model = "OPENCV";          // SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV
+  std::string cameras = "auto";          // auto, one, each: see camera_groups.h
+  std::vector<std::string> hold;         // distortion parameters held at 0
+  std::filesystem::path fix_intrinsics;  // manifest of another calibration; empty: estimate
+  double reject_sigmas = 5;              // see BundleOptions
+  double min_reject_px = 0.5;
+  int min_corners = 6;
+  int detect_px = 1600;             // boards are looked for in a copy of this size
+  double paper_reflectance = 0.85;  // of the board's white, for the light's power
+};
+
+void AddCalibOptions(OptionSet* set, CalibOptions* options);
+BundleOptions BundleOptionsOf(const CalibOptions& options);
+
+// The values of capture.toml that the result depends on. They enter the manifest as options, so
+// that a change of theirs makes the result stale and others do not.
+struct CalibTask {
+  std::string board;  // in one line
+  std::vector<double> board_centre_mm;
+  std::string encoding;
+  std::vector<double> light_offset_mm, light_power, ambient;
+};
+
+CalibTask ResolveTask(const Capture& capture);
+void AddTask(OptionSet* set, CalibTask* task);
+
+}  // namespace glint

@@ -1,0 +1,216 @@
+#include "calib/capture/calibrate_capture.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "calib/bundle/residual_picture.h"
+#include "calib/camera/orientation.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
+
+namespace glint {
+namespace {
+
+// Intrinsics of another calibration for the groups of this one, by the size of the stored picture.
+void TakeIntrinsics(const CalibOptions& options, BundleProblem* problem, BundleOptions* bundle) {
+  const Calibration known = ReadCalibration(options.fix_intrinsics);
+  for (BundleCamera& camera : problem->cameras) {
+    for (const Camera& candidate : known.cameras) {
+      if (candidate.width_px != camera.width_px || candidate.height_px != camera.height_px)
+        continue;
+      camera.known = candidate;
+      bundle->model = candidate.model;
+      break;
+    }
+    if (camera.known) continue;
+    throw UserError(options.fix_intrinsics, "data.cameras",
+                    fmt::format("no camera of {}x{} pixels", camera.width_px, camera.height_px),
+                    "give the calibration of the camera that took the photographs");
+  }
+  for (const BundleCamera& camera : problem->cameras) {
+    if (camera.known->model != bundle->model) {
+      throw UserError(options.fix_intrinsics, "data.cameras", "cameras of several models",
+                      "calibrate all of them with one model");
+    }
+  }
+}
+
+BundleResult Adjust(const Capture& capture, const CalibOptions& options, BundleProblem problem) {
+  BundleOptions bundle = BundleOptionsOf(options);
+  if (!options.fix_intrinsics.empty()) TakeIntrinsics(options, &problem, &bundle);
+  try {
+    return AdjustBundle(problem, bundle);
+  } catch (const UserError& error) {
+    throw UserError(capture.file.string() + ": " + error.what());
+  }
+}
+
+// Why a flash photograph is left out; "": it is not.
+std::string Reason(const CalibSummary& summary, size_t photo) {
+  const DetectedPhoto& detected = summary.photos[photo];
+  const int index = summary.BundleIndex(photo);
+  if (index < 0) return detected.detection.problem;
+  if (!summary.bundle.photos[index].rejected.empty()) return summary.bundle.photos[index].rejected;
+  if (!detected.board_photo && !detected.detection.position_known)
+    return detected.detection.problem;
+  return "";
+}
+
+// Cameras of upright pictures: each group's own, then turned ones where a photograph is turned.
+class UprightCameras {
+ public:
+  UprightCameras(const BundleResult& bundle, Calibration* calibration)
+      : bundle_(bundle), calibration_(calibration) {
+    for (size_t c = 0; c < bundle.cameras.size(); ++c) {
+      if (bundle.cameras[c].photos > 0) Index(static_cast<int>(c), 0);
+    }
+  }
+  int Index(int group, int turns) {
+    const auto [at, added] =
+        index_.insert({{group, turns}, static_cast<int>(calibration_->cameras.size())});
+    if (added) {
+      calibration_->cameras.push_back(TurnedCamera(bundle_.cameras[group].camera, turns));
+    }
+    return at->second;
+  }
+
+ private:
+  const BundleResult& bundle_;
+  Calibration* calibration_;
+  std::map<std::pair<int, int>, int> index_;
+};
+
+void FillPhotos(const Capture& capture, CalibSummary* summary) {
+  const Eigen::Vector3d offset_mm(capture.light_offset_mm.data());
+  UprightCameras cameras(summary->bundle, &summary->calibration);
+  for (size_t i = 0; i < summary->photos.size(); ++i) {
+    const DetectedPhoto& detected = summary->photos[i];
+    const std::string reason = Reason(*summary, i);
+    if (!reason.empty()) {
+      summary->rejected.push_back({detected.name, reason});
+      spdlog::warn("{} is left out: {}", detected.name, reason);
+      continue;
+    }
+    if (detected.board_photo) continue;
+    const PhotoEstimate& estimate = summary->bundle.photos[summary->BundleIndex(i)];
+    const int turns = summary->groups.turns[i];
+    CalibratedPhoto photo;
+    photo.photo = detected.name;
+    photo.camera = cameras.Index(summary->groups.group[i], turns);
+    photo.camera_from_sample = TurnedPose(estimate.camera_from_sample, turns);
+    photo.light_in_camera_mm = TurnedCameraPoint(offset_mm, turns);
+    photo.rms_px = estimate.rms_px;
+    photo.corners = static_cast<int>(estimate.corners.size());
+    photo.inliers = estimate.inliers();
+    summary->calibration.photos.push_back(photo);
+  }
+  if (!summary->calibration.photos.empty()) return;
+  std::string reasons;
+  for (const RejectedPhoto& photo : summary->rejected) {
+    reasons += "\n  " + photo.name + ": " + photo.reason;
+  }
+  throw ComputationError(capture.file.string() +
+                         ": no flash photograph could be calibrated:" + reasons);
+}
+
+// Exposures relative to the first calibrated photograph, by the rule of `rectify`: from EXIF where
+// all photographs have it, else all equal.
+std::vector<double> RelativeExposures(const CalibSummary& summary) {
+  std::vector<double> exposures;
+  for (const CalibratedPhoto& photo : summary.calibration.photos) {
+    const auto found = std::find_if(summary.photos.begin(), summary.photos.end(),
+                                    [&](const DetectedPhoto& p) { return p.name == photo.photo; });
+    exposures.push_back(found->exposure);
+  }
+  const bool known =
+      std::all_of(exposures.begin(), exposures.end(), [](double e) { return e > 0; });
+  const double first = exposures[0];
+  for (double& exposure : exposures) exposure = known ? exposure / first : 1;
+  return exposures;
+}
+
+// Without paper to go by: the power that makes a white surface below the camera reach 0.8.
+double GuessedPower(const Calibration& calibration) {
+  const CalibratedPhoto& photo = calibration.photos[0];
+  const Eigen::Vector3d light = Inverse(photo.camera_from_sample) * photo.light_in_camera_mm;
+  return 0.8 * 3.14159265358979 * light.squaredNorm();
+}
+
+void FillLight(const Capture& capture, const CalibOptions& options, CalibSummary* summary) {
+  Calibration& calibration = summary->calibration;
+  const std::vector<double> exposures = RelativeExposures(*summary);
+  std::vector<LitPaper> papers;
+  for (size_t i = 0; i < calibration.photos.size(); ++i) {
+    const CalibratedPhoto& photo = calibration.photos[i];
+    const auto found = std::find_if(summary->photos.begin(), summary->photos.end(),
+                                    [&](const DetectedPhoto& p) { return p.name == photo.photo; });
+    papers.push_back(
+        {photo.camera_from_sample, photo.light_in_camera_mm, exposures[i], found->paper});
+  }
+  PowerOptions power;
+  power.paper_reflectance = options.paper_reflectance;
+  power.ambient = Eigen::Vector3d(capture.ambient.data());
+  summary->power = EstimatePower(papers, power);
+  const Eigen::Vector3d given(capture.light_power.data());
+  calibration.light_power_known = true;
+  if (given.maxCoeff() > 0) {
+    calibration.light_rgb = given;
+    summary->power_source = "capture.toml";
+  } else if (summary->power.known) {
+    calibration.light_rgb = summary->power.light_rgb;
+    summary->power_source = "board";
+  } else {
+    calibration.light_rgb.setConstant(GuessedPower(calibration));
+    calibration.light_power_known = false;
+    summary->power_source = "guess";
+    spdlog::warn(
+        "no paper of the board is seen unclipped and large enough; the light's power is a "
+        "guess, which later stages refine");
+  }
+}
+
+void WriteOutputs(const CalibSummary& summary, Stage* stage) {
+  for (size_t c = 0; c < summary.bundle.cameras.size(); ++c) {
+    if (summary.bundle.cameras[c].photos == 0) continue;
+    WritePng(stage->Output(fmt::format("residuals_camera{}.png", c)),
+             ResidualPicture(summary.bundle, static_cast<int>(c)));
+  }
+  WriteFileAtomically(stage->Output("residuals.json"), ResidualsOf(summary).dump(1) + "\n");
+}
+
+}  // namespace
+
+int CalibSummary::BundleIndex(size_t photo) const {
+  const auto found = std::find(photo_index.begin(), photo_index.end(), photo);
+  return found == photo_index.end() ? -1 : static_cast<int>(found - photo_index.begin());
+}
+
+std::vector<std::filesystem::path> CalibInputs(const Capture& capture,
+                                               const CalibOptions& options) {
+  std::vector<std::filesystem::path> inputs;
+  for (const std::string& name : capture.photos) inputs.push_back(capture.folder / name);
+  for (const std::string& name : capture.board_photos) inputs.push_back(capture.folder / name);
+  if (!options.fix_intrinsics.empty()) inputs.push_back(options.fix_intrinsics);
+  return inputs;
+}
+
+CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& options,
+                              const CommonOptions& common, Stage* stage) {
+  CalibSummary summary;
+  summary.photos = DetectPhotos(capture, options, common.threads);
+  summary.groups = GroupCameras(capture.file, options.cameras, summary.photos);
+  RequireBoard(capture, options, summary.photos);
+  const BundleProblem problem = MakeProblem(summary.photos, summary.groups, &summary.photo_index);
+  summary.bundle = Adjust(capture, options, problem);
+  FillPhotos(capture, &summary);
+  FillLight(capture, options, &summary);
+  WriteOutputs(summary, stage);
+  stage->Commit(ToJson(summary.calibration), MetricsOf(summary));
+  return summary;
+}
+
+}  // namespace glint

@@ -1,0 +1,51 @@
+// The stage "calib": photographs of a capture to cameras, poses and light.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/bundle/bundle.h"
+#include "calib/capture/calib_options.h"
+#include "calib/capture/camera_groups.h"
+#include "calib/capture/detect_photos.h"
+#include "calib/light/power.h"
+#include "pipeline/contract/calibration.h"
+#include "pipeline/contract/program.h"
+#include "pipeline/contract/stage.h"
+
+namespace glint {
+
+inline constexpr int kCalibVersion = 1;
+
+struct RejectedPhoto {
+  std::string name, reason;
+};
+
+struct CalibSummary {
+  Calibration calibration;
+  std::vector<DetectedPhoto> photos;
+  CameraGroups groups;
+  BundleResult bundle;              // of the stored pictures
+  std::vector<size_t> photo_index;  // which of `photos` each photo of `bundle` is
+  std::vector<RejectedPhoto> rejected;
+  PowerEstimate power;       // photo_power as calibration.photos
+  std::string power_source;  // "capture.toml", "board" or "guess"
+
+  // Index into bundle.photos of a detected photograph; −1: it has no corners.
+  int BundleIndex(size_t photo) const;
+};
+
+// The files that the result depends on.
+std::vector<std::filesystem::path> CalibInputs(const Capture& capture, const CalibOptions& options);
+
+// Detects, solves, writes residual pictures and residuals.json through the stage, and commits.
+// Throws UserError and ComputationError as its parts do.
+CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& options,
+                              const CommonOptions& common, Stage* stage);
+
+// report.cc
+Json MetricsOf(const CalibSummary& summary);
+Json ResidualsOf(const CalibSummary& summary);
+std::string TextOf(const CalibSummary& summary);
+
+}  // namespace glint

@@ -1,0 +1,115 @@
+#include "calib/capture/camera_groups.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "calib/camera/orientation.h"
+#include "pipeline/contract/errors.h"
+
+namespace glint {
+namespace {
+
+constexpr size_t kSmallGroup = 2;  // photographs; too few to give intrinsics of their own
+
+// Stored width and height, mirrored or not, camera, focal length in tenths of a millimetre.
+using Key = std::tuple<int, int, bool, std::string, long>;
+
+Key KeyOf(const DetectedPhoto& photo, int turns) {
+  const bool mirrored = !QuarterTurns(photo.orientation);
+  int width = photo.width_px, height = photo.height_px;
+  if (turns % 2 == 1) std::swap(width, height);
+  return {width, height, mirrored, photo.camera_model, std::lround(10 * photo.focal_length_35mm)};
+}
+
+std::string Size(const CameraGroup& group) {
+  return fmt::format("{}x{} pixels", group.width_px, group.height_px);
+}
+
+// Photographs that stand alone beside a larger group are mistakes, not cameras.
+void RefuseStrays(const std::filesystem::path& capture_file,
+                  const std::vector<DetectedPhoto>& photos, const CameraGroups& groups) {
+  const auto largest = std::max_element(
+      groups.groups.begin(), groups.groups.end(),
+      [](const CameraGroup& a, const CameraGroup& b) { return a.photos.size() < b.photos.size(); });
+  if (largest == groups.groups.end() || largest->photos.size() <= kSmallGroup) return;
+  for (const CameraGroup& group : groups.groups) {
+    if (group.photos.size() > kSmallGroup) continue;
+    const DetectedPhoto& photo = photos[group.photos[0]];
+    const bool same_size =
+        group.width_px == largest->width_px && group.height_px == largest->height_px;
+    const DetectedPhoto& other = photos[largest->photos[0]];
+    const std::string mend =
+        "take it out, take at least three such photographs, or give --cameras each";
+    if (!same_size) {
+      throw UserError(capture_file.parent_path() / photo.name, "size",
+                      fmt::format("{}, while {} other photographs have {}", Size(group),
+                                  largest->photos.size(), Size(*largest)),
+                      mend);
+    }
+    throw UserError(capture_file.parent_path() / photo.name, "EXIF camera and focal length",
+                    fmt::format("'{}' at {} mm, while {} other photographs have '{}' at {} mm",
+                                photo.camera_model, photo.focal_length_35mm, largest->photos.size(),
+                                other.camera_model, other.focal_length_35mm),
+                    mend);
+  }
+}
+
+}  // namespace
+
+CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::string& cameras,
+                          const std::vector<DetectedPhoto>& photos) {
+  CameraGroups groups;
+  std::vector<Key> keys;
+  for (size_t i = 0; i < photos.size(); ++i) {
+    const int turns = QuarterTurns(photos[i].orientation).value_or(0);
+    groups.turns.push_back(turns);
+    const Key key = KeyOf(photos[i], turns);
+    auto found = keys.end();
+    if (cameras == "auto") found = std::find(keys.begin(), keys.end(), key);
+    if (cameras == "one" && !keys.empty()) {
+      found = keys.begin();
+      if (std::get<0>(key) != std::get<0>(*found) || std::get<1>(key) != std::get<1>(*found)) {
+        throw UserError(
+            capture_file.parent_path() / photos[i].name, "size",
+            fmt::format("{}x{} pixels, while {} has {}x{}", std::get<0>(key), std::get<1>(key),
+                        photos[0].name, std::get<0>(*found), std::get<1>(*found)),
+            "take it out, or give --cameras auto");
+      }
+    }
+    const size_t at = static_cast<size_t>(found - keys.begin());
+    if (found == keys.end()) {
+      keys.push_back(key);
+      groups.groups.push_back({std::get<0>(key), std::get<1>(key), {}});
+    }
+    groups.group.push_back(static_cast<int>(at));
+    groups.groups[at].photos.push_back(i);
+  }
+  if (cameras == "auto") RefuseStrays(capture_file, photos, groups);
+  return groups;
+}
+
+BundleProblem MakeProblem(const std::vector<DetectedPhoto>& photos, const CameraGroups& groups,
+                          std::vector<size_t>* photo_index) {
+  BundleProblem problem;
+  for (const CameraGroup& group : groups.groups) {
+    problem.cameras.push_back({group.width_px, group.height_px, std::nullopt});
+  }
+  for (size_t i = 0; i < photos.size(); ++i) {
+    if (photos[i].detection.corners.empty()) continue;
+    BundlePhoto photo{photos[i].name, groups.group[i], {}};
+    for (const CornerObservation& corner : photos[i].detection.corners) {
+      photo.corners.push_back({corner.id, corner.position_in_sample_mm,
+                               TurnedImagePoint(corner.point_px, photos[i].width_px,
+                                                photos[i].height_px, -groups.turns[i])});
+    }
+    problem.photos.push_back(std::move(photo));
+    photo_index->push_back(i);
+  }
+  return problem;
+}
+
+}  // namespace glint

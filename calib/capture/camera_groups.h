@@ -1,0 +1,37 @@
+// Which photographs share their intrinsics.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calib/bundle/bundle.h"
+#include "calib/capture/detect_photos.h"
+
+namespace glint {
+
+// A camera with its photographs. Intrinsics are those of the stored picture; `turns` says how often
+// each photograph was turned to be upright (see camera/orientation.h).
+struct CameraGroup {
+  int width_px = 0, height_px = 0;
+  std::vector<size_t> photos;  // indices into the detected photographs, those without corners too
+};
+
+struct CameraGroups {
+  std::vector<CameraGroup> groups;  // in the order of their first photograph
+  std::vector<int> group;           // of each photograph
+  std::vector<int> turns;           // of each photograph
+};
+
+// cameras = "auto": one group per stored size, EXIF camera and focal length; "one": a single group;
+// "each": a group per photograph. Throws UserError naming the photograph whose size or focal length
+// stands alone ("auto": a group of one or two beside larger ones; "one": any other size).
+CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::string& cameras,
+                          const std::vector<DetectedPhoto>& photos);
+
+// The bundle adjustment of all photographs with corners, in stored pictures. `photo_index` returns
+// which detected photograph each of its photos is.
+BundleProblem MakeProblem(const std::vector<DetectedPhoto>& photos, const CameraGroups& groups,
+                          std::vector<size_t>* photo_index);
+
+}  // namespace glint

@@ -1,0 +1,146 @@
+#include "calib/capture/detect_photos.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <opencv2/core.hpp>
+#include <thread>
+
+#include "calib/corners/markers.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/progress.h"
+
+namespace glint {
+namespace {
+
+DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
+                        const std::string& name, bool board_photo) {
+  const std::filesystem::path file = capture.folder / name;
+  const Photo photo = ReadPhoto(file);
+  DetectedPhoto detected;
+  detected.name = name;
+  detected.board_photo = board_photo;
+  detected.width_px = photo.image.width;
+  detected.height_px = photo.image.height;
+  detected.orientation = photo.orientation;
+  detected.focal_length_35mm = photo.focal_length_35mm;
+  detected.camera_model = photo.camera_model;
+  if (photo.exposure_time_s > 0 && photo.iso > 0 && photo.f_number > 0) {
+    detected.exposure = photo.exposure_time_s * photo.iso / (photo.f_number * photo.f_number);
+  }
+  DetectorOptions detector;
+  detector.longest_px = options.detect_px;
+  detector.min_corners = options.min_corners;
+  detected.detection = DetectBoard(GrayFromPhoto(photo), capture.board, detector);
+  if (!board_photo && !detected.detection.corners.empty()) {
+    const Encoding encoding = ResolveEncoding(capture.encoding, file, photo.bits);
+    detected.paper = SamplePaper(photo, encoding, capture.board, detected.detection.corners);
+  }
+  return detected;
+}
+
+std::string Listed(const std::vector<const DetectedPhoto*>& photos) {
+  constexpr size_t kMost = 6;
+  std::string text;
+  for (size_t i = 0; i < std::min(kMost, photos.size()); ++i) {
+    text += "\n  " + photos[i]->name + ": " + photos[i]->detection.problem;
+  }
+  if (photos.size() > kMost) text += fmt::format("\n  and {} more", photos.size() - kMost);
+  return text;
+}
+
+// " DICT_… shows 24 markers in photos/a.jpg": where the description names another dictionary.
+std::string OtherDictionary(const Capture& capture, const CalibOptions& options,
+                            const std::string& name) {
+  if (capture.board.kind != BoardKind::kCharuco) return "";
+  int markers = 0;
+  const std::string dictionary =
+      GuessDictionary(GrayFromPhoto(ReadPhoto(capture.folder / name)), options.detect_px, &markers);
+  if (dictionary.empty() || dictionary == capture.board.dictionary) return "";
+  return fmt::format("\n  {} shows {} markers of {}", name, markers, dictionary);
+}
+
+}  // namespace
+
+std::vector<DetectedPhoto> DetectPhotos(const Capture& capture, const CalibOptions& options,
+                                        int threads) {
+  cv::setNumThreads(1);  // photographs are what is shared out
+  const size_t flash = capture.photos.size(), all = flash + capture.board_photos.size();
+  std::vector<DetectedPhoto> photos(all);
+  std::vector<std::exception_ptr> errors(all);
+  Progress progress("corners", static_cast<std::int64_t>(all));
+  std::atomic<size_t> next{0};
+  const auto work = [&] {
+    for (size_t i = next++; i < all; i = next++) {
+      const std::string& name = i < flash ? capture.photos[i] : capture.board_photos[i - flash];
+      try {
+        photos[i] = DetectOne(capture, options, name, i >= flash);
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
+      progress.Advance(1, name);
+    }
+  };
+  std::vector<std::thread> workers;
+  for (int i = 1; i < std::min<int>(threads, static_cast<int>(all)); ++i)
+    workers.emplace_back(work);
+  work();
+  for (std::thread& worker : workers) worker.join();
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+  return photos;
+}
+
+void RequireBoard(const Capture& capture, const CalibOptions& options,
+                  const std::vector<DetectedPhoto>& photos) {
+  std::vector<const DetectedPhoto*> seen, placed, failed, mismatched, partly;
+  for (const DetectedPhoto& photo : photos) {
+    const BoardDetection& detection = photo.detection;
+    if (detection.mismatch) mismatched.push_back(&photo);
+    if (detection.corners.empty()) {
+      failed.push_back(&photo);
+      continue;
+    }
+    seen.push_back(&photo);
+    if (!detection.position_known) partly.push_back(&photo);
+    if (!photo.board_photo && detection.position_known) placed.push_back(&photo);
+  }
+  if (!mismatched.empty() && mismatched.size() >= seen.size()) {
+    throw UserError(capture.file, "board",
+                    fmt::format("a board that does not fit the description in {} of {} photographs",
+                                mismatched.size(), photos.size()),
+                    "see what is wrong:" + Listed(mismatched));
+  }
+  if (seen.empty()) {
+    throw UserError(capture.file, "photos",
+                    fmt::format("the board in none of the {} photographs", photos.size()),
+                    "check [board], or photograph the sample with the board round it:" +
+                        Listed(failed) + OtherDictionary(capture, options, photos[0].name));
+  }
+  if (seen.size() == 1 && photos.size() > 1 && options.fix_intrinsics.empty()) {
+    throw UserError(capture.file, "photos",
+                    fmt::format("the board in only one of the {} photographs ({})", photos.size(),
+                                seen[0]->name),
+                    "at least two are needed; check [board], or take more photographs with the "
+                    "whole board in them:" +
+                        Listed(failed));
+  }
+  if (placed.empty() && !partly.empty()) {
+    throw UserError(
+        capture.file, "board",
+        fmt::format("a whole board in none of the {} photographs", photos.size()),
+        "correct inner_corners (or squares), or take photographs with the whole board in "
+        "them:" +
+            Listed(partly));
+  }
+  if (placed.empty()) {
+    throw UserError(capture.file, "photos.files",
+                    "the board in photographs of [board] alone, in none of the sample",
+                    "photograph the sample with the board round it:" + Listed(failed));
+  }
+}
+
+}  // namespace glint

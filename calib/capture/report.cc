@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/capture/calibrate_capture.h"
+
+namespace glint {
+namespace {
+
+std::vector<double> List(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }
+std::vector<double> List(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+// JSON has no infinity: what cannot be told is null.
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json CameraMetrics(const CameraEstimate& estimate) {
+  Json json;
+  json["model"] = std::string(CameraModelName(estimate.camera.model));
+  json["size_px"] = {estimate.camera.width_px, estimate.camera.height_px};
+  json["photos"] = estimate.photos;
+  const auto& names = CameraParameterNames(estimate.camera.model);
+  for (size_t i = 0; i < names.size(); ++i) {
+    json["parameters"][names[i]] = {{"value", estimate.camera.parameters[i]},
+                                    {"sigma", Number(estimate.sigma[i])}};
+  }
+  json["covariance"] = Json::array();
+  for (long row = 0; row < estimate.covariance.rows(); ++row) {
+    Json values = Json::array();
+    for (long column = 0; column < estimate.covariance.cols(); ++column) {
+      values.push_back(Number(estimate.covariance(row, column)));
+    }
+    json["covariance"].push_back(values);
+  }
+  return json;
+}
+
+Json PhotoMetrics(const CalibSummary& summary, size_t index) {
+  const PhotoEstimate& estimate = summary.bundle.photos[index];
+  const size_t photo = summary.photo_index[index];
+  const Eigen::Vector3d position = Inverse(estimate.camera_from_sample).translation;
+  Json json;
+  json["photo"] = estimate.name;
+  json["for_intrinsics_only"] = summary.photos[photo].board_photo;
+  json["camera"] = estimate.camera;
+  json["quarter_turns"] = summary.groups.turns[photo];
+  json["corners"] = estimate.corners.size();
+  json["inliers"] = estimate.inliers();
+  json["rms_px"] = estimate.rms_px;
+  json["tilt_deg"] = estimate.tilt_deg;
+  json["position_in_sample_mm"] = List(position);
+  json["sigma_position_mm"] = Number(estimate.sigma_position_mm);
+  json["sigma_rotation_deg"] = Number(estimate.sigma_rotation_deg);
+  json["rejected_corners"] = Json::array();
+  for (const CornerResidual& corner : estimate.corners) {
+    if (corner.inlier) continue;
+    json["rejected_corners"].push_back({{"id", corner.id},
+                                        {"point_px", List(corner.point_px)},
+                                        {"residual_px", List(corner.residual_px)}});
+  }
+  return json;
+}
+
+Json LightMetrics(const CalibSummary& summary) {
+  Json json;
+  json["power"] = List(summary.calibration.light_rgb);
+  json["source"] = summary.power_source;
+  json["by_board"] = summary.power.known ? Json(List(summary.power.light_rgb)) : Json(nullptr);
+  json["spread"] = summary.power.spread;
+  json["paper_samples"] = summary.power.samples;
+  for (size_t i = 0; i < summary.calibration.photos.size(); ++i) {
+    json["by_photo"][summary.calibration.photos[i].photo] = summary.power.photo_power[i];
+  }
+  return json;
+}
+
+}  // namespace
+
+Json MetricsOf(const CalibSummary& summary) {
+  Json metrics;
+  metrics["rms_px"] = summary.bundle.rms_px;
+  metrics["corners"] = summary.bundle.corners;
+  metrics["inliers"] = summary.bundle.inliers;
+  metrics["cameras"] = Json::array();
+  for (const CameraEstimate& camera : summary.bundle.cameras) {
+    metrics["cameras"].push_back(CameraMetrics(camera));
+  }
+  metrics["photos"] = Json::array();
+  for (size_t i = 0; i < summary.bundle.photos.size(); ++i) {
+    if (!summary.bundle.photos[i].rejected.empty()) continue;
+    metrics["photos"].push_back(PhotoMetrics(summary, i));
+  }
+  metrics["rejected_photos"] = Json::array();
+  for (const RejectedPhoto& photo : summary.rejected) {
+    metrics["rejected_photos"].push_back({{"photo", photo.name}, {"reason", photo.reason}});
+  }
+  metrics["light"] = LightMetrics(summary);
+  return metrics;
+}
+
+Json ResidualsOf(const CalibSummary& summary) {
+  Json json;
+  json["about"] =
+      "per photo [corner id, x_px, y_px, residual x, residual y, inlier]: seen - predicted, in the "
+      "stored picture; the centre of the top-left pixel is (0.5, 0.5)";
+  json["photos"] = Json::object();
+  for (const PhotoEstimate& photo : summary.bundle.photos) {
+    Json corners = Json::array();
+    for (const CornerResidual& c : photo.corners) {
+      corners.push_back({c.id, c.point_px.x(), c.point_px.y(), c.residual_px.x(), c.residual_px.y(),
+                         c.inlier && photo.rejected.empty()});
+    }
+    json["photos"][photo.name] = corners;
+  }
+  return json;
+}
+
+std::string TextOf(const CalibSummary& summary) {
+  std::string text = "calib: " + summary.bundle.BriefReport();
+  for (size_t i = 0; i < summary.bundle.photos.size(); ++i) {
+    const PhotoEstimate& photo = summary.bundle.photos[i];
+    if (!photo.rejected.empty()) continue;
+    text += fmt::format(
+        "  {:<28} {:3} of {:3} corners  {:.3f} px  tilt {:4.1f} deg  camera at {:.0f} mm ± "
+        "{:.2f}{}\n",
+        photo.name, photo.inliers(), photo.corners.size(), photo.rms_px, photo.tilt_deg,
+        photo.camera_from_sample.translation.norm(), photo.sigma_position_mm,
+        summary.photos[summary.photo_index[i]].board_photo ? "  (intrinsics only)" : "");
+  }
+  for (const RejectedPhoto& photo : summary.rejected) {
+    text += fmt::format("  left out: {}: {}\n", photo.name, photo.reason);
+  }
+  const Eigen::Vector3d& power = summary.calibration.light_rgb;
+  text += fmt::format("light: power [{:.4g}, {:.4g}, {:.4g}] (from {}", power.x(), power.y(),
+                      power.z(), summary.power_source);
+  if (summary.power_source == "board") {
+    text += fmt::format(", {} spots of paper, spread over photos {:.1f} %", summary.power.samples,
+                        100 * summary.power.spread);
+  }
+  return text + ")\n";
+}
+
+}  // namespace glint
