@@ -4,6 +4,8 @@
 #include <memory>
 #include <new>
 
+#include "fitting/reflectance/brdf_constants.h"
+
 namespace glint::kernel {
 namespace {
 
@@ -47,10 +49,10 @@ View<T> MakeView(const glint::View& view) {
   for (int i = 0; i < 3; ++i) {
     made.camera_mm[i] = static_cast<T>(view.camera_in_sample_mm[i]);
     made.light_mm[i] = static_cast<T>(view.light_in_sample_mm[i]);
-    made.light_rgb[i] = static_cast<T>(view.light_rgb[i]);
-    made.ambient_over_pi[i] = static_cast<T>(view.ambient_rgb[i] / 3.14159265358979323846);
+    made.exposed_light[i] = static_cast<T>(view.exposure * view.light_rgb[i]);
+    made.exposed_ambient_over_pi[i] =
+        static_cast<T>(view.exposure * view.ambient_rgb[i] * kInversePi);
   }
-  made.exposure = static_cast<T>(view.exposure);
   return made;
 }
 
@@ -82,7 +84,7 @@ std::vector<ViewSums> RunJobs(std::span<const Job<T>> jobs, Mode mode, const Til
     const Job<T>& job = jobs[tile.job];
     std::vector<ViewSums>& sums = tile_sums[index];
     sums.resize(job.view_count);
-    const Scratch scratch(::operator new(ScratchBytes<T>(job.view_count), kScratchAlignment));
+    const Scratch scratch(::operator new(ScratchBytes(job.view_count), kScratchAlignment));
     run_rows(job, mode, tile.row_begin, tile.row_end, scratch.get(), sums.data());
   });
 

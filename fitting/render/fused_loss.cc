@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "fitting/reflectance/brdf_constants.h"
 #include "fitting/render/batch.h"
 #include "fitting/render/check_sizes.h"
 
@@ -25,7 +26,8 @@ std::vector<kernel::View<float>> KernelViews(std::span<const ViewImages> images)
 }
 
 // Scales the kernel's sums to means.
-void Summarise(std::span<const kernel::ViewSums> sums, LossAndGradient* result) {
+void Summarise(std::span<const kernel::ViewSums> sums, std::span<const ViewImages> images,
+               LossAndGradient* result) {
   double loss = 0, weight = 0;
   for (const kernel::ViewSums& view : sums) {
     loss += view.loss();
@@ -42,11 +44,15 @@ void Summarise(std::span<const kernel::ViewSums> sums, LossAndGradient* result) 
   const float gradient_scale = static_cast<float>(scale);
   for (float& value : result->gradient.planes) value *= gradient_scale;
   if (result->gradient.planes.empty()) return;
-  for (const kernel::ViewSums& view : sums) {
-    result->light_gradients.push_back(
-        {view.light(0) * scale, view.light(1) * scale, view.light(2) * scale});
-    result->ambient_gradients.push_back(
-        {view.ambient(0) * scale, view.ambient(1) * scale, view.ambient(2) * scale});
+  for (size_t v = 0; v < sums.size(); ++v) {
+    const double by_exposed = scale * images[v].view.exposure;
+    Vec3d light, ambient;
+    for (int c = 0; c < 3; ++c) {
+      light[c] = sums[v].light(c) * by_exposed;
+      ambient[c] = sums[v].ambient(c) * by_exposed * kInversePi;
+    }
+    result->light_gradients.push_back(light);
+    result->ambient_gradients.push_back(ambient);
   }
 }
 
@@ -75,7 +81,7 @@ LossAndGradient EvaluateLogLoss(const SvbrdfMaps& maps, const SamplePlane& plane
   const auto mode = options.want_gradient ? kernel::Mode::kLossGradient : kernel::Mode::kLoss;
   const std::vector<kernel::ViewSums> sums =
       kernel::RunJobs<float>({&job, 1}, mode, kernel::ThreadRunner(options.threads));
-  Summarise(sums, &result);
+  Summarise(sums, images, &result);
   return result;
 }
 

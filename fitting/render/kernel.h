@@ -19,18 +19,17 @@ template <class T>
 struct View {
   T camera_mm[3];
   T light_mm[3];
-  T light_rgb[3];
-  T ambient_over_pi[3];
-  T exposure;
-  const T* image = nullptr;  // 3 planes `image_stride` apart
-  const T* mask = nullptr;   // or null: all 1
-  T* rendered = nullptr;     // 3 planes `image_stride` apart
+  T exposed_light[3];            // exposure·light_rgb
+  T exposed_ambient_over_pi[3];  // exposure·ambient_rgb/π
+  const T* image = nullptr;      // 3 planes `image_stride` apart
+  const T* mask = nullptr;       // or null: all 1
+  T* rendered = nullptr;         // 3 planes `image_stride` apart
 };
 
 // What a view collects over texels; sums are not divided by anything.
 struct ViewSums {
   static constexpr int kCount = 8;
-  // Σ mask·|…| of three channels, Σ mask, ∂Σ/∂light_rgb, ∂Σ/∂ambient_rgb.
+  // Σ mask·|…| of three channels, Σ mask, ∂Σ/∂exposed_light, ∂Σ/∂(exposed_ambient_over_pi).
   double values[kCount] = {};
   double loss() const { return values[0]; }
   double weight() const { return values[1]; }
@@ -61,16 +60,17 @@ struct Job {
   T log_offset = T(0.01);
 };
 
+// Loss modes: radiances above count as this, so that products of three stay finite.
+inline constexpr double kMostRadiance = 1e12;
+
 // Columns that are worked on together: gradients of so many texels stay in the first-level cache.
 inline constexpr int kChunk = 128;
 inline constexpr int kPlanes = 10;  // of the maps: kSvbrdfPlanes
 
 // Bytes of scratch RunRows needs, to be aligned to 64.
-template <class T>
-size_t ScratchBytes(int view_count) {
+inline size_t ScratchBytes(int view_count) {
   constexpr size_t kWidestVector = 64;
-  return sizeof(T) * kPlanes * kChunk +
-         static_cast<size_t>(view_count) * ViewSums::kCount * kWidestVector;
+  return static_cast<size_t>(view_count) * ViewSums::kCount * kWidestVector;
 }
 
 // Adds the sums of rows [row_begin, row_end) to sums[view_count]; writes those rows' outputs.
@@ -86,6 +86,8 @@ template <>
 RunRowsFunction<double> RunRows<double>(InstructionSet set);
 
 bool Available(InstructionSet set);  // on this processor
+// The best set of this processor, or the one that the environment variable GLINT_KERNEL names (one
+// of Name's; baseline if it is not available), read once. Sets differ in the last bits of results.
 InstructionSet BestInstructionSet();
 const char* Name(InstructionSet set);
 

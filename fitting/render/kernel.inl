@@ -18,33 +18,39 @@ namespace {
 
 #include "fitting/render/kernel_shade.inl"
 
-template <bool kFull, class T>
+// Texels of one row that are worked on together, in vectors. Lanes beyond the row's end hold zeros,
+// and weigh nothing.
+template <class T>
+struct Chunk {
+  static constexpr int kVectors = kChunk / kLanes<T>;
+  Texels<T> texels[kVectors];
+  Texels<T> target[kVectors];
+  VectorOf<T> x_mm[kVectors];
+  VectorOf<T> gradient[kVectors][kPlanes];
+  // Of one view at a time, in the modes with a gradient.
+  Directions<T> directions[kVectors];
+  Shading<T> shading[kVectors];
+  VectorOf<T> by_image[kVectors][3];
+};
+
+template <class T>
 GLINT_INLINE Texels<T> LoadTexels(const T* planes, size_t stride, int count) {
   Texels<T> texels;
   for (int i = 0; i < 3; ++i) {
-    texels.normal[i] = Load<kFull>(planes + i * stride, count);
-    texels.diffuse[i] = Load<kFull>(planes + (3 + i) * stride, count);
-    texels.specular[i] = Load<kFull>(planes + (6 + i) * stride, count);
+    texels.normal[i] = Load(planes + i * stride, count);
+    texels.diffuse[i] = Load(planes + (3 + i) * stride, count);
+    texels.specular[i] = Load(planes + (6 + i) * stride, count);
   }
-  texels.roughness = Load<kFull>(planes + 9 * stride, count);
+  texels.roughness = Load(planes + 9 * stride, count);
   return texels;
 }
 
-// One vector of texels in one view.
-template <class T>
-struct Place {
-  size_t texel;  // index of the first in a plane
-  int count;     // of texels, ≤ kLanes<T>
-  VectorOf<T> x_mm;
-  T y_mm;
-};
-
-// Radiance from what Shade gives: exposure·(light_rgb·falloff·(…) + ambient·lobe/π).
+// Radiance from what Shade gives: irradiance·(…) + ambient·lobe/π, times exposure.
 template <class T>
 GLINT_INLINE VectorOf<T> Radiance(const View<T>& view, const Directions<T>& d, const Shading<T>& s,
                                   int c) {
-  const VectorOf<T> lit = d.falloff * s.radiance[c] * view.light_rgb[c];
-  return Fma(s.lobe[c], Broadcast(view.ambient_over_pi[c]), lit) * view.exposure;
+  const VectorOf<T> lit = s.radiance[c] * (d.falloff * view.exposed_light[c]);
+  return Fma(s.lobe[c], Broadcast(view.exposed_ambient_over_pi[c]), lit);
 }
 
 // The adjoint of Radiance: gradients of the texels, and of the view's light and ambient.
@@ -54,129 +60,177 @@ GLINT_INLINE void PullBack(const Job<T>& job, const View<T>& view, const Texels<
                            VectorOf<T>* gradient, VectorOf<T>* sums) {
   VectorOf<T> by_radiance[3], by_ambient_lobe[3];
   for (int c = 0; c < 3; ++c) {
-    const VectorOf<T> exposed = by_image[c] * view.exposure;
-    const VectorOf<T> by_power = exposed * d.falloff;
-    sums[2 + c] = Fma(by_power, s.radiance[c], sums[2 + c]);
-    sums[5 + c] = Fma(exposed, s.lobe[c] * T(kInversePi), sums[5 + c]);
-    by_radiance[c] = by_power * view.light_rgb[c];
-    by_ambient_lobe[c] = exposed * (view.ambient_over_pi[c] * T(1 / kInversePi));
+    const VectorOf<T> by_light = by_image[c] * d.falloff;
+    sums[2 + c] = Fma(by_light, s.radiance[c], sums[2 + c]);
+    sums[5 + c] = Fma(by_image[c], s.lobe[c], sums[5 + c]);
+    by_radiance[c] = by_light * view.exposed_light[c];
+    by_ambient_lobe[c] = by_image[c] * view.exposed_ambient_over_pi[c];
   }
   AddAdjoint<T>(texels, d, s, job.one_minus_specular, by_radiance, by_ambient_lobe, gradient);
 }
 
-// |log(target + offset) − log(rendered + offset)| of one channel, and its derivative by rendered.
+// Σ |log(target + offset) − log(rendered + offset)| over channels, and its derivatives by rendered.
 template <class T>
 struct LogDifference {
-  VectorOf<T> value, slope;
+  VectorOf<T> value, slope[3];
 };
 
+// One logarithm and two divisions for three channels: the sum of |log(x/y)| is the logarithm of
+// Π max(x, y) / Π min(x, y), and all 1/y come from 1/Πy.
 template <class T>
-GLINT_INLINE LogDifference<T> Compare(const Job<T>& job, const VectorOf<T>& rendered,
-                                      const VectorOf<T>& target) {
+GLINT_INLINE LogDifference<T> Compare(const Job<T>& job, const VectorOf<T>* rendered,
+                                      const VectorOf<T>* target) {
   using V = VectorOf<T>;
-  const V zero = V{};
-  // Without a clamp the bound is beyond any radiance.
-  const V bound = Broadcast(job.clamp_rendered ? T(1) : T(3e38));
-  const V shown = Min(Max(rendered, zero), bound);
-  const V inverse = T(1) / (shown + job.log_offset);
-  const V log = Log((Max(target, zero) + job.log_offset) * inverse);
+  const V zero = V{}, most = Broadcast(T(kMostRadiance));
+  const V bound = job.clamp_rendered ? Broadcast(T(1)) : most;
+  V wanted[3], shown[3];
+  for (int c = 0; c < 3; ++c) {
+    shown[c] = Min(Max(rendered[c], zero), bound) + job.log_offset;
+    wanted[c] = Min(Max(target[c], zero), most) + job.log_offset;
+  }
+  V larger = Max(shown[0], wanted[0]), smaller = Min(shown[0], wanted[0]);
+  for (int c = 1; c < 3; ++c) {
+    larger *= Max(shown[c], wanted[c]);
+    smaller *= Min(shown[c], wanted[c]);
+  }
   LogDifference<T> difference;
-  difference.value = Abs(log);
-  const V slope = log > zero ? -inverse : (log < zero ? inverse : zero);
-  // As torch's clamp: the derivative passes at the bounds themselves.
-  difference.slope = rendered > bound ? zero : (rendered < zero ? zero : slope);
+  difference.value = Log(larger / smaller);
+  const V first_two = shown[0] * shown[1];
+  const V inverse = T(1) / (first_two * shown[2]);
+  const V inverse_first_two = inverse * shown[2];
+  const V inverses[3] = {inverse_first_two * shown[1], inverse_first_two * shown[0],
+                         inverse * first_two};
+  for (int c = 0; c < 3; ++c) {
+    const V below = shown[c] < wanted[c] ? -inverses[c] : zero;
+    const V slope = shown[c] > wanted[c] ? inverses[c] : below;
+    // As torch's clamp: the derivative passes at the bounds themselves.
+    const V under_bound = rendered[c] > bound ? zero : slope;
+    difference.slope[c] = rendered[c] < zero ? zero : under_bound;
+  }
   return difference;
 }
 
-template <Mode kMode, bool kTargetMaps, bool kFull, class T>
-GLINT_INLINE void Visit(const Job<T>& job, const View<T>& view, const Place<T>& place,
-                        VectorOf<T>* gradient, VectorOf<T>* sums) {
-  using V = VectorOf<T>;
-  const V zero = V{};
-  const Texels<T> texels =
-      LoadTexels<kFull>(job.planes + place.texel, job.plane_stride, place.count);
-  const Directions<T> d = Direct(view, job.inverse_square, place.x_mm, place.y_mm);
-  const Shading<T> s = Shade(texels, d, job.one_minus_specular);
-  V by_image[3];
-  if constexpr (kMode == Mode::kRender) {
-    for (int c = 0; c < 3; ++c) {
-      Store<kFull>(view.rendered + c * job.image_stride + place.texel, Radiance(view, d, s, c),
-                   place.count);
-    }
-    return;
-  } else if constexpr (kMode == Mode::kAdjoint) {
-    for (int c = 0; c < 3; ++c) {
-      by_image[c] = Load<kFull>(view.image + c * job.image_stride + place.texel, place.count);
-    }
-  } else {
-    V weight = Broadcast(T(1));
-    if (view.mask != nullptr) {
-      weight = Load<kFull>(view.mask + place.texel, place.count);
-    } else if constexpr (!kFull) {
-      for (int i = place.count; i < kLanes<T>; ++i) weight[i] = 0;
-    }
-    V target[3];
-    if constexpr (kTargetMaps) {
-      const Texels<T> other =
-          LoadTexels<kFull>(job.target_planes + place.texel, job.target_stride, place.count);
-      const Shading<T> shown = Shade(other, d, job.one_minus_specular);
-      for (int c = 0; c < 3; ++c) {
-        const V radiance = Radiance(view, d, shown, c);
-        target[c] = job.clamp_rendered ? Min(radiance, Broadcast(T(1))) : radiance;
-      }
-    } else {
-      for (int c = 0; c < 3; ++c) {
-        target[c] = Load<kFull>(view.image + c * job.image_stride + place.texel, place.count);
-      }
-    }
-    V loss = zero;
-    for (int c = 0; c < 3; ++c) {
-      const LogDifference<T> difference = Compare(job, Radiance(view, d, s, c), target[c]);
-      loss += difference.value;
-      by_image[c] = weight > zero ? difference.slope * weight : zero;
-    }
-    sums[0] += weight > zero ? loss * weight : zero;  // a choice, as the image may hold NaN there
-    sums[1] += weight;
-  }
-  if constexpr (kMode == Mode::kAdjoint || kMode == Mode::kLossGradient) {
-    PullBack<T>(job, view, texels, d, s, by_image, gradient, sums);
+// Where in a plane a vector of texels starts, and how many texels it holds (≤ kLanes<T>).
+struct Place {
+  size_t texel;
+  int count;
+};
+
+// The j-th vector of a chunk of `columns` texels that starts at index `first`.
+template <class T>
+GLINT_INLINE Place PlaceOf(size_t first, int columns, int j) {
+  const int offset = j * kLanes<T>;
+  return {first + offset, columns - offset < kLanes<T> ? columns - offset : kLanes<T>};
+}
+
+template <class T>
+GLINT_INLINE void LoadImage(const Job<T>& job, const T* image, const Place& place,
+                            VectorOf<T>* channels) {
+  for (int c = 0; c < 3; ++c) {
+    channels[c] = Load(image + c * job.image_stride + place.texel, place.count);
   }
 }
 
-// Views of one chunk of a row. `gradient` is [kPlanes][kChunk / kLanes], `sums` [views][kCount].
-template <Mode kMode, bool kTargetMaps, class T>
-void VisitChunk(const Job<T>& job, int row, int column, int columns, VectorOf<T>* gradient,
-                VectorOf<T>* sums) {
-  constexpr int kVectors = kChunk / kLanes<T>;
-  const size_t first = static_cast<size_t>(row) * job.width + column;
-  for (int v = 0; v < job.view_count; ++v) {
-    VectorOf<T> local[ViewSums::kCount] = {};
-    for (int j = 0; j * kLanes<T> < columns; ++j) {
-      const int offset = j * kLanes<T>;
-      VectorOf<T> adjoint[kPlanes] = {};
-      Place<T> place{first + offset, columns - offset, {}, job.y_mm[row]};
-      if (place.count >= kLanes<T>) {
-        place.x_mm = Load<true>(job.x_mm + column + offset, place.count);
-        Visit<kMode, kTargetMaps, true>(job, job.views[v], place, adjoint, local);
-      } else {
-        place.x_mm = Load<false>(job.x_mm + column + offset, place.count);
-        Visit<kMode, kTargetMaps, false>(job, job.views[v], place, adjoint, local);
-      }
-      if constexpr (kMode == Mode::kAdjoint || kMode == Mode::kLossGradient) {
-        for (int p = 0; p < kPlanes; ++p) gradient[p * kVectors + j] += adjoint[p];
-      }
+// Loss of one vector of texels into sums[0] and its weight into sums[1], and ∂loss/∂radiance.
+template <bool kTargetMaps, class T>
+GLINT_INLINE void CompareVector(const Job<T>& job, const View<T>& view, const Place& place,
+                                const Texels<T>& target_texels, const Directions<T>& d,
+                                const Shading<T>& s, VectorOf<T>* by_image, VectorOf<T>* sums) {
+  using V = VectorOf<T>;
+  const V zero = V{};
+  V weight = Broadcast(T(1));
+  if (view.mask != nullptr) {
+    weight = Load(view.mask + place.texel, place.count);
+  } else if (place.count < kLanes<T>) {
+    for (int i = place.count; i < kLanes<T>; ++i) weight[i] = 0;
+  }
+  V target[3], rendered[3];
+  if constexpr (kTargetMaps) {
+    const Shading<T> shown = Shade(target_texels, d, job.one_minus_specular);
+    for (int c = 0; c < 3; ++c) {
+      target[c] = Radiance(view, d, shown, c);
+      if (job.clamp_rendered) target[c] = Min(target[c], Broadcast(T(1)));
     }
-    for (int i = 0; i < ViewSums::kCount; ++i) sums[v * ViewSums::kCount + i] += local[i];
+  } else {
+    LoadImage(job, view.image, place, target);
+  }
+  for (int c = 0; c < 3; ++c) rendered[c] = Radiance(view, d, s, c);
+  const LogDifference<T> difference = Compare(job, rendered, target);
+  // Choices, and not only products, as the image may hold NaN where the weight is 0.
+  sums[0] += weight > zero ? difference.value * weight : zero;
+  sums[1] += weight;
+  for (int c = 0; c < 3; ++c) by_image[c] = weight > zero ? difference.slope[c] * weight : zero;
+}
+
+// Modes without a gradient, in one view of a chunk that starts at index `first` of the planes.
+template <Mode kMode, bool kTargetMaps, class T>
+GLINT_INLINE void VisitForward(const Job<T>& job, const View<T>& view, size_t first, int columns,
+                               T y_mm, const Chunk<T>& chunk, VectorOf<T>* sums) {
+  for (int j = 0; j * kLanes<T> < columns; ++j) {
+    const Place place = PlaceOf<T>(first, columns, j);
+    const Directions<T> d = Direct(view, job.inverse_square, chunk.x_mm[j], y_mm);
+    const Shading<T> s = Shade(chunk.texels[j], d, job.one_minus_specular);
+    if constexpr (kMode == Mode::kRender) {
+      for (int c = 0; c < 3; ++c) {
+        Store(view.rendered + c * job.image_stride + place.texel, Radiance(view, d, s, c),
+              place.count);
+      }
+    } else {
+      VectorOf<T> unused[3];
+      CompareVector<kTargetMaps>(job, view, place, chunk.target[j], d, s, unused, sums);
+    }
+  }
+}
+
+// Modes with a gradient. A pass over all vectors for each step, rather than all steps for each
+// vector, lets the processor overlap the long chains of roots and divisions of several vectors, and
+// needs fewer registers: faster, though results between the steps go through memory.
+template <Mode kMode, bool kTargetMaps, class T>
+GLINT_INLINE void VisitWithGradient(const Job<T>& job, const View<T>& view, size_t first,
+                                    int columns, T y_mm, Chunk<T>& chunk, VectorOf<T>* sums) {
+  const int vectors = (columns + kLanes<T> - 1) / kLanes<T>;
+  for (int j = 0; j < vectors; ++j) {
+    chunk.directions[j] = Direct(view, job.inverse_square, chunk.x_mm[j], y_mm);
+  }
+  for (int j = 0; j < vectors; ++j) {
+    chunk.shading[j] = Shade(chunk.texels[j], chunk.directions[j], job.one_minus_specular);
+  }
+  for (int j = 0; j < vectors; ++j) {
+    const Place place = PlaceOf<T>(first, columns, j);
+    if constexpr (kMode == Mode::kAdjoint) {
+      LoadImage(job, view.image, place, chunk.by_image[j]);
+    } else {
+      CompareVector<kTargetMaps>(job, view, place, chunk.target[j], chunk.directions[j],
+                                 chunk.shading[j], chunk.by_image[j], sums);
+    }
+  }
+  for (int j = 0; j < vectors; ++j) {
+    PullBack<T>(job, view, chunk.texels[j], chunk.directions[j], chunk.shading[j],
+                chunk.by_image[j], chunk.gradient[j], sums);
+  }
+}
+
+template <bool kTargetMaps, class T>
+void LoadChunk(const Job<T>& job, size_t first, int column, int columns, Chunk<T>& chunk) {
+  for (int j = 0; j * kLanes<T> < columns; ++j) {
+    const int offset = j * kLanes<T>, count = columns - offset;
+    chunk.texels[j] = LoadTexels(job.planes + first + offset, job.plane_stride, count);
+    if constexpr (kTargetMaps) {
+      chunk.target[j] = LoadTexels(job.target_planes + first + offset, job.target_stride, count);
+    }
+    chunk.x_mm[j] = Load(job.x_mm + column + offset, count);
+    for (int p = 0; p < kPlanes; ++p) chunk.gradient[j][p] = VectorOf<T>{};
   }
 }
 
 template <class T>
-void StoreGradient(const Job<T>& job, int row, int column, int columns,
-                   const VectorOf<T>* gradient) {
-  const size_t first = static_cast<size_t>(row) * job.width + column;
-  for (int p = 0; p < kPlanes; ++p) {
-    __builtin_memcpy(job.gradient + p * job.gradient_stride + first,
-                     gradient + p * (kChunk / kLanes<T>), columns * sizeof(T));
+void StoreGradient(const Job<T>& job, size_t first, int columns, const Chunk<T>& chunk) {
+  for (int j = 0; j * kLanes<T> < columns; ++j) {
+    const int offset = j * kLanes<T>;
+    for (int p = 0; p < kPlanes; ++p) {
+      Store(job.gradient + p * job.gradient_stride + first + offset, chunk.gradient[j][p],
+            columns - offset);
+    }
   }
 }
 
@@ -193,23 +247,50 @@ void FlushSums(VectorOf<T>* vectors, int view_count, ViewSums* sums) {
   }
 }
 
+// Images lie far apart, and a chunk is too short for the processor to see their pattern by itself.
+template <class T>
+GLINT_INLINE void Prefetch(const Job<T>& job, const View<T>& view, size_t first, int columns) {
+  constexpr int kTexelsPerLine = 64 / sizeof(T);
+  for (int i = 0; i < columns; i += kTexelsPerLine) {
+    if (view.mask != nullptr) __builtin_prefetch(view.mask + first + i);
+    if (view.image == nullptr) continue;
+    for (int c = 0; c < 3; ++c) __builtin_prefetch(view.image + c * job.image_stride + first + i);
+  }
+}
+
+// All views of one chunk. `vector_sums` is [views][kCount].
+template <Mode kMode, bool kTargetMaps, class T>
+void VisitChunk(const Job<T>& job, int row, int column, int columns, Chunk<T>& chunk,
+                VectorOf<T>* vector_sums) {
+  constexpr bool kGradient = kMode == Mode::kAdjoint || kMode == Mode::kLossGradient;
+  const size_t first = static_cast<size_t>(row) * job.width + column;
+  const T y_mm = job.y_mm[row];
+  LoadChunk<kTargetMaps>(job, first, column, columns, chunk);
+  for (int v = 0; v < job.view_count; ++v) {
+    if (v + 1 < job.view_count) Prefetch(job, job.views[v + 1], first, columns);
+    VectorOf<T> sums[ViewSums::kCount] = {};
+    if constexpr (kGradient) {
+      VisitWithGradient<kMode, kTargetMaps>(job, job.views[v], first, columns, y_mm, chunk, sums);
+    } else {
+      VisitForward<kMode, kTargetMaps>(job, job.views[v], first, columns, y_mm, chunk, sums);
+    }
+    for (int i = 0; i < ViewSums::kCount; ++i) vector_sums[v * ViewSums::kCount + i] += sums[i];
+  }
+  if constexpr (kGradient) StoreGradient(job, first, columns, chunk);
+}
+
 template <Mode kMode, bool kTargetMaps, class T>
 void VisitRows(const Job<T>& job, int row_begin, int row_end, void* scratch, ViewSums* sums) {
   using V = VectorOf<T>;
-  constexpr bool kGradient = kMode == Mode::kAdjoint || kMode == Mode::kLossGradient;
   constexpr int kTexelsPerFlush = 4096;  // single-precision sums stay short, so stay accurate
-  V* gradient = static_cast<V*>(scratch);
-  V* vector_sums = gradient + kPlanes * (kChunk / kLanes<T>);
+  Chunk<T> chunk;
+  V* vector_sums = static_cast<V*>(scratch);
   for (int i = 0; i < job.view_count * ViewSums::kCount; ++i) vector_sums[i] = V{};
   int since_flush = 0;
   for (int row = row_begin; row < row_end; ++row) {
     for (int column = 0; column < job.width; column += kChunk) {
       const int columns = job.width - column < kChunk ? job.width - column : kChunk;
-      if constexpr (kGradient) {
-        for (int i = 0; i < kPlanes * (kChunk / kLanes<T>); ++i) gradient[i] = V{};
-      }
-      VisitChunk<kMode, kTargetMaps>(job, row, column, columns, gradient, vector_sums);
-      if constexpr (kGradient) StoreGradient(job, row, column, columns, gradient);
+      VisitChunk<kMode, kTargetMaps>(job, row, column, columns, chunk, vector_sums);
       since_flush += columns;
       if (since_flush >= kTexelsPerFlush) {
         FlushSums<T>(vector_sums, job.view_count, sums);

@@ -1,3 +1,6 @@
+#include <cstdlib>
+#include <cstring>
+
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/render/kernel.h"
 
@@ -27,19 +30,31 @@ bool Available(InstructionSet set) {
   return set == InstructionSet::kBaseline;
 }
 
+namespace {
+
+InstructionSet ChooseInstructionSet() {
+  constexpr InstructionSet kBestFirst[] = {InstructionSet::kAvx512, InstructionSet::kAvx2,
+                                           InstructionSet::kBaseline};
+  const char* wanted = std::getenv("GLINT_KERNEL");
+  for (const InstructionSet set : kBestFirst) {
+    if (Available(set) && (wanted == nullptr || std::strcmp(wanted, Name(set)) == 0)) return set;
+  }
+  return InstructionSet::kBaseline;
+}
+
+}  // namespace
+
 InstructionSet BestInstructionSet() {
-  static const InstructionSet best = Available(InstructionSet::kAvx512) ? InstructionSet::kAvx512
-                                     : Available(InstructionSet::kAvx2) ? InstructionSet::kAvx2
-                                                                        : InstructionSet::kBaseline;
+  static const InstructionSet best = ChooseInstructionSet();
   return best;
 }
 
 const char* Name(InstructionSet set) {
   switch (set) {
     case InstructionSet::kAvx512:
-      return "AVX-512";
+      return "avx512";
     case InstructionSet::kAvx2:
-      return "AVX2";
+      return "avx2";
     case InstructionSet::kBaseline:
       break;
   }

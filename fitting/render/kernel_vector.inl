@@ -29,15 +29,30 @@ GLINT_INLINE typename Lanes<T>::Vector Broadcast(T x) {
   return x - typename Lanes<T>::Vector{};
 }
 
-template <class V>
-GLINT_INLINE V Max(const V& a, const V& b) {
+// b where a is not a number, as the processors' own instructions.
+GLINT_INLINE Floats Max(const Floats& a, const Floats& b) {
+#if GLINT_VECTOR_BYTES == 64
+  return (Floats)_mm512_maskz_max_ps(0xffff, (__m512)a, (__m512)b);
+#elif GLINT_VECTOR_BYTES == 32
+  return (Floats)_mm256_max_ps((__m256)a, (__m256)b);
+#else
   return a > b ? a : b;
+#endif
 }
 
-template <class V>
-GLINT_INLINE V Min(const V& a, const V& b) {
+GLINT_INLINE Floats Min(const Floats& a, const Floats& b) {
+#if GLINT_VECTOR_BYTES == 64
+  return (Floats)_mm512_maskz_min_ps(0xffff, (__m512)a, (__m512)b);
+#elif GLINT_VECTOR_BYTES == 32
+  return (Floats)_mm256_min_ps((__m256)a, (__m256)b);
+#else
   return a < b ? a : b;
+#endif
 }
+
+GLINT_INLINE Doubles Max(const Doubles& a, const Doubles& b) { return a > b ? a : b; }
+
+GLINT_INLINE Doubles Min(const Doubles& a, const Doubles& b) { return a < b ? a : b; }
 
 // a·b + c, rounded once where the instruction set can.
 GLINT_INLINE Floats Fma(const Floats& a, const Floats& b, const Floats& c) {
@@ -119,16 +134,15 @@ GLINT_INLINE Doubles Log(const Doubles& x) {
   return log;
 }
 
-template <class V>
-GLINT_INLINE V Abs(const V& x) {
-  return x < 0 ? -x : x;
-}
+GLINT_INLINE Floats Abs(const Floats& x) { return (Floats)((Ints)x & 0x7fffffff); }
 
-// Loads and stores kFull vectors, or only `count` lanes (the others read as 0).
-template <bool kFull, class T>
+GLINT_INLINE Doubles Abs(const Doubles& x) { return x < 0 ? -x : x; }
+
+// Loads and stores a vector, or only its first `count` lanes (the others then read as 0).
+template <class T>
 GLINT_INLINE typename Lanes<T>::Vector Load(const T* from, int count) {
   typename Lanes<T>::Vector v = {};
-  if constexpr (kFull) {
+  if (count >= kLanes<T>) {
     __builtin_memcpy(&v, from, sizeof(v));
   } else {
     for (int i = 0; i < count; ++i) v[i] = from[i];
@@ -136,9 +150,9 @@ GLINT_INLINE typename Lanes<T>::Vector Load(const T* from, int count) {
   return v;
 }
 
-template <bool kFull, class T>
+template <class T>
 GLINT_INLINE void Store(T* to, const typename Lanes<T>::Vector& v, int count) {
-  if constexpr (kFull) {
+  if (count >= kLanes<T>) {
     __builtin_memcpy(to, &v, sizeof(v));
   } else {
     for (int i = 0; i < count; ++i) to[i] = v[i];

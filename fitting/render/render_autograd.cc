@@ -65,9 +65,10 @@ class BatchJobs {
     for (size_t v = 0; v < views_.size(); ++v) views_[v].mask = masks + v * texels();
   }
 
-  void SetLight(const float* light_rgb) {
+  void SetLight(const ViewBatch& batch, const float* light_rgb) {
     for (size_t v = 0; v < views_.size(); ++v) {
-      for (int c = 0; c < 3; ++c) views_[v].light_rgb[c] = light_rgb[v * 3 + c];
+      const float exposure = static_cast<float>(batch.views[v].exposure);
+      for (int c = 0; c < 3; ++c) views_[v].exposed_light[c] = exposure * light_rgb[v * 3 + c];
     }
   }
 
@@ -138,7 +139,7 @@ struct BatchLoss {
   Tensor by_light;
 };
 
-BatchLoss Summarise(const std::vector<kernel::ViewSums>& sums, int64_t elements) {
+BatchLoss Summarise(const std::vector<kernel::ViewSums>& sums, const ViewBatch& batch) {
   BatchLoss result;
   double weight = 0;
   for (const kernel::ViewSums& view : sums) {
@@ -148,15 +149,13 @@ BatchLoss Summarise(const std::vector<kernel::ViewSums>& sums, int64_t elements)
   TORCH_CHECK(weight > 0, "masks: no usable texel in any view (every mask is 0)");
   result.scale = 1 / (3 * weight);
   result.loss *= result.scale;
-  const int64_t views = static_cast<int64_t>(sums.size());
-  result.by_light = torch::empty({views, 3});
+  result.by_light = torch::empty({static_cast<int64_t>(sums.size()), 3});
   float* by_light = result.by_light.data_ptr<float>();
-  for (int64_t v = 0; v < views; ++v) {
-    for (int c = 0; c < 3; ++c) {
-      by_light[v * 3 + c] = static_cast<float>(sums[v].light(c) * result.scale);
-    }
+  for (size_t v = 0; v < sums.size(); ++v) {
+    const double scale = batch.views[v].exposure * result.scale;
+    for (int c = 0; c < 3; ++c) by_light[v * 3 + c] = static_cast<float>(sums[v].light(c) * scale);
   }
-  result.by_light = result.by_light.view({elements, views / elements, 3});
+  result.by_light = result.by_light.view({-1, batch.views_per_element, 3});
   return result;
 }
 
@@ -174,14 +173,14 @@ class LogLossFunction : public torch::autograd::Function<LogLossFunction> {
     if (Given(target_maps)) jobs.SetTarget(target_maps.data_ptr<float>());
     if (Given(images)) jobs.SetImages(images.data_ptr<float>());
     if (Given(masks)) jobs.SetMasks(masks.data_ptr<float>());
-    if (Given(light_rgb)) jobs.SetLight(light_rgb.data_ptr<float>());
+    if (Given(light_rgb)) jobs.SetLight(batch, light_rgb.data_ptr<float>());
     for (kernel::Job<float>& job : jobs.jobs()) {
       job.clamp_rendered = options.clamp_rendered;
       job.log_offset = static_cast<float>(options.offset);
     }
     Tensor gradient = want_gradient ? jobs.SetGradientLike(maps) : Tensor();
     const BatchLoss result = Summarise(
-        jobs.Run(want_gradient ? kernel::Mode::kLossGradient : kernel::Mode::kLoss), maps.size(0));
+        jobs.Run(want_gradient ? kernel::Mode::kLossGradient : kernel::Mode::kLoss), batch);
     if (want_gradient) {
       context->save_for_backward({gradient, result.by_light});
       context->saved_data["scale"] = result.scale;
