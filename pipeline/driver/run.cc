@@ -97,7 +97,7 @@ void RequireEarlierResults(const Capture& capture, const std::vector<StageStep>&
       throw UserError(
           file, "", "no such file",
           imported
-              ? "write it with glint import, or describe [photos] and [board] in " +
+              ? "write it with glint import, or describe the [board] in " +
                     capture.file.string()
               : "stage " + step.stage + " reads it: run without --from " + steps.front().stage);
     }

@@ -21,7 +21,7 @@ a { color: #175cd3; text-decoration: none; } a:hover { text-decoration: underlin
 .figures { display: flex; flex-wrap: wrap; gap: 12px 34px; margin-top: 12px; }
 .figures div { min-width: 110px; }
 .figures b { display: block; font-size: 21px; font-weight: 600; font-variant-numeric: tabular-nums; }
-.figures span { color: var(--soft); font-size: 12.5px; }
+.figures > div > span { color: var(--soft); font-size: 12.5px; }
 .pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(250px, 1fr)); gap: 14px; }
 figure { margin: 0; } figure img { width: 100%; display: block; border-radius: 4px; background: #eceef1; image-rendering: auto; }
 figcaption { font-size: 12.5px; color: var(--soft); margin-top: 4px; }
@@ -34,6 +34,7 @@ td.number, th.number { text-align: right; } tr:last-child td { border-bottom: 0;
 .kept { color: var(--mark); font-weight: 600; }
 .charts { display: flex; flex-wrap: wrap; gap: 18px; } svg text { font: 11px system-ui, "DejaVu Sans", sans-serif; fill: #667085; }
 details { margin-top: 8px; } summary { cursor: pointer; color: var(--soft); }
+table.pairs { width: auto; min-width: 320px; } table + p { margin-top: 12px; } .scroll + p { margin-top: 12px; }
 code { font: 12px ui-monospace, "DejaVu Sans Mono", monospace; overflow-wrap: anywhere; }
 )";
 

@@ -117,7 +117,7 @@ void Gather(const std::string& name, const Json& value, const Trace& trace, int 
 
 std::string PairsTable(const Json& object, const Trace& trace) {
   if (object.empty()) return "";
-  std::string html = "<table>";
+  std::string html = "<table class=\"pairs\">";
   for (const auto& [key, value] : object.items()) {
     html += "<tr><td>" + HtmlText(key) + "</td><td class=\"number\">" +
             FigureHtml(value, trace.Field(key)) + "</td></tr>\n";

@@ -73,12 +73,6 @@ double Distance_mm(const Vec3d& point) {
   return std::sqrt(point[0] * point[0] + point[1] * point[1] + point[2] * point[2]);
 }
 
-Json Rounded(const Vec3d& point) {
-  Json list = Json::array();
-  for (const double value : point) list.push_back(std::round(10 * value) / 10);
-  return list;
-}
-
 }  // namespace
 
 std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
@@ -213,10 +207,10 @@ std::string GeometrySection(const ReportInput& input) {
       return "<td class=\"number\">" + FigureHtml(value, from) + "</td>";
     };
     rows += "<tr><td>" + HtmlText(input.set.views[i].name) + "</td>" +
-            cell(Rounded(view.camera_in_sample_mm), row.Field("camera_in_sample_mm")) +
+            cell(Json(view.camera_in_sample_mm), row.Field("camera_in_sample_mm")) +
             cell(distance_mm, row.Field("camera_in_sample_mm")) +
-            cell(std::round(10 * tilt_deg) / 10, row.Field("camera_in_sample_mm")) +
-            cell(Rounded(view.light_in_sample_mm), row.Field("light_in_sample_mm")) +
+            cell(tilt_deg, row.Field("camera_in_sample_mm")) +
+            cell(Json(view.light_in_sample_mm), row.Field("light_in_sample_mm")) +
             cell(Json(view.light_rgb), row.Field("light_rgb")) +
             cell(Json(view.ambient_rgb), row.Field("ambient_rgb")) +
             cell(view.exposure, row.Field("exposure")) + "</tr>\n";
