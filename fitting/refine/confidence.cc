@@ -1,9 +1,9 @@
 #include "fitting/refine/confidence.h"
 
-#include <Eigen/Core>
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "fitting/refine/texel_cost.h"
 
 namespace glint {
 namespace {
@@ -11,39 +11,58 @@ namespace {
 // Widest a standard deviation is said to be: a value in [0, 1] of which nothing is known.
 constexpr double kWidest = 1.0;
 
+// U⁻¹ for the Cholesky factor U (UᵀU = matrix) of the leading kTexelParameters rows.
+void InvertFactor(const TexelGram& matrix, TexelGram* inverse) {
+  TexelGram factor;
+  FactorGram(matrix, &factor);
+  for (int j = 0; j < kTexelParameters; ++j) {
+    (*inverse)[j][j] = 1.0 / factor[j][j];
+    for (int i = j - 1; i >= 0; --i) {
+      double sum = 0.0;
+      for (int k = i + 1; k <= j; ++k) sum += factor[i][k] * (*inverse)[k][j];
+      (*inverse)[i][j] = -sum / factor[i][i];
+    }
+  }
+}
+
 }  // namespace
 
 std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
                                                      const TexelValues& texel, int residuals,
                                                      double residual_sigma) {
-  using Matrix = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
-  Matrix information;
-  for (int i = 0; i < kTexelParameters; ++i) {
-    for (int j = 0; j < kTexelParameters; ++j) information(i, j) = gram[i][j];
-  }
   const double squares = gram[kTexelParameters][kTexelParameters];
   const double variance =
       (kCommonWeight * residual_sigma * residual_sigma + squares) / (kCommonWeight + residuals);
   // What nothing is known of keeps the widest deviation: it stands in for a missing prior.
-  information.diagonal().array() += variance / (kWidest * kWidest);
-  const Matrix covariance = variance * information.ldlt().solve(Matrix::Identity());
+  TexelGram information = gram;
+  for (int i = 0; i < kTexelParameters; ++i) information[i][i] += variance / (kWidest * kWidest);
+  TexelGram inverse;  // of the upper triangular factor, whose rows' products are the covariance
+  InvertFactor(information, &inverse);
+  const auto covariance = [&](int a, int b) {
+    double sum = 0.0;
+    for (int k = std::max(a, b); k < kTexelParameters; ++k) sum += inverse[a][k] * inverse[b][k];
+    return variance * sum;
+  };
 
   // n_x, n_y by the slopes.
   const double x = texel[kSlopeX], y = texel[kSlopeY];
   const double length = 1.0 / std::sqrt(1.0 + x * x + y * y);
   const double nx = x * length, ny = y * length;
-  Eigen::Matrix2d by_slopes;
-  by_slopes << 1.0 - nx * nx, -nx * ny, -nx * ny, 1.0 - ny * ny;
-  by_slopes *= length;
-  const Eigen::Matrix2d normal =
-      by_slopes * covariance.block<2, 2>(kSlopeX, kSlopeX) * by_slopes.transpose();
+  const double by_x[2] = {length * (1.0 - nx * nx), -length * nx * ny};
+  const double by_y[2] = {by_x[1], length * (1.0 - ny * ny)};
+  const double xx = covariance(kSlopeX, kSlopeX), xy = covariance(kSlopeX, kSlopeY),
+               yy = covariance(kSlopeY, kSlopeY);
+  const auto normal_variance = [&](int axis) {
+    return by_x[axis] * by_x[axis] * xx + 2.0 * by_x[axis] * by_y[axis] * xy +
+           by_y[axis] * by_y[axis] * yy;
+  };
 
   const auto deviation = [](double v) {
     return static_cast<float>(std::min(std::sqrt(std::max(v, 0.0)), kWidest));
   };
   std::array<float, kConfidencePlanes> planes;
-  planes[kSigmaNormalX] = deviation(normal(0, 0));
-  planes[kSigmaNormalY] = deviation(normal(1, 1));
+  planes[kSigmaNormalX] = deviation(normal_variance(0));
+  planes[kSigmaNormalY] = deviation(normal_variance(1));
   planes[kSigmaRoughness] = deviation(covariance(kRough, kRough));
   for (int c = 0; c < 3; ++c) {
     const int d = DiffuseParameter(c), s = SpecularParameter(c);

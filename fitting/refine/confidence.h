@@ -8,10 +8,11 @@
 
 namespace glint {
 
-// √diag(s²·(JᵀJ)⁻¹) with `gram` by the physical values, prior included (Gauss–Newton's covariance).
+// √diag(s²·(JᵀJ)⁻¹) with `gram` by the physical values, belief in the start included
+// (Gauss–Newton's covariance).
 // The residual variance s² joins the texel's own residuals with `residual_sigma`, the photographs'
 // common one, which counts as kCommonWeight residuals: a texel alone has too few to tell it.
-// The cost's place holds half the squared residuals, prior included.
+// The cost's place holds half of `gram`'s squared residuals.
 std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
                                                      const TexelValues& texel, int residuals,
                                                      double residual_sigma);

@@ -57,10 +57,9 @@ std::vector<int> CanonicalOrder(const std::vector<RefineView>& views) {
 // What one thread owns.
 struct Worker {
   Worker(const KernelOptions& options, const RefineOptions& refine, int views)
-      : observations(views), search(options, refine.iterations, views, refine.starts), rows(views) {}
+      : observations(views), search(options, refine.iterations, views, refine.starts) {}
   TexelObservations observations;
   TexelSearch search;
-  KernelRows rows;
 };
 
 // One refinement in progress.
@@ -95,6 +94,8 @@ class Refiner {
   RefineResult result_;
   enum Origin : unsigned char { kConverged = 1, kOtherStart = 2, kNeighbour = 4 };
   std::vector<unsigned char> origin_;
+  std::vector<float> cost_;  // of the texels as they stand, prior included
+  std::vector<double> start_costs_;  // sums by piece
 };
 
 Refiner::Refiner(const RefineProblem& problem, const SvbrdfMaps& start,
@@ -116,6 +117,8 @@ Refiner::Refiner(const RefineProblem& problem, const SvbrdfMaps& start,
   result_.maps = start;
   result_.confidence.assign(start.texels() * kConfidencePlanes, 0.0f);
   origin_.assign(start.texels(), 0);
+  cost_.assign(start.texels(), 0.0f);
+  start_costs_.assign((start.texels() + kTexelsPerPiece - 1) / kTexelsPerPiece, 0.0);
 }
 
 void Refiner::ForEachTexel(const std::function<void(size_t, Worker*)>& visit) {
@@ -135,11 +138,11 @@ void Refiner::ForEachTexel(const std::function<void(size_t, Worker*)>& visit) {
 
 void Refiner::EstimateNoise() {
   RefineSummary& summary = result_.summary;
-  summary.information = DistinctViews(problem_);
+  summary.distinct_views = DistinctViews(problem_);
   constexpr size_t kSampled = 512;
   const size_t texels = start_.texels();
   const size_t sampled = std::min(kSampled, texels);
-  const PriorWeights weak = HoldToStart(1.0, 0.005, summary.information, {});
+  const PriorWeights weak = HoldToStart(1.0, 0.005, summary.distinct_views, {});
   std::vector<double> variances(sampled, -1.0);
   ForEachPiece(static_cast<int>(sampled), threads_, [&](int i, int worker) {
     Worker& w = *workers_[worker];
@@ -162,7 +165,7 @@ void Refiner::EstimateNoise() {
     summary.residual_sigma = std::sqrt(std::max(*middle, 1e-8));
   }
   for (auto& worker : workers_) worker->search.SetNoise(summary.residual_sigma);
-  weights_ = HoldToStart(options_.prior, summary.residual_sigma, summary.information, {});
+  weights_ = HoldToStart(options_.prior, summary.residual_sigma, summary.distinct_views, {});
 }
 
 TexelSolution Refiner::Current(size_t texel, const TexelPrior& prior, Worker* worker) {
@@ -174,6 +177,7 @@ TexelSolution Refiner::Current(size_t texel, const TexelPrior& prior, Worker* wo
 }
 
 void Refiner::Keep(size_t texel, const TexelSolution& solution) {
+  cost_[texel] = static_cast<float>(solution.cost);
   WriteTexel(solution.values, texel, &result_.maps);
   origin_[texel] = static_cast<unsigned char>((origin_[texel] & ~kConverged) |
                                               (solution.converged ? kConverged : 0));
@@ -190,6 +194,7 @@ void Refiner::SolveFromStarts() {
     const TexelPrior prior(weights_, start);
     const TexelSearch::Found found =
         worker->search.FromStart(worker->observations, prior, weights_, start);
+    start_costs_[texel / kTexelsPerPiece] += found.start_cost;
     if (found.other_start) origin_[texel] |= kOtherStart;
     Keep(texel, found.solution);
   });
@@ -199,10 +204,12 @@ void Refiner::SolveFromStarts() {
 void Refiner::SolveFromNeighbours(int colour) {
   const int width = start_.width, height = start_.height;
   ForEachTexel([&](size_t texel, Worker* worker) {
-    const int column = static_cast<int>(texel % width), row = static_cast<int>(texel / width);
+    const int column = static_cast<int>(texel % width);
+    const int row = static_cast<int>(texel / width);
     if ((row + column) % 2 != colour) return;
+    if (!worker->search.Unexplained(1, cost_[texel])) return;
     GatherObservations(problem_, texel, &worker->observations);
-    if (worker->observations.views() == 0) return;
+    if (!worker->search.Unexplained(worker->observations.views(), cost_[texel])) return;
     std::array<TexelValues, 4> neighbours;
     size_t count = 0;
     const auto add = [&](int r, int c) {
@@ -228,42 +235,46 @@ void Refiner::Conclude() {
   const size_t views = problem_.views.size();
   // Sums by piece, added in the pieces' order.
   const size_t pieces = (texels + kTexelsPerPiece - 1) / kTexelsPerPiece;
-  const size_t columns = 2 + 2 * views;
+  const size_t columns = 1 + 2 * views;
+  // The start is believed as far as its expected errors say: not held harder, as the fit does.
+  const PriorWeights believed =
+      options_.prior > 0.0 ? BelieveStart(result_.summary.residual_sigma, {}) : PriorWeights{};
   std::vector<double> sums(pieces * columns, 0.0);
   ForEachTexel([&](size_t texel, Worker* worker) {
     GatherObservations(problem_, texel, &worker->observations);
-    const TexelValues start = ReadTexel(start_, texel);
     const TexelValues values = ReadTexel(result_.maps, texel);
-    const TexelPrior prior(weights_, start);
+    const TexelValues start = ReadTexel(start_, texel);
     TexelGram gram;
-    worker->search.solver().Gram(worker->observations, prior, values, &gram);
+    worker->search.solver().Gram(worker->observations, TexelPrior({}, start), values, &gram);
+    const double squares = gram[kTexelParameters][kTexelParameters];
+    TexelPrior(believed, values).AddTo(values, &gram);
     const auto planes = TexelConfidence(gram, values, 3 * worker->observations.views(),
                                         result_.summary.residual_sigma);
     for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];
 
     double* sum = &sums[texel / kTexelsPerPiece * columns];
-    sum[0] += worker->search.solver().Cost(worker->observations, prior, start);
-    sum[1] += 0.5 * gram[kTexelParameters][kTexelParameters];
-    EvaluateRows(kernel_, worker->observations, values, &worker->rows);
+    sum[0] += 0.5 * (squares + TexelPrior(weights_, start).SquaredNorm(values));
+    const KernelRows& rows = worker->search.solver().rows();
     int row = 0;
     for (size_t v = 0; v < views; ++v) {
       if (!(problem_.views[v].mask[texel] >= 0.5f)) continue;
       for (int c = 0; c < 3; ++c) {
-        sum[2 + v] += std::abs(LogResidual(worker->rows.row(c, KernelRows::kResidual)[row],
+        sum[1 + v] += std::abs(LogResidual(rows.row(c, KernelRows::kResidual)[row],
                                            kernel_.robust_scale));
       }
-      sum[2 + views + v] += 3.0;
+      sum[1 + views + v] += 3.0;
       ++row;
     }
   });
   std::vector<double> total(columns, 0.0);
   for (size_t i = 0; i < sums.size(); ++i) total[i % columns] += sums[i];
   RefineSummary& summary = result_.summary;
-  summary.start_cost = total[0] / static_cast<double>(texels);
-  summary.final_cost = total[1] / static_cast<double>(texels);
+  for (const double cost : start_costs_) summary.start_cost += cost;
+  summary.start_cost /= static_cast<double>(texels);
+  summary.final_cost = total[0] / static_cast<double>(texels);
   summary.view_loss.assign(views, 0.0);
   for (size_t v = 0; v < views; ++v) {
-    summary.view_loss[order_[v]] = total[2 + v] / total[2 + views + v];
+    summary.view_loss[order_[v]] = total[1 + v] / total[1 + views + v];
   }
   const auto share = [&](unsigned char flag) {
     const auto has = [flag](unsigned char o) { return (o & flag) != 0; };
@@ -301,7 +312,7 @@ std::string RefineSummary::BriefReport() const {
   std::ostringstream text;
   text.precision(4);
   text << "cost " << start_cost << " -> " << final_cost << " per texel, " << 100.0 * converged
-       << " % converged, residual sigma " << residual_sigma << ", " << information
+       << " % converged, residual sigma " << residual_sigma << ", " << distinct_views
        << " distinct views, " << 100.0 * other_start << " % from another start, "
        << 100.0 * neighbour << " % from a neighbour";
   return text.str();

@@ -69,7 +69,7 @@ struct RefineSummary {
   double start_cost = 0;  // means over texels
   double final_cost = 0;
   double residual_sigma = 0;         // noise found in the photographs, log units
-  double information = 0;            // what the prior's weight was divided by (refine_prior.h)
+  double distinct_views = 0;         // how many views tell something of their own (refine_prior.h)
   double converged = 0;              // share of texels
   double other_start = 0;            // share of texels whose solution came from another start …
   double neighbour = 0;              // … or from a neighbour

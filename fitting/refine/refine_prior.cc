@@ -6,9 +6,7 @@
 namespace glint {
 namespace {
 
-// Weight of the start against one view, in units of sigma²/error². Far above 1, since a photograph's
-// three numbers are exact but nine unknowns explain them in many wrong ways.
-constexpr double kOneView = 15.0;
+constexpr double kOneView = 15.0;  // how much harder than belief one view has the start held
 
 }  // namespace
 
@@ -29,16 +27,19 @@ double DistinctViews(const RefineProblem& problem) {
   return alike > 0.0 ? n * n / alike : 0.0;
 }
 
+PriorWeights BelieveStart(double residual_sigma, const StartErrors& errors) {
+  PriorWeights weights;
+  weights.normal = residual_sigma / errors.normal;
+  weights.roughness = residual_sigma / errors.roughness;
+  weights.diffuse = residual_sigma / errors.diffuse;
+  weights.specular = residual_sigma / errors.specular;
+  return weights;
+}
+
 PriorWeights HoldToStart(double factor, double residual_sigma, double distinct_views,
                          const StartErrors& errors) {
-  const double scale =
-      residual_sigma * std::sqrt(kOneView * factor) / std::max(distinct_views, 1.0);
-  PriorWeights weights;
-  weights.normal = scale / errors.normal;
-  weights.roughness = scale / errors.roughness;
-  weights.diffuse = scale / errors.diffuse;
-  weights.specular = scale / errors.specular;
-  return weights;
+  const double harder = std::sqrt(kOneView * factor) / std::max(distinct_views, 1.0);
+  return BelieveStart(residual_sigma * harder, errors);
 }
 
 }  // namespace glint

@@ -10,7 +10,9 @@ namespace glint {
 void FactorGram(const TexelGram& gram, TexelGram* factor) {
   constexpr double kRankTolerance = 1e-14;
   TexelGram& f = *factor;
-  f = gram;
+  for (int i = 0; i < kGramSize; ++i) {
+    for (int j = i; j < kGramSize; ++j) f[i][j] = gram[i][j];
+  }
   for (int k = 0; k < kGramSize; ++k) {
     const double pivot = f[k][k];
     if (!(pivot > kRankTolerance * gram[k][k])) {
@@ -22,9 +24,10 @@ void FactorGram(const TexelGram& gram, TexelGram* factor) {
     const double inverse = 1.0 / root;
     f[k][k] = root;
     for (int j = k + 1; j < kGramSize; ++j) f[k][j] *= inverse;
-    for (int i = k + 1; i < kGramSize; ++i) {
+    // Rows of other channels' albedos have nothing in common with this one.
+    const int first = k < kRough ? (k % 2 == 0 ? k + 1 : kRough) : k + 1;
+    for (int i = first; i < kGramSize; i = i < kRough ? static_cast<int>(kRough) : i + 1) {
       const double across = f[k][i];
-      if (across == 0.0) continue;  // between the albedos of two channels
       for (int j = i; j < kGramSize; ++j) f[i][j] -= across * f[k][j];
     }
   }
@@ -38,10 +41,8 @@ void TexelCost::Evaluate(const double* variables) const {
   prior_.AddTo(values, &gram_);
   for (int i = 0; i < kTexelParameters; ++i) {
     if (derivatives[i] == 1.0) continue;
-    for (int j = 0; j < kGramSize; ++j) {
-      gram_[i][j] *= derivatives[i];
-      gram_[j][i] *= derivatives[i];
-    }
+    for (int j = 0; j <= i; ++j) gram_[j][i] *= derivatives[i];
+    for (int j = i; j < kGramSize; ++j) gram_[i][j] *= derivatives[i];
   }
   std::copy(variables, variables + kTexelParameters, evaluated_.begin());
   evaluated_valid_ = true;

@@ -1,6 +1,5 @@
 #include "fitting/refine/texel_kernel.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -220,18 +219,16 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_al
 }
 
 void AddChannelToGram(const double products[21], int channel, TexelGram* gram) {
-  const int place[KernelRows::kRows] = {kSlopeX,
-                                        kSlopeY,
-                                        kRough,
-                                        DiffuseParameter(channel),
+  // The rows stand in the order of the parameters.
+  const int place[KernelRows::kRows] = {DiffuseParameter(channel),
                                         SpecularParameter(channel),
+                                        kRough,
+                                        kSlopeX,
+                                        kSlopeY,
                                         kTexelParameters};
   int next = 0;
   for (int a = 0; a < KernelRows::kRows; ++a) {
-    for (int b = a; b < KernelRows::kRows; ++b) {
-      const auto [low, high] = std::minmax(place[a], place[b]);
-      (*gram)[low][high] += products[next++];
-    }
+    for (int b = a; b < KernelRows::kRows; ++b) (*gram)[place[a]][place[b]] += products[next++];
   }
 }
 
@@ -355,9 +352,6 @@ void EvaluateGram(const KernelOptions& options, const TexelObservations& observa
   EvaluateProducts(options, observations, texel, rows, products);
   for (auto& row : *gram) row.fill(0.0);
   for (int c = 0; c < 3; ++c) AddChannelToGram(products[c], c, gram);
-  for (int a = 0; a < kGramSize; ++a) {
-    for (int b = 0; b < a; ++b) (*gram)[a][b] = (*gram)[b][a];
-  }
 }
 
 double LogResidual(double residual, double robust_scale) {

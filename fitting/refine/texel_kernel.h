@@ -32,7 +32,7 @@ inline constexpr int SpecularParameter(int channel) { return kAlbedos + 2 * chan
 using TexelValues = std::array<double, kTexelParameters>;
 
 // [J f]ᵀ[J f] of residuals f with Jacobian J: the normal equations with the squared norm of f in
-// the last corner. Symmetric; both triangles are filled.
+// the last corner. Symmetric; only the upper triangle (column ≥ row) is used.
 inline constexpr int kGramSize = kTexelParameters + 1;
 using TexelGram = std::array<std::array<double, kGramSize>, kGramSize>;
 
@@ -46,7 +46,7 @@ struct KernelOptions {
 class KernelRows {
  public:
   // Rows of each channel, in this order; the two albedos are the channel's own.
-  enum Row : int { kBySlopeX, kBySlopeY, kByRough, kByDiffuse, kBySpecular, kResidual, kRows };
+  enum Row : int { kByDiffuse, kBySpecular, kByRough, kBySlopeX, kBySlopeY, kResidual, kRows };
 
   explicit KernelRows(int most_views);
   double* row(int channel, int r) {

@@ -43,19 +43,17 @@ void TexelPrior::AddTo(const TexelValues& texel, TexelGram* gram) const {
   constexpr int kSquares = kTexelParameters;
   double f[kTexelParameters], j[kTexelParameters][kTexelParameters];
   Evaluate(texel, f, j);
-  for (int i = kSlopeX; i <= kSlopeY; ++i) {
-    for (int a = kSlopeX; a <= kSlopeY; ++a) {
-      g[a][kSlopeX] += j[i][a] * j[i][kSlopeX];
-      g[a][kSlopeY] += j[i][a] * j[i][kSlopeY];
-      g[a][kSquares] += j[i][a] * f[i];
-      g[kSquares][a] += j[i][a] * f[i];
-    }
-    g[kSquares][kSquares] += f[i] * f[i];
-  }
   for (int i = 0; i <= kRough; ++i) {
     g[i][i] += j[i][i] * j[i][i];
     g[i][kSquares] += j[i][i] * f[i];
-    g[kSquares][i] += j[i][i] * f[i];
+    g[kSquares][kSquares] += f[i] * f[i];
+  }
+  for (int i = kSlopeX; i <= kSlopeY; ++i) {
+    g[kSlopeX][kSlopeX] += j[i][kSlopeX] * j[i][kSlopeX];
+    g[kSlopeX][kSlopeY] += j[i][kSlopeX] * j[i][kSlopeY];
+    g[kSlopeY][kSlopeY] += j[i][kSlopeY] * j[i][kSlopeY];
+    g[kSlopeX][kSquares] += j[i][kSlopeX] * f[i];
+    g[kSlopeY][kSquares] += j[i][kSlopeY] * f[i];
     g[kSquares][kSquares] += f[i] * f[i];
   }
 }

@@ -20,7 +20,7 @@ class TexelPrior {
   // Its kTexelParameters residuals and their derivatives by the physical values, row-major.
   void Evaluate(const TexelValues& texel, double residuals[kTexelParameters],
                 double jacobian[kTexelParameters][kTexelParameters]) const;
-  // Adds its residuals' products to a Gram matrix by the physical values.
+  // Adds its residuals' products to a Gram matrix by the physical values (upper triangle).
   void AddTo(const TexelValues& texel, TexelGram* gram) const;
   // Sum of its squared residuals.
   double SquaredNorm(const TexelValues& texel) const;

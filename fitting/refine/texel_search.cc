@@ -13,6 +13,7 @@ constexpr std::array<double, 8> kRoughnesses = {0.07, 0.10, 0.14, 0.20, 0.28, 0.
 // Another start is worth a solve when it promises this much less cost; solutions that differ by less
 // are the same for every practical purpose.
 constexpr double kWorthwhile = 0.98;
+constexpr double kWorthStep = 0.03;  // gain of a step against one residual's noise
 constexpr double kExplained = 1.5;  // squared residuals against noise alone
 
 }  // namespace
@@ -26,11 +27,11 @@ TexelSearch::TexelSearch(const KernelOptions& options, int most_iterations, int 
 
 void TexelSearch::SetNoise(double residual_sigma) {
   variance_ = residual_sigma * residual_sigma;
-  solver_.SetTolerance(std::max(0.01 * variance_, 1e-9));
+  solver_.SetTolerance(std::max(kWorthStep * variance_, 1e-9));
 }
 
-bool TexelSearch::Unexplained(const TexelObservations& observations, double cost) const {
-  return 2.0 * cost > kExplained * variance_ * 3.0 * observations.views();
+bool TexelSearch::Unexplained(int views, double cost) const {
+  return 2.0 * cost > kExplained * variance_ * 3.0 * views;
 }
 
 bool TexelSearch::TrySolve(const TexelObservations& observations, const TexelPrior& prior,
@@ -99,8 +100,9 @@ TexelSearch::Found TexelSearch::FromStart(const TexelObservations& observations,
   best.solution.values = start;
   best.solution.cost = solver_.Cost(observations, prior, start);
   best.solution.converged = true;
+  best.start_cost = best.solution.cost;
   TrySolve(observations, prior, start, &best.solution);
-  if (starts_ > 1 && Unexplained(observations, best.solution.cost)) {
+  if (starts_ > 1 && Unexplained(observations.views(), best.solution.cost)) {
     TryRoughnesses(observations, prior, weights, &best);
   }
   return best;
@@ -111,8 +113,8 @@ TexelSearch::Found TexelSearch::FromNeighbours(const TexelObservations& observat
                                                const PriorWeights& weights,
                                                const TexelSolution& current,
                                                std::span<const TexelValues> neighbours) {
-  Found best{current, false};
-  if (!Unexplained(observations, current.cost)) return best;
+  Found best{current, current.cost, false};
+  if (!Unexplained(observations.views(), current.cost)) return best;
   double least =
       kWorthwhile * WithFittedAlbedos(observations, weights, current.values).fit.before;
   Candidate promising;

@@ -13,11 +13,15 @@ class TexelSearch {
   TexelSearch(const KernelOptions& options, int most_iterations, int most_views, int starts);
 
   // Squared residuals of a texel expected from noise alone, per residual. Solves end when they gain a
-  // hundredth of it, and texels that fit so well are not searched further.
+  // small part of it, and texels that fit so well are not searched further.
   void SetNoise(double residual_sigma);
+
+  // Whether the cost of a texel seen in `views` leaves room for a better minimum.
+  bool Unexplained(int views, double cost) const;
 
   struct Found {
     TexelSolution solution;
+    double start_cost = 0;     // of the start as it was given
     bool other_start = false;  // it did not come from the start itself
   };
 
@@ -48,9 +52,6 @@ class TexelSearch {
                 const TexelValues& from, TexelSolution* best);
 
   KernelOptions options_;
-  // Whether the texel's cost leaves room for a better minimum.
-  bool Unexplained(const TexelObservations& observations, double cost) const;
-
   int starts_;
   double variance_ = 0.0;
   TexelSolver solver_;

@@ -30,9 +30,10 @@ class NormalCholesky {
       const double inverse = 1.0 / std::sqrt(factor_[k][k]);
       inverse_[k] = inverse;
       for (int j = k + 1; j < n; ++j) factor_[k][j] *= inverse;
-      for (int i = k + 1; i < n; ++i) {
+      // Rows of other channels' albedos have nothing in common with this one.
+      const int first = k < kRough ? (k % 2 == 0 ? k + 1 : kRough) : k + 1;
+      for (int i = first; i < n; i = i < kRough ? static_cast<int>(kRough) : i + 1) {
         const double across = factor_[k][i];
-        if (across == 0.0) continue;
         for (int j = i; j < n; ++j) factor_[i][j] -= across * factor_[k][j];
       }
     }
@@ -107,6 +108,8 @@ void TexelSolver::Gram(const TexelObservations& observations, const TexelPrior& 
   EvaluateGram(state_->options, observations, texel, &state_->rows, gram);
   prior.AddTo(texel, gram);
 }
+
+const KernelRows& TexelSolver::rows() const { return state_->rows; }
 
 TexelSolution TexelSolver::Solve(const TexelObservations& observations, const TexelPrior& prior,
                                  const TexelValues& start) {

@@ -33,6 +33,8 @@ class TexelSolver {
   // [J f]ᵀ[J f] by the physical values, prior included.
   void Gram(const TexelObservations& observations, const TexelPrior& prior,
             const TexelValues& texel, TexelGram* gram);
+  // The photographs' residuals and derivatives of the last Cost or Gram.
+  const KernelRows& rows() const;
 
  private:
   struct State;

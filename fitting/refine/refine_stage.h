@@ -1,0 +1,49 @@
+// Stage "refine" of a capture: maps of fit and rectified views in, svbrdf.exr and confidence.exr out.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fitting/refine/refine.h"
+#include "pipeline/contract/stage.h"
+
+namespace glint {
+
+// Raised whenever the same inputs give other bytes.
+inline constexpr int kRefineVersion = 1;
+
+struct RefineStageOptions {
+  RefineOptions refine;
+  std::vector<std::string> views;    // names of those to use; empty: those that fit used
+  std::vector<std::string> exclude;  // names of those kept back
+  std::filesystem::path from;        // maps to start from (svbrdf.exr); empty: the result of fit
+};
+
+void AddRefineOptions(OptionSet* set, RefineStageOptions* options);
+
+// What the stage starts from: file, light scale and the views that were used.
+struct RefineStart {
+  std::filesystem::path maps_file;
+  std::filesystem::path manifest_file;  // of fit; empty with `from`
+  Vec3d light_scale_rgb{1, 1, 1};
+  std::vector<std::string> views;
+};
+
+// Throws UserError (no result of fit, a damaged manifest, wrong options).
+RefineStart ResolveRefineStart(const std::filesystem::path& work, const RefineStageOptions& options);
+
+struct RefineStageResult {
+  Json data, metrics;
+  RefineSummary summary;
+  std::vector<std::string> views;
+  int width = 0, height = 0;
+  double seconds = 0;  // of refinement itself; for a person only
+};
+
+// Reads, refines, writes the stage's outputs and commits them.
+RefineStageResult RunRefineStage(const std::filesystem::path& rectify_manifest,
+                                 const RefineStart& start, const RefineStageOptions& options,
+                                 int threads, Stage* stage);
+
+}  // namespace glint

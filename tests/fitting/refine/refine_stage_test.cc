@@ -1,0 +1,157 @@
+#include "fitting/refine/refine_stage.h"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/contract/image.h"
+#include "pipeline/contract/rectified_set.h"
+#include "pipeline/contract/svbrdf_file.h"
+#include "tests/fitting/refine/synthetic_scene.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+using test::ReadAll;
+
+constexpr int kSize = 24;
+
+// A capture as rectify and fit leave it: three views, a fit of half the size, light found 2× too
+// weak.
+void WriteCapture(const fs::path& folder) {
+  test::WriteAll(folder / "capture.toml",
+                 "[sample]\nsize_mm = [2, 2]\n[photos]\nfiles = [\"photos/*.png\"]\n");
+  test::WriteAll(folder / "photos/0.png", "refine reads rectified views only");
+  const test::SyntheticScene scene = test::Photograph(test::QuarteredMaps(kSize, 1), 3, 8);
+  CommonOptions common;
+  common.threads = 1;
+  const OptionSet none;
+  {
+    RectifiedSet set;
+    set.plane = scene.plane;
+    set.convention = scene.convention;
+    set.light_power_known = false;
+    Stage stage(folder / "glint/rectify", {"rectify", 1}, none, common, {});
+    for (size_t i = 0; i < scene.views.size(); ++i) {
+      RectifiedView view;
+      view.name = "view_00" + std::to_string(i);
+      view.file = view.name + ".exr";
+      view.photo = "photos/" + std::to_string(i) + ".png";
+      view.view = scene.views[i];
+      for (double& power : view.view.light_rgb) power /= 2.0;
+      set.views.push_back(view);
+      RectifiedImage image;
+      image.width = image.height = kSize;
+      image.rgb = scene.photographs[i];
+      image.mask = scene.masks[i];
+      WriteRectifiedImage(stage.Output(view.file), image, set);
+    }
+    stage.Commit(ToJson(set), Json::object());
+  }
+  Stage stage(folder / "glint/fit", {"fit", 1}, none, common, {});
+  const SvbrdfMaps start =
+      ResampleSvbrdf(test::DisturbedMaps(scene.truth, 0.5f, 2), kSize / 2, kSize / 2);
+  WriteSvbrdf(stage.Output("svbrdf.exr"), start, scene.convention);
+  stage.Commit({{"convention", ToString(scene.convention)},
+                {"light_scale_rgb", {2.0, 2.0, 2.0}},
+                {"views", {"view_000", "view_001", "view_002"}},
+                {"method", "latent"}},
+               Json::object());
+}
+
+test::Outcome Refine(const fs::path& folder, std::vector<std::string> more = {}) {
+  std::vector<std::string> command = {std::string(GLINT_BIN_DIR) + "/glint-refine",
+                                      folder.string()};
+  command.insert(command.end(), more.begin(), more.end());
+  return test::RunProgram(command);
+}
+
+TEST(RefineStage, WritesMapsConfidenceAndManifestOfTheViewsSize) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path());
+  const test::Outcome outcome = Refine(folder.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const fs::path result = folder.path() / "glint/refine";
+  const Manifest manifest = ReadManifest(result / "manifest.json", "refine");
+  VerifyOutputs(result / "manifest.json", manifest);
+  EXPECT_EQ(manifest.data["light_scale_rgb"], Json({2.0, 2.0, 2.0}));
+  EXPECT_EQ(manifest.data["method"], "refined");
+  EXPECT_EQ(manifest.data["views"].size(), 3u);
+  EXPECT_LT(manifest.metrics["cost_after"], manifest.metrics["cost_before"]);
+  EXPECT_EQ(ReadSvbrdf(result / "svbrdf.exr").width, kSize);
+  const Image confidence = ReadExr(result / "confidence.exr");
+  for (const char* channel : {"normal.X", "normal.Y", "diffuse.G", "specular.B", "roughness.Y"}) {
+    EXPECT_GE(confidence.ChannelIndex(channel), 0) << channel;
+  }
+  // The light's scale was applied: with it the photographs are explained.
+  EXPECT_LT(manifest.metrics["log_l1"], 0.05);
+}
+
+TEST(RefineStage, DoesNothingWhenUpToDateAndRunsAgainForAnotherOption) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path());
+  ASSERT_EQ(Refine(folder.path()).code, 0);
+  const fs::path manifest = folder.path() / "glint/refine/manifest.json";
+  const std::string first = ReadAll(manifest);
+  const auto written = fs::last_write_time(manifest);
+  ASSERT_EQ(Refine(folder.path()).code, 0);
+  EXPECT_EQ(fs::last_write_time(manifest), written);
+  ASSERT_EQ(Refine(folder.path(), {"--prior", "10"}).code, 0);
+  EXPECT_NE(ReadAll(manifest), first);
+}
+
+TEST(RefineStage, KeepsViewsBack) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path());
+  ASSERT_EQ(Refine(folder.path(), {"--exclude", "view_001"}).code, 0);
+  const Manifest manifest = ReadManifest(folder.path() / "glint/refine/manifest.json", "refine");
+  EXPECT_EQ(manifest.data["views"], Json({"view_000", "view_002"}));
+}
+
+TEST(RefineStage, ThreadsDoNotChangeABytes) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path() / "a");
+  WriteCapture(folder.path() / "b");
+  ASSERT_EQ(Refine(folder.path() / "a", {"--threads", "1"}).code, 0);
+  ASSERT_EQ(Refine(folder.path() / "b", {"--threads", "3"}).code, 0);
+  for (const char* file : {"manifest.json", "svbrdf.exr", "confidence.exr"}) {
+    EXPECT_EQ(ReadAll(folder.path() / "a/glint/refine" / file),
+              ReadAll(folder.path() / "b/glint/refine" / file))
+        << file;
+  }
+}
+
+TEST(RefineStage, BadInputEndsWith2AndKeepsTheEarlierResult) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path());
+  ASSERT_EQ(Refine(folder.path()).code, 0);
+  const fs::path manifest = folder.path() / "glint/refine/manifest.json";
+  const std::string before = ReadAll(manifest);
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& word) {
+    const test::Outcome outcome = Refine(folder.path(), arguments);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+    EXPECT_EQ(ReadAll(manifest), before);
+  };
+  refused({"--exclude", "view_009"}, "view_009");
+  refused({"--exclude", "view_000,view_001,view_002"}, "view");
+  refused({"--robust-scale", "0"}, "robust-scale");
+  refused({"--from", "nowhere.exr"}, "nowhere.exr");
+  fs::resize_file(folder.path() / "glint/rectify/view_001.exr", 300);
+  refused({}, "view_001.exr");
+  fs::remove(folder.path() / "glint/fit/manifest.json");
+  refused({}, "fit/manifest.json");
+}
+
+TEST(RefineStage, StartsFromMapsOfAnotherProgram) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path());
+  const fs::path maps = folder.path() / "mine.exr";
+  fs::copy_file(folder.path() / "glint/fit/svbrdf.exr", maps);
+  fs::remove_all(folder.path() / "glint/fit");
+  const test::Outcome outcome = Refine(folder.path(), {"--from", maps.string()});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+}  // namespace
+}  // namespace glint
