@@ -25,6 +25,27 @@ bool IsObjectList(const Json& value) {
          std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_object(); });
 }
 
+// Objects under names: {"fx": {"value": 1, "sigma": 2}, …}.
+bool IsObjectOfObjects(const Json& value) {
+  return value.is_object() && !value.empty() &&
+         std::all_of(value.begin(), value.end(), [](const Json& v) {
+           return v.is_object() && std::none_of(v.begin(), v.end(), [](const Json& inner) {
+                    return inner.is_object();
+                  });
+         });
+}
+
+bool IsMatrix(const Json& value) {
+  return value.is_array() && !value.empty() &&
+         std::all_of(value.begin(), value.end(), [](const Json& row) { return IsNumberList(row); });
+}
+
+// What fits into a cell of a table.
+bool IsCell(const Json& value) {
+  return !value.is_object() && !IsObjectList(value) && !IsMatrix(value) &&
+         !(value.is_array() && value.size() >= kCurveLength);
+}
+
 double NumberOr(const Json& value, double fallback) {
   return value.is_number() ? value.get<double>() : fallback;
 }
@@ -40,13 +61,45 @@ ChartLine IndexedLine(const std::string& name, const Json& list) {
   return line;
 }
 
+std::string TooltipOf(const Trace& trace) {
+  return " title=\"" + HtmlText(trace.manifest + ": " + trace.field) + "\"";
+}
+
+std::string MatrixHtml(const std::string& name, const Json& matrix, const Trace& trace) {
+  std::string html = "<details><summary>" + HtmlText(name) +
+                     "</summary><div class=\"scroll\"><table" + TooltipOf(trace) + ">";
+  for (const Json& row : matrix) {
+    html += "<tr>";
+    for (const Json& value : row) {
+      html += "<td class=\"number\">" +
+              (value.is_number() ? NumberText(value.get<double>()) : std::string("–")) + "</td>";
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table></div></details>\n";
+}
+
+std::string NamedObjectsTable(const Json& objects, const Trace& trace) {
+  std::string html;
+  for (const auto& [name, object] : objects.items()) {
+    const bool first = html.empty();
+    std::string head = "<tr><th></th>", row = "<tr><td>" + HtmlText(name) + "</td>";
+    for (const auto& [key, value] : object.items()) {
+      head += "<th class=\"number\">" + HtmlText(key) + "</th>";
+      row += "<td class=\"number\">" + FigureHtml(value, trace.Field(name).Field(key)) + "</td>";
+    }
+    if (first) html += "<table class=\"pairs\">" + head + "</tr>\n";
+    html += row + "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
 std::string CurveHtml(const std::string& name, const Json& list, const Trace& trace) {
   Chart chart;
   chart.title = name;
   chart.x_label = "index";
   chart.lines = {IndexedLine(name, list)};
-  return "<div title=\"" + HtmlText(trace.manifest + ": " + trace.field) + "\">" + ChartSvg(chart) +
-         "</div>";
+  return "<div" + TooltipOf(trace) + ">" + ChartSvg(chart) + "</div>";
 }
 
 // The key that counts along a long list of objects.
@@ -96,14 +149,17 @@ void Gather(const std::string& name, const Json& value, const Trace& trace, int 
     parts->charts += ObjectsCharts(name, value, trace);
   } else if (IsObjectList(value)) {
     parts->tables += "<h3>" + HtmlText(name) + "</h3>\n" + ObjectsTable(value, trace);
-    for (size_t i = 0; i < value.size(); ++i) {
+    for (size_t i = 0; i < value.size() && depth < kDeepest; ++i) {
       for (const auto& [key, inner] : value[i].items()) {
-        const bool curve = IsNumberList(inner) && inner.size() >= kCurveLength;
-        if (!curve && !IsObjectList(inner)) continue;
+        if (IsCell(inner)) continue;
         Gather(name + "[" + std::to_string(i) + "]." + key, inner, trace.Index(i).Field(key),
                depth + 1, parts);
       }
     }
+  } else if (IsMatrix(value)) {
+    parts->tables += MatrixHtml(name, value, trace);
+  } else if (IsObjectOfObjects(value)) {
+    parts->tables += "<h3>" + HtmlText(name) + "</h3>\n" + NamedObjectsTable(value, trace);
   } else if (value.is_object() && depth < kDeepest) {
     for (const auto& [key, inner] : value.items()) {
       Gather(name.empty() ? key : name + "." + key, inner, trace.Field(key), depth + 1, parts);
@@ -129,9 +185,7 @@ std::string ObjectsTable(const Json& list, const Trace& trace) {
   std::vector<std::string> columns;
   for (const Json& row : list) {
     for (const auto& [key, value] : row.items()) {
-      const bool cell = !value.is_object() && !(value.is_array() && value.size() >= kCurveLength) &&
-                        !IsObjectList(value);
-      if (cell && std::find(columns.begin(), columns.end(), key) == columns.end()) {
+      if (IsCell(value) && std::find(columns.begin(), columns.end(), key) == columns.end()) {
         columns.push_back(key);
       }
     }

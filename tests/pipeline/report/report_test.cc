@@ -172,13 +172,15 @@ TEST(ChartTest, AConstantLineIsDrawn) {
 
 TEST(MetricsTest, ShowsEveryNumberWhateverItsPlace) {
   const Json metrics = Json::parse(R"({"a": 1.5, "deep": {"b": 2.5, "c": {"d": 3.5}},
-      "list": [4.5, 5.5], "photos": [{"name": "x", "rms": 6.5}, {"name": "y", "rms": 7.5}]})");
+      "list": [4.5, 5.5], "photos": [{"name": "x", "rms": 6.5}, {"name": "y", "rms": 7.5}],
+      "cameras": [{"p": {"fx": {"value": 8.5, "sigma": 9.5}}, "covariance": [[10.5]]}]})");
   const std::string html = MetricsHtml(metrics, {"m.json", "metrics"});
-  for (const char* number : {"1.5", "2.5", "3.5", "4.5, 5.5", "6.5", "7.5"}) {
+  for (const char* number : {"1.5", "2.5", "3.5", "4.5, 5.5", "6.5", "7.5", "8.5", "9.5", "10.5"}) {
     EXPECT_THAT(html, HasSubstr(">" + std::string(number) + "<")) << html;
   }
   EXPECT_THAT(html, HasSubstr("m.json: metrics.deep.c.d"));
   EXPECT_THAT(html, HasSubstr("m.json: metrics.photos[1].rms"));
+  EXPECT_THAT(html, HasSubstr("m.json: metrics.cameras[0].p.fx.sigma"));
 }
 
 }  // namespace
