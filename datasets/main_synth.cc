@@ -122,6 +122,8 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   options.AddRange("paper-level", &plan.paper_level, 1e-3, 4,
                    "radiance of the brightest paper; the sensor clips at 1");
   options.AddRange("noise", &capture.noise.scale, 0, 100, "sensor noise; 0: none, 1: a phone's");
+  options.AddRange("lens-blur-px", &capture.lens_blur_px, 0, kMostBlur_px,
+                   "standard deviation of the lens's point spread; 0: a pixel's box alone");
   options.AddChoice("format", &capture.format, {"jpg", "png", "exr"},
                     "of the photographs; exr: linear float, not clipped");
   options.AddChoice("encoding", &capture.encoding, {"gamma2.2", "srgb", "linear"},

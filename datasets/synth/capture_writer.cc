@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kBandRows = 16;  // rows a thread renders at a time
+constexpr int kBandRows = 32;  // rows a thread renders at a time
 
 // Numbers as short as they can be while reading back the same.
 std::string List(const std::array<double, 3>& v) {
@@ -82,6 +82,7 @@ Json TruthFacts(const CapturePlan& plan, const MaterialSource& material,
           {"ink_albedo", kInkAlbedo},
           {"table_albedo", kTableAlbedo},
           {"encoding", options.format == "exr" ? "linear" : options.encoding},
+          {"lens_blur_px", options.lens_blur_px},
           {"noise",
            {{"full_well_electrons", options.noise.full_well_electrons},
             {"read_electrons", options.noise.read_electrons},
@@ -145,11 +146,33 @@ class PhotoShoot {
   }
 
  private:
+  // Radiance of a band behind the lens.
+  std::vector<float> SeeBand(int index, int first_row, int rows) const {
+    const int width = plan_.camera.width_px;
+    const size_t stride = 3 * static_cast<size_t>(width);
+    // One row more on each side for the blur; at the picture's border the last one twice.
+    const int begin = std::max(first_row - 1, 0);
+    const int end = std::min(first_row + rows + 1, plan_.camera.height_px);
+    std::vector<float> seen((end - begin) * stride);
+    renderer_.RenderRows(index, begin, end - begin, seen);
+    const auto row = [&](size_t i) { return seen.begin() + static_cast<ptrdiff_t>(i * stride); };
+    if (begin == first_row) {
+      const std::vector<float> first(row(0), row(1));
+      seen.insert(seen.begin(), first.begin(), first.end());
+    }
+    if (end == first_row + rows) {
+      const std::vector<float> last(seen.end() - static_cast<ptrdiff_t>(stride), seen.end());
+      seen.insert(seen.end(), last.begin(), last.end());
+    }
+    std::vector<float> blurred;
+    BlurRows(seen, width, rows + 2, options_.lens_blur_px, &blurred);
+    return blurred;
+  }
+
   std::int64_t TakeBand(int index, int first_row, int rows) {
     const size_t begin = static_cast<size_t>(first_row) * plan_.camera.width_px;
     const size_t pixels = static_cast<size_t>(rows) * plan_.camera.width_px;
-    std::vector<float> radiance(3 * pixels);
-    renderer_.RenderRows(index, first_row, rows, radiance);
+    std::vector<float> radiance = SeeBand(index, first_row, rows);
     const std::uint64_t seed =
         procedural::Mix64(plan_.options.seed ^ (0x401500000000ull + static_cast<unsigned>(index)));
     std::int64_t clipped = 0;
@@ -207,6 +230,9 @@ SyntheticCaptureSummary WriteSyntheticCapture(const fs::path& folder,
                                               const MaterialSource& material,
                                               const SyntheticCaptureOptions& options, int threads) {
   const CapturePlan plan = PlanCapture(options.plan);
+  if (!(options.lens_blur_px >= 0 && options.lens_blur_px <= kMostBlur_px)) {
+    throw UserError(fmt::format("lens-blur-px: use 0 to {}", kMostBlur_px));
+  }
   PrepareFolder(folder, options.overwrite);
   const PhotoRenderer renderer(plan, material.maps, threads);
   PhotoShoot shoot(plan, renderer, options, threads);

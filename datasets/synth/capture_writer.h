@@ -25,6 +25,8 @@ struct SyntheticCaptureOptions {
   std::string format = "jpg";         // jpg, png, exr
   std::string encoding = "gamma2.2";  // of 8-bit photographs: gamma2.2, srgb, linear
   SensorNoise noise;
+  double lens_blur_px =
+      0.5;  // standard deviation of the lens's point spread, on top of the pixel's box
   int resolution_px = 1024;  // [sample] resolution_px of capture.toml
   bool overwrite = false;    // replace a capture that is there
 };

@@ -30,6 +30,30 @@ float NoisyRadiance(float radiance, const SensorNoise& noise, std::uint64_t seed
   return radiance + static_cast<float>(noise.scale) * sigma * NearlyNormal(bits);
 }
 
+void BlurRows(const std::vector<float>& rgb, int width, int rows, double sigma_px,
+              std::vector<float>* blurred) {
+  const auto side =
+      static_cast<float>(0.5 * sigma_px * sigma_px);  // variance of the kernel: 2·side
+  const float middle = 1 - 2 * side;
+  const size_t stride = 3 * static_cast<size_t>(width);
+  blurred->resize(stride * (rows - 2));
+  std::vector<float> column(stride);
+  for (int row = 1; row + 1 < rows; ++row) {
+    const float* at = rgb.data() + row * stride;
+    for (size_t i = 0; i < stride; ++i) {
+      column[i] =
+          middle * at[i] +
+          side * (at[static_cast<ptrdiff_t>(i) - static_cast<ptrdiff_t>(stride)] + at[i + stride]);
+    }
+    float* out = blurred->data() + (row - 1) * stride;
+    for (size_t i = 0; i < stride; ++i) {
+      const float left = column[i >= 3 ? i - 3 : i];
+      const float right = column[i + 3 < stride ? i + 3 : i];
+      out[i] = middle * column[i] + side * (left + right);
+    }
+  }
+}
+
 Encoding ParseEncoding(const std::string& name) {
   if (const auto encoding = EncodingFromName(name)) return *encoding;
   throw UserError("encoding: found \"" + name + "\"; use gamma2.2, srgb or linear");

@@ -22,6 +22,14 @@ struct SensorNoise {
 float NoisyRadiance(float radiance, const SensorNoise& noise, std::uint64_t seed,
                     std::uint64_t sample);
 
+inline constexpr double kMostBlur_px = 0.8;
+
+// Blurs rows [1, rows − 1) of `rgb` (interleaved, `rows` × `width` pixels) into `blurred`, rows − 2
+// rows, with the three-tap kernel of standard deviation `sigma_px` ≤ kMostBlur_px along both axes.
+// The first and last pixel of a row count twice.
+void BlurRows(const std::vector<float>& rgb, int width, int rows, double sigma_px,
+              std::vector<float>* blurred);
+
 // Encoding by name: "gamma2.2", "srgb", "linear", as in capture.toml. Throws UserError.
 Encoding ParseEncoding(const std::string& name);
 

@@ -28,7 +28,7 @@ SvbrdfMaps UniformMaps(float diffuse, float specular, float roughness, int size 
   return maps;
 }
 
-CapturePlan SmallPlan(double megapixels = 0.75) {
+CapturePlan SmallPlan(double megapixels = 0.3) {
   CapturePlanOptions options;
   options.seed = 11;
   options.photos = 3;

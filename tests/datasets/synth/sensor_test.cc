@@ -38,6 +38,34 @@ TEST(EightBitEncoder, DecodingACodeGivesItBack) {
   }
 }
 
+TEST(BlurRows, SpreadsAPointByItsVarianceAndKeepsTheSum) {
+  constexpr int kWidth = 7, kRows = 7;
+  std::vector<float> rgb(3 * kWidth * kRows, 0.0f), blurred;
+  rgb[3 * (3 * kWidth + 3) + 1] = 1;  // green, in the middle
+  BlurRows(rgb, kWidth, kRows, 0.6, &blurred);
+  ASSERT_EQ(blurred.size(), 3u * kWidth * (kRows - 2));
+  double sum = 0, variance_x = 0, variance_y = 0;
+  for (int y = 0; y < kRows - 2; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const float value = blurred[3 * (y * kWidth + x) + 1];
+      sum += value;
+      variance_x += value * (x - 3) * (x - 3);
+      variance_y += value * (y - 2) * (y - 2);
+      EXPECT_EQ(blurred[3 * (y * kWidth + x)], 0);  // red stays out of it
+    }
+  }
+  EXPECT_NEAR(sum, 1, 1e-6);
+  EXPECT_NEAR(variance_x, 0.36, 1e-6);
+  EXPECT_NEAR(variance_y, 0.36, 1e-6);
+}
+
+TEST(BlurRows, KeepsAnEvenPictureUpToItsBorder) {
+  const std::vector<float> rgb(3 * 5 * 4, 0.25f);
+  std::vector<float> blurred;
+  BlurRows(rgb, 5, 4, 0.8, &blurred);
+  for (const float value : blurred) EXPECT_NEAR(value, 0.25f, 1e-7);
+}
+
 TEST(SensorNoise, HasTheStatedMomentsAndNoBias) {
   const SensorNoise noise;
   for (const float radiance : {0.02f, 0.3f, 0.9f}) {
