@@ -2,6 +2,7 @@
 // adjoint of eq. 2 over many views, in one process, on the same number of threads.
 //
 //   bench_render [THREADS=1] [SIZE=256] [VIEWS=20]
+#include <malloc.h>
 #include <torch/torch.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <functional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fitting/reflectance/svbrdf_maps.h"
@@ -49,19 +51,27 @@ Problem MakeProblem(int size, int views) {
   return problem;
 }
 
-// Milliseconds, median of kRepeats after one unmeasured call.
-double MedianMilliseconds(const std::function<void()>& run) {
+double Milliseconds(const std::function<void()>& run) {
+  const auto start = std::chrono::steady_clock::now();
   run();
-  std::vector<double> times;
-  for (int i = 0; i < kRepeats; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    run();
-    const std::chrono::duration<double, std::milli> spent =
-        std::chrono::steady_clock::now() - start;
-    times.push_back(spent.count());
+  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+  return spent.count();
+}
+
+// Medians of kRepeats after one unmeasured call of each; in turn, so that both meet the same
+// machine.
+std::pair<double, double> MedianMilliseconds(const std::function<void()>& first,
+                                             const std::function<void()>& second) {
+  std::vector<double> first_times, second_times;
+  for (int i = 0; i <= kRepeats; ++i) {
+    const double first_time = Milliseconds(first), second_time = Milliseconds(second);
+    if (i == 0) continue;
+    first_times.push_back(first_time);
+    second_times.push_back(second_time);
   }
-  std::sort(times.begin(), times.end());
-  return times[kRepeats / 2];
+  std::sort(first_times.begin(), first_times.end());
+  std::sort(second_times.begin(), second_times.end());
+  return {first_times[kRepeats / 2], second_times[kRepeats / 2]};
 }
 
 double LossAndBackward(const Problem& problem,
@@ -107,8 +117,7 @@ void CompareSpeed(int threads, int size, int views) {
       return LogLossBatch(maps, problem.images, {}, {}, problem.batch, options);
     });
   };
-  const double fused_ms = MedianMilliseconds(fused);
-  const double reference_ms = MedianMilliseconds(reference);
+  const auto [reference_ms, fused_ms] = MedianMilliseconds(reference, fused);
   std::printf("%dx%d, %d views, %d thread%s, %s: forward + adjoint, median of %d\n", size, size,
               views, threads, threads == 1 ? "" : "s", kernel::Name(kernel::BestInstructionSet()),
               kRepeats);
@@ -119,6 +128,7 @@ void CompareSpeed(int threads, int size, int views) {
 }
 
 void CompareMemory(int threads, int size) {
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);  // maps and images go back to the system when freed
   std::printf("peak memory above maps and images, MiB:\n   views    fused     torch\n");
   for (const int views : {5, 20, 80}) {
     const Problem problem = MakeProblem(size, views);
@@ -148,8 +158,8 @@ int Main(int argc, char** argv) {
   const int size = argc > 2 ? std::max(1, std::atoi(argv[2])) : 256;
   const int views = argc > 3 ? std::max(1, std::atoi(argv[3])) : 20;
   torch::set_num_threads(threads);
-  CompareMemory(threads, size);
   CompareSpeed(threads, size, views);
+  CompareMemory(threads, size);
   return 0;
 }
 
