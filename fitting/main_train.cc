@@ -49,6 +49,8 @@ void AddOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
       ->capture_default_str();
   app->add_option("--average-decay", o->average_decay, "of the moving average of weights")
       ->capture_default_str();
+  app->add_option("--principal-start", o->principal_start, "start from principal components")
+      ->capture_default_str();
   app->add_option("--bf16", o->bf16, "multiply in bf16 where the CPU can")->capture_default_str();
   app->add_option("--pool-window", o->pool.window, "materials a step chooses from")
       ->capture_default_str();

@@ -11,6 +11,7 @@ namespace glint {
 namespace {
 
 constexpr int kLookahead = 16;  // materials made before they are needed
+constexpr int kMostInBatch = 4096;
 constexpr float kScale = 32767.0f;
 
 // One of the eight symmetries of the square, colour and roughness changes; drawn per sample.
@@ -150,7 +151,16 @@ void MaterialPool::Produce() {
 }
 
 void MaterialPool::Sample(std::int64_t step, int count, int crop, std::span<float> batch) {
-  const std::uint64_t end = Available(step), begin = Oldest(step);
+  Fill(Oldest(step), Available(step), static_cast<std::uint64_t>(step) * kMostInBatch, count, crop,
+       batch);
+}
+
+void MaterialPool::SampleFirst(int count, int crop, std::span<float> batch) {
+  Fill(Oldest(0), Available(0), std::uint64_t{1} << 62, count, crop, batch);
+}
+
+void MaterialPool::Fill(std::uint64_t begin, std::uint64_t end, std::uint64_t stream, int count,
+                        int crop, std::span<float> batch) {
   {
     std::unique_lock lock(mutex_);
     allowed_ = std::max(allowed_, end + kLookahead);
@@ -160,11 +170,11 @@ void MaterialPool::Sample(std::int64_t step, int count, int crop, std::span<floa
   }
   const int size = options_.material_size;
   const size_t sample_values = static_cast<size_t>(kEncodedChannels) * crop * crop;
-  if (crop < 1 || crop > size || batch.size() != sample_values * count) {
+  if (crop < 1 || crop > size || count > kMostInBatch || batch.size() != sample_values * count) {
     throw std::runtime_error("material pool: crop larger than the materials, or a wrong batch");
   }
   for (int i = 0; i < count; ++i) {
-    Stream random(StreamSeed(options_.seed, static_cast<std::uint64_t>(step) * 4096 + i));
+    Stream random(StreamSeed(options_.seed, stream + static_cast<std::uint64_t>(i)));
     const std::uint64_t k = begin + random.Bits() % (end - begin);
     const Change change = DrawChange(&random, size, crop);
     CutCrop(slots_[k % slots_.size()], change, size, crop, batch.data() + i * sample_values);

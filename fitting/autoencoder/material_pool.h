@@ -38,10 +38,15 @@ class MaterialPool {
   // Fills `batch` [count, 9, crop, crop] (encoded maps). Steps must not decrease.
   void Sample(std::int64_t step, int count, int crop, std::span<float> batch);
 
+  // The same from the first materials, before step 0; other crops than those of the steps.
+  void SampleFirst(int count, int crop, std::span<float> batch);
+
  private:
   std::uint64_t Available(std::int64_t step) const;
   std::uint64_t Oldest(std::int64_t step) const;
   void Produce();
+  void Fill(std::uint64_t begin, std::uint64_t end, std::uint64_t stream, int count, int crop,
+            std::span<float> batch);
 
   PoolOptions options_;
   MaterialSource source_;

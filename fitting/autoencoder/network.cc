@@ -154,7 +154,7 @@ Tensor AutoencoderNetwork::NormaliseByRunning(const Tensor& raw) const {
 Tensor AutoencoderNetwork::Decode(const Tensor& z, torch::Dtype compute) const {
   Tensor x = AsType(z, compute);
   for (int i = 0; i < kLevels; ++i) {
-    x = at::leaky_relu(x, kLeak);
+    if (i > 0) x = at::leaky_relu(x, kLeak);
     x = at::conv2d(x, AsType(decoder_weights[i], compute), decoder_biases[i].to(compute), 1, 1);
     x = Interleave::apply(x);
   }

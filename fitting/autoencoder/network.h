@@ -3,7 +3,9 @@
 // Source: Gao et al. 2019 (DIR), Fig. 3 and its published code; see method.md's summary in
 // docs. Differences: bf16 needs convolutions, so the 4×4 stride-2 up-convolution is computed as a 2×2
 // convolution to four times the channels whose results are interleaved (pixel shuffle) and cropped by
-// one; this is the same linear map with the same number of multiplications.
+// one; this is the same linear map with the same number of multiplications. And the code enters the
+// decoder's first convolution as it is, without a LeakyReLU, so that training can start from a linear
+// auto-encoder (principal_start.h).
 #pragma once
 
 #include <torch/torch.h>

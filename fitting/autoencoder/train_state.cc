@@ -11,7 +11,7 @@ namespace {
 
 using torch::Tensor;
 
-constexpr char kArchitecture[] = "glint-autoencoder v1";
+constexpr char kArchitecture[] = "glint-autoencoder v2";
 constexpr int kMaxChannels = 4096;
 
 std::vector<Tensor> ZerosLike(AutoencoderNetwork* network) {
@@ -134,9 +134,9 @@ void CheckKind(const std::filesystem::path& path, const TensorFile& file) {
 
 }  // namespace
 
-TrainState TrainState::Fresh(const NetworkChannels& channels, std::uint64_t seed) {
+TrainState TrainState::From(AutoencoderNetwork network) {
   TrainState state;
-  state.network = AutoencoderNetwork::Random(channels, seed);
+  state.network = std::move(network);
   state.average = Clone(&state.network);
   state.moment1 = ZerosLike(&state.network);
   state.moment2 = ZerosLike(&state.network);

@@ -16,7 +16,8 @@ struct TrainState {
   std::int64_t step = 0;
   double seconds = 0;
 
-  static TrainState Fresh(const NetworkChannels& channels, std::uint64_t seed);
+  // Step 0 from these weights.
+  static TrainState From(AutoencoderNetwork network);
 };
 
 void SaveCheckpoint(const std::filesystem::path& path, TrainState* state);

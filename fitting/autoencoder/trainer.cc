@@ -11,6 +11,7 @@
 #include "fitting/autoencoder/adam.h"
 #include "fitting/autoencoder/encoding.h"
 #include "fitting/autoencoder/encoding_torch.h"
+#include "fitting/autoencoder/principal_start.h"
 #include "fitting/autoencoder/random.h"
 #include "fitting/autoencoder/render_loss.h"
 #include "fitting/autoencoder/train_state.h"
@@ -252,6 +253,19 @@ void SaveAll(const TrainOptions& options, const TrainFiles& files, TrainState* s
                {"validation_map_l1", std::to_string(validation)}});
 }
 
+constexpr int kPrincipalSamples = 192;
+
+TrainState FirstState(const TrainOptions& options, MaterialPool* pool) {
+  if (!options.principal_start) {
+    return TrainState::From(AutoencoderNetwork::Random(options.channels, options.seed));
+  }
+  const int64_t crop = options.crop;
+  Tensor samples = torch::empty({kPrincipalSamples, kEncodedChannels, crop, crop});
+  pool->SampleFirst(kPrincipalSamples, options.crop,
+                    {samples.data_ptr<float>(), static_cast<size_t>(samples.numel())});
+  return TrainState::From(StartFromPrincipalComponents(options.channels, samples));
+}
+
 TrainFiles WithDefaults(TrainFiles files) {
   if (files.checkpoint.empty()) files.checkpoint = files.weights.string() + ".checkpoint";
   if (files.log_csv.empty()) files.log_csv = files.weights.string() + ".csv";
@@ -267,19 +281,22 @@ TrainProgress Train(const TrainOptions& options, const TrainFiles& given_files,
   torch::set_num_threads(options.threads);
   const TrainFiles files = WithDefaults(given_files);
   const bool resume = files.resume && std::filesystem::exists(files.checkpoint);
-  Trainer trainer(options, resume ? LoadCheckpoint(files.checkpoint, options.channels)
-                                  : TrainState::Fresh(options.channels, options.seed));
-  TrainState* state = trainer.state();
-  const Tensor validation_maps = ValidationMaps(validation, options.pool.material_size);
+  std::optional<TrainState> resumed;
+  if (resume) resumed = LoadCheckpoint(files.checkpoint, options.channels);
   PoolOptions pool_options = options.pool;
   pool_options.seed = options.seed;
-  MaterialPool pool(pool_options, materials, state->step);
+  MaterialPool pool(pool_options, materials, resumed ? resumed->step : 0);
+  Trainer trainer(options, resumed ? std::move(*resumed) : FirstState(options, &pool));
+  TrainState* state = trainer.state();
+  const Tensor validation_maps = ValidationMaps(validation, options.pool.material_size);
   Log log(files.log_csv, resume);
 
   Tensor batch = torch::empty({options.batch, kEncodedChannels, options.crop, options.crop});
   const std::span<float> values(batch.data_ptr<float>(), static_cast<size_t>(batch.numel()));
   Window window;
   TrainProgress progress;
+  progress.validation_map_loss = trainer.ValidationLoss(validation_maps);
+  if (report) report(progress);  // where it starts
   double tick = Now(), window_seconds = 0, since_checkpoint = 0;
   while (trainer.Done() < 1.0) {
     pool.Sample(state->step, options.batch, options.crop, values);

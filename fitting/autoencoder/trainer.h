@@ -32,6 +32,7 @@ struct TrainOptions {
   int render_views = 3;           // per sample; a third cosine-distributed, the others on highlights
   double average_decay = 0.999;
   double normal_weight = 1.0;     // of the normals' L1 among the maps
+  bool principal_start = true;    // start from principal components (principal_start.h), not noise
   bool bf16 = true;               // where the CPU multiplies it natively
   int threads = 1;
   std::uint64_t seed = 1;
