@@ -29,15 +29,15 @@ ProgramResult Summarise(const fs::path& folder, const ForeignSet& foreign,
                             set.plane.height, set.plane.width_mm, set.plane.height_mm,
                             ToString(set.convention));
   const Vec3d& power = set.views[0].view.light_rgb;
-  result.text += fmt::format("  light power {:.6g}, {:.6g}, {:.6g} ({})\n", power[0], power[1],
-                             power[2],
-                             set.light_power_known ? "known" : "a first guess, fitted with the maps");
+  result.text +=
+      fmt::format("  light power {:.6g}, {:.6g}, {:.6g} ({})\n", power[0], power[1], power[2],
+                  set.light_power_known ? "known" : "a first guess, fitted with the maps");
   for (size_t i = 0; i < set.views.size(); ++i) {
     const Json& metrics = summary.metrics["views"][i];
-    result.text += fmt::format("  {}  {:<20} usable {:5.1f} %  saturated {:4.1f} %\n",
-                               set.views[i].name, set.views[i].photo,
-                               100 * metrics["usable"].get<double>(),
-                               100 * metrics["saturated"].get<double>());
+    result.text +=
+        fmt::format("  {}  {:<20} usable {:5.1f} %  saturated {:4.1f} %\n", set.views[i].name,
+                    set.views[i].photo, 100 * metrics["usable"].get<double>(),
+                    100 * metrics["saturated"].get<double>());
   }
   result.text += "go on with: glint run " + folder.string() + "\n";
   result.json = {{"stage", "rectify"},
@@ -56,9 +56,9 @@ ProgramResult Run(const fs::path& source, const fs::path& folder, const OptionSe
   RequireReplaceable(toml_file, toml, common.force);
   Stage stage(folder / "glint" / "rectify", {"rectify", kRectifyVersion}, set, common,
               ImportInputs(foreign));
-  ProgramResult result{stage.UpToDateText(), {{"stage", "rectify"},
-                                              {"up_to_date", true},
-                                              {"manifest", stage.manifest_file().string()}}};
+  ProgramResult result{
+      stage.UpToDateText(),
+      {{"stage", "rectify"}, {"up_to_date", true}, {"manifest", stage.manifest_file().string()}}};
   if (!stage.UpToDate()) {
     result = Summarise(folder, foreign, ImportSet(foreign, options, common, &stage));
   }

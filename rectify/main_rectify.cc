@@ -18,10 +18,11 @@ ProgramResult Summarise(const Stage& stage, const RectifySummary& summary) {
   for (size_t i = 0; i < summary.set.views.size(); ++i) {
     const Json& metrics = summary.metrics["views"][i];
     result.text += fmt::format(
-        "  {}  {:<28} usable {:5.1f} %  saturated {:4.1f} %  outside {:4.1f} %  {:.2f} px a texel\n",
-        summary.set.views[i].name, summary.set.views[i].photo, 100 * metrics["usable"].get<double>(),
-        100 * metrics["saturated"].get<double>(), 100 * metrics["outside"].get<double>(),
-        metrics["pixels_per_texel"].get<double>());
+        "  {}  {:<28} usable {:5.1f} %  saturated {:4.1f} %  outside {:4.1f} %  {:.2f} px a "
+        "texel\n",
+        summary.set.views[i].name, summary.set.views[i].photo,
+        100 * metrics["usable"].get<double>(), 100 * metrics["saturated"].get<double>(),
+        100 * metrics["outside"].get<double>(), metrics["pixels_per_texel"].get<double>());
   }
   result.json = {{"stage", "rectify"},
                  {"up_to_date", false},
@@ -49,9 +50,9 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RectifyOp
   }
   Stage stage(capture.work() / "rectify", {"rectify", kRectifyVersion}, *set, common, inputs);
   if (stage.UpToDate()) {
-    return {stage.UpToDateText(), {{"stage", "rectify"},
-                                   {"up_to_date", true},
-                                   {"manifest", stage.manifest_file().string()}}};
+    return {
+        stage.UpToDateText(),
+        {{"stage", "rectify"}, {"up_to_date", true}, {"manifest", stage.manifest_file().string()}}};
   }
   return Summarise(stage, RectifyCapture(capture, calibration, *options, task, common, &stage));
 }

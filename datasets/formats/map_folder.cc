@@ -50,7 +50,8 @@ std::map<std::string, fs::path> FindMapFiles(const fs::path& folder) {
     const std::string kind = underscore == std::string::npos ? "" : stem.substr(underscore + 1);
     if (kKinds.count(kind) == 0 || kEndings.count(file.extension()) == 0) continue;
     if (!files.emplace(kind, file).second) {
-      throw UserError(folder, kind, "two files named *_" + kind, "leave one material in the folder");
+      throw UserError(folder, kind, "two files named *_" + kind,
+                      "leave one material in the folder");
     }
   }
   return files;

@@ -12,7 +12,8 @@ class Tile {
  public:
   Tile(const Image& strip, int index) : strip_(strip), first_column_(index * strip.height) {}
   float At(int channel, int row, int column) const {
-    return strip_.channel(channel)[static_cast<size_t>(row) * strip_.width + first_column_ + column];
+    return strip_.channel(
+        channel)[static_cast<size_t>(row) * strip_.width + first_column_ + column];
   }
 
  private:
@@ -39,8 +40,7 @@ SvbrdfMaps ReadMapStrip(const std::filesystem::path& file, MapLayout layout,
   const int tiles = with_photo ? 5 : 4;
   const Image strip = ReadPhoto(file).image;
   if (strip.width != tiles * strip.height) {
-    throw UserError(file, "size",
-                    std::to_string(strip.width) + "x" + std::to_string(strip.height),
+    throw UserError(file, "size", std::to_string(strip.width) + "x" + std::to_string(strip.height),
                     "this strip is " + std::to_string(tiles) + " square maps wide");
   }
   const int first = with_photo ? 1 : 0;

@@ -46,10 +46,9 @@ MapLayout DetectMapLayout(const fs::path& path) {
   }
   if (header.width == 4 * header.height) return MapLayout::kDirStrip;
   if (header.width == 5 * header.height) return MapLayout::kPhotoStrip;
-  throw UserError(path, "size",
-                  "a picture of " + std::to_string(header.width) + "x" +
-                      std::to_string(header.height),
-                  kMend);
+  throw UserError(
+      path, "size",
+      "a picture of " + std::to_string(header.width) + "x" + std::to_string(header.height), kMend);
 }
 
 SvbrdfMaps ReadMaps(const fs::path& path, const MapEncodings& encodings) {

@@ -12,11 +12,14 @@ namespace glint {
 
 // How maps lie on disk:
 //   kSvbrdfExr     svbrdf.exr of Glint (docs/conventions.md), or a folder that holds one
-//   kDirStrip      DIR 2019: one picture of 4H×H: normal | diffuse | roughness | specular; diffuse in
+//   kDirStrip      DIR 2019: one picture of 4H×H: normal | diffuse | roughness | specular; diffuse
+//   in
 //                  gamma 2.2, the others linear
-//   kPhotoStrip    Deschaintre et al. 2018: one picture of 5H×H: photo | normal | diffuse | roughness |
+//   kPhotoStrip    Deschaintre et al. 2018: one picture of 5H×H: photo | normal | diffuse |
+//   roughness |
 //                  specular; all maps linear ("output linear parameters" in their program's notes)
-//   kColorFolder   a folder named the ambientCG way: NAME_Color (sRGB), NAME_NormalGL, NAME_Roughness,
+//   kColorFolder   a folder named the ambientCG way: NAME_Color (sRGB), NAME_NormalGL,
+//   NAME_Roughness,
 //                  optionally NAME_Metalness, JPEG or PNG, all of one size
 // Normals are OpenGL's (+Y up) everywhere and stored as (n + 1)/2; roughness is linear r.
 enum class MapLayout { kSvbrdfExr, kDirStrip, kPhotoStrip, kColorFolder };
@@ -32,8 +35,9 @@ struct MapEncodings {
 MapLayout DetectMapLayout(const std::filesystem::path& path);
 
 // Reads any of the layouts. Base colour c and metalness m give diffuse c·(1 − m) and specular
-// F0 = 0.04·(1 − m) + c·m. Roughness is kept from 0 by 1/255's half; normals come out of unit length
-// and in the upper half space. Throws UserError naming the file, what was found and the mend.
+// F0 = 0.04·(1 − m) + c·m. Roughness is kept from 0 by 1/255's half; normals come out of unit
+// length and in the upper half space. Throws UserError naming the file, what was found and the
+// mend.
 SvbrdfMaps ReadMaps(const std::filesystem::path& path, const MapEncodings& encodings = {});
 
 }  // namespace glint

@@ -1,6 +1,7 @@
-// The layout of DIR 2019's program: FOLDER/SOMETHING_wlv/NAME.txt beside FOLDER/SOMETHING_images/NAME_0.png …
-// After a heading "predefined N: 20", lines of "light x,y,z <tab> camera x,y,z", on the plane [−1, 1]² in its own units, kept here as
-// millimetres: the convention without falloff has no scale. E = π; images in gamma 2.2.
+// The layout of DIR 2019's program: FOLDER/SOMETHING_wlv/NAME.txt beside
+// FOLDER/SOMETHING_images/NAME_0.png … After a heading "predefined N: 20", lines of "light x,y,z
+// <tab> camera x,y,z", on the plane [−1, 1]² in its own units, kept here as millimetres: the
+// convention without falloff has no scale. E = π; images in gamma 2.2.
 #include <numbers>
 
 #include "datasets/import/foreign_set.h"

@@ -24,7 +24,8 @@ std::vector<fs::path> WlvFiles(const fs::path& folder) {
   std::vector<fs::path> files;
   const auto collect = [&](const fs::path& where) {
     for (const auto& entry : fs::directory_iterator(where)) {
-      if (entry.is_regular_file() && entry.path().extension() == ".txt") files.push_back(entry.path());
+      if (entry.is_regular_file() && entry.path().extension() == ".txt")
+        files.push_back(entry.path());
     }
   };
   if (EndsWithWlv(folder)) collect(folder);

@@ -12,8 +12,8 @@ namespace glint {
 
 struct ForeignView {
   std::filesystem::path image;
-  std::string name;  // how the set calls it: a path within the source, such as "00.png"
-  View view;         // sample frame, millimetres
+  std::string name;         // how the set calls it: a path within the source, such as "00.png"
+  View view;                // sample frame, millimetres
   std::optional<bool> ldr;  // whether the image clips at 1; absent: 8 and 16 bit do
 };
 
@@ -36,7 +36,8 @@ struct ForeignSet {
 //   views.json or a folder with one              docs/views.md
 //   a folder with camera_pos.txt                 MaterialGAN (Guo et al. 2020)
 //   a folder with parameters.json                svbrdf-diff-renderer, by the same authors
-//   NAME.txt in a folder *wlv beside *images     DIR 2019's program; or the folder above with one such
+//   NAME.txt in a folder *wlv beside *images     DIR 2019's program; or the folder above with one
+//   such
 // Throws UserError naming file, field, what was found and the mend.
 ForeignSet ReadForeignSet(const std::filesystem::path& source);
 

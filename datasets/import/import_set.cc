@@ -88,8 +88,8 @@ RectifiedImage ToPlane(const LinearPhoto& photo, const SamplePlane& plane, Pixel
   if (plane.sampling == TexelSampling::kCornerToCorner) {
     options.border_px = static_cast<double>(sample.width) / plane.width;
   }
-  return RectifyPhoto(photo, TopViewProjection(whole, photo.width(), photo.height()), plane, options,
-                      {}, file, counts);
+  return RectifyPhoto(photo, TopViewProjection(whole, photo.width(), photo.height()), plane,
+                      options, {}, file, counts);
 }
 
 LinearPhoto ReadLinear(const ForeignView& view, const std::string& encoding_name,
@@ -131,8 +131,9 @@ void GuessLight(const LightGuess& guess, RectifiedSet* set) {
 void AddImportOptions(OptionSet* set, ImportOptions* options) {
   set->AddRange("size", &options->size, 0, kLargest_px,
                 "resample to this width in texels; 0: as the images are");
-  set->AddRange("crop", &options->crop, 0, kLargest_px,
-                "the sample is this many pixels square in the images' middle; 0: as the layout says");
+  set->AddRange(
+      "crop", &options->crop, 0, kLargest_px,
+      "the sample is this many pixels square in the images' middle; 0: as the layout says");
   set->Add("convention", &options->convention,
            "reflectance convention: photograph, dir2019, materialgan, or its words; empty: the "
            "source's");
@@ -245,7 +246,8 @@ ImportSummary ImportSet(const ForeignSet& foreign, const ImportOptions& options,
 std::string ImportedCaptureToml(const ForeignSet& set, const SamplePlane& plane) {
   return fmt::format(
       "# Written by glint-import from a set in the layout of {}.\n"
-      "# Its views are rectified already (glint/rectify), so there are no photographs and no board\n"
+      "# Its views are rectified already (glint/rectify), so there are no photographs and no "
+      "board\n"
       "# here, and glint run starts at fit.\n\n"
       "[sample]\n"
       "size_mm = [{}, {}]\n"

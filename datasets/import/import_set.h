@@ -18,7 +18,7 @@ struct ImportOptions {
   std::string convention;   // empty: as the source says
   std::string light_power;  // "estimate", a number, "r,g,b"; empty: as the source says
   std::string encoding;     // empty: as the source says
-  double saturation_level = 0.995;    // stored value from which 8 and 16 bit images count as clipped
+  double saturation_level = 0.995;  // stored value from which 8 and 16 bit images count as clipped
   double float_saturation_level = 0;  // the same for floats; 0: they never clip
 };
 
@@ -36,8 +36,8 @@ struct ImportSummary {
 };
 
 // Linearises, crops and resamples the images, writes the views as outputs of `stage` (a stage
-// "rectify") and commits it. Throws UserError: images that are unreadable, of different sizes, or of a
-// shape that does not fit size_mm.
+// "rectify") and commits it. Throws UserError: images that are unreadable, of different sizes, or
+// of a shape that does not fit size_mm.
 ImportSummary ImportSet(const ForeignSet& set, const ImportOptions& options,
                         const CommonOptions& common, Stage* stage);
 

@@ -10,18 +10,21 @@
 
 namespace glint {
 
-// Throws UserError for a file that is missing or no JSON; `mend` says where its format is described.
+// Throws UserError for a file that is missing or no JSON; `mend` says where its format is
+// described.
 Json ParseJsonFile(const std::filesystem::path& file, const std::string& mend);
 
 // The value's text, shortened.
 std::string ShownJson(const Json& value);
 
-// An object of a file; keeps book of the fields that were asked for. `file` and `json` must outlive it.
+// An object of a file; keeps book of the fields that were asked for. `file` and `json` must outlive
+// it.
 class JsonFields {
  public:
   static constexpr double kAny = -1e30;  // no lower bound
 
-  // `name` is the object's path in the file, empty at the top. Throws UserError when it is no object.
+  // `name` is the object's path in the file, empty at the top. Throws UserError when it is no
+  // object.
   JsonFields(const std::filesystem::path& file, const Json& json, std::string name);
 
   const Json* Find(const std::string& field);  // nullptr: absent

@@ -1,7 +1,7 @@
 // The layouts of MaterialGAN (Guo et al. 2020) and of its successor svbrdf-diff-renderer. Both give
-// centimetres, in Glint's sample frame (x right, y up in the image, z toward the camera), gamma 2.2,
-// E = P/d² and a diffuse lobe weighted by 1 − k_s. Their light power (cm²) is a setting of the
-// program and not a measurement, so it enters as a first guess.
+// centimetres, in Glint's sample frame (x right, y up in the image, z toward the camera),
+// gamma 2.2, E = P/d² and a diffuse lobe weighted by 1 − k_s. Their light power (cm²) is a setting
+// of the program and not a measurement, so it enters as a first guess.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMillimetres = 10;       // a centimetre
+constexpr double kMillimetres = 10;         // a centimetre
 constexpr double kSquareMillimetres = 100;  // a square centimetre
 // Frames of 1600² pixels show the markers too; the sample is their central 1024².
 constexpr int kFrame_px = 1600, kFrameSample_px = 1024;
@@ -58,7 +58,8 @@ std::vector<fs::path> NumberedImages(const fs::path& folder) {
   std::vector<fs::path> images;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string ending = entry.path().extension(), stem = entry.path().stem();
-    const bool numbered = stem.size() >= 2 && std::isdigit(static_cast<unsigned char>(stem.back())) &&
+    const bool numbered = stem.size() >= 2 &&
+                          std::isdigit(static_cast<unsigned char>(stem.back())) &&
                           std::isdigit(static_cast<unsigned char>(stem[stem.size() - 2]));
     const bool image = ending == ".png" || ending == ".jpg" || ending == ".exr" || ending == ".tif";
     if (entry.is_regular_file() && numbered && image) images.push_back(entry.path());
@@ -135,9 +136,9 @@ ForeignSet ReadMaterialGanJson(const fs::path& folder) {
   if (!indices.is_array() || indices.empty()) fields.Reject("idx", indices, "give a list");
   for (const auto& [field, list] : {std::pair{"camera_pos", &cameras}, {"light_pos", &lights}}) {
     if (list->is_array() && list->size() == indices.size()) continue;
-    fields.Reject(field, *list,
-                  "give one position for each of the " + std::to_string(indices.size()) +
-                      " entries of idx");
+    fields.Reject(
+        field, *list,
+        "give one position for each of the " + std::to_string(indices.size()) + " entries of idx");
   }
   const std::vector<fs::path> images = ImagesOf(folder, fields.Find("images_dir"));
   for (size_t i = 0; i < indices.size(); ++i) {

@@ -13,8 +13,8 @@ struct NumberRow {
 };
 
 // Rows that are not empty, each of `columns` numbers. A first line that begins with `heading` (when
-// not empty) is passed over. Throws UserError naming file and line: a word that is no finite number,
-// a row of another length, no rows.
+// not empty) is passed over. Throws UserError naming file and line: a word that is no finite
+// number, a row of another length, no rows.
 std::vector<NumberRow> ReadNumberRows(const std::filesystem::path& file, size_t columns,
                                       const std::string& heading = "");
 

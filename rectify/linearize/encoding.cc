@@ -47,8 +47,7 @@ float EncodedFromLinear(Encoding encoding, float value) {
     case Encoding::kLinear:
       return static_cast<float>(v);
     case Encoding::kSrgb:
-      return static_cast<float>(v <= 0.0031308 ? v * 12.92
-                                               : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+      return static_cast<float>(v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
     case Encoding::kGamma22:
       return static_cast<float>(std::pow(v, 1 / 2.2));
   }

@@ -28,8 +28,9 @@ float EncodedFromLinear(Encoding encoding, float value);
 // Linear value of code i of `codes` (256 or 65536): code codes − 1 is 1.
 std::vector<float> LinearTable(Encoding encoding, int codes);
 
-// The encoding of one photograph. `name` is "auto", or a name that EncodingFromName knows; "auto" is
-// linear for floats and camera RAW files, gamma 2.2 for 8 and 16 bit. Throws UserError for others.
+// The encoding of one photograph. `name` is "auto", or a name that EncodingFromName knows; "auto"
+// is linear for floats and camera RAW files, gamma 2.2 for 8 and 16 bit. Throws UserError for
+// others.
 Encoding ResolveEncoding(const std::string& name, const std::filesystem::path& file, int bits);
 
 // Whether the file name's ending is that of a camera's RAW format (DNG, CR2, NEF…).

@@ -34,7 +34,10 @@ double UnitIrradiance(const View& view, LightFalloff falloff, double x_mm, doubl
 }  // namespace
 
 LightGuess::LightGuess(const SamplePlane& plane, LightFalloff falloff)
-    : plane_(plane), falloff_(falloff), columns_(Spread(plane.width)), rows_(Spread(plane.height)) {}
+    : plane_(plane),
+      falloff_(falloff),
+      columns_(Spread(plane.width)),
+      rows_(Spread(plane.height)) {}
 
 void LightGuess::Add(const RectifiedImage& image) {
   const size_t texels = static_cast<size_t>(image.width) * image.height;

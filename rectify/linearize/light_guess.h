@@ -9,9 +9,9 @@ namespace glint {
 
 // Watches rectified views go by and ends with the power that makes the sample's diffuse albedo
 // plausible: with q = π·L / (irradiance of a light of power 1), the albedo of a Lambertian texel is
-// q / power. Per point of a coarse grid the median q of the views counts (the lower one of two), which
-// leaves highlights and shadows out; the power then puts the median albedo at 0.3, or lower where
-// bright texels would pass 0.95.
+// q / power. Per point of a coarse grid the median q of the views counts (the lower one of two),
+// which leaves highlights and shadows out; the power then puts the median albedo at 0.3, or lower
+// where bright texels would pass 0.95.
 class LightGuess {
  public:
   LightGuess(const SamplePlane& plane, LightFalloff falloff);

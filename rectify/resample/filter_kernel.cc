@@ -53,7 +53,8 @@ FilterKernel::FilterKernel(FilterKind kind)
       steps_per_r2_(static_cast<float>(kSteps / (radius_ * radius_))),
       table_(kSteps + 1) {
   for (int i = 0; i < kSteps; ++i) {
-    table_[i] = static_cast<float>(Value(kind, radius_ * std::sqrt(static_cast<double>(i) / kSteps)));
+    table_[i] =
+        static_cast<float>(Value(kind, radius_ * std::sqrt(static_cast<double>(i) / kSteps)));
   }
   table_[kSteps] = 0;
 }

@@ -10,8 +10,9 @@ namespace glint {
 // What a texel gathers, as a function of the distance in texels:
 //   kSharp    Robidoux' sharper cubic (B 0.2620, C 0.3690): response 0.99 at 1/4, 0.58 at 1/2 cycle
 //             per texel (Nyquist), below 0.006 from 0.9 on, radius 2. The default.
-//   kSoft     Robidoux' cubic (B 0.3782, C 0.3109): 0.92, 0.49, below 0.005, radius 2; least ringing.
-//   kLanczos  jinc windowed by jinc, three lobes: 1.02, 0.46, below 0.01 from 0.7 on, radius 3.24;
+//   kSoft     Robidoux' cubic (B 0.3782, C 0.3109): 0.92, 0.49, below 0.005, radius 2; least
+//   ringing. kLanczos  jinc windowed by jinc, three lobes: 1.02, 0.46, below 0.01 from 0.7 on,
+//   radius 3.24;
 //             the best low-pass, at 2.6 times the work and with wider saturation margins.
 // Cubics: Mitchell & Netravali 1988; as radial filters: N. Robidoux, in ImageMagick's elliptical
 // weighted average resampling. The responses are Hankel transforms of the kernels.

@@ -5,7 +5,8 @@
 
 namespace glint {
 
-// How the image point moves with the texel: columns are d(x, y)/d(column) and d(x, y)/d(row), pixels.
+// How the image point moves with the texel: columns are d(x, y)/d(column) and d(x, y)/d(row),
+// pixels.
 struct TexelJacobian {
   double x_by_column, x_by_row, y_by_column, y_by_row;
 

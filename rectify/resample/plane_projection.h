@@ -18,9 +18,9 @@ class PlaneProjection {
   virtual std::optional<Eigen::Vector2d> ImageFromPlane(double x_mm, double y_mm) const = 0;
 };
 
-// A photograph: pose, then the camera's lens. The plane's homography and the lens distortion are one
-// mapping here, so that a photo is resampled once. Points farther from the axis than where the radial
-// polynomial turns back have no image: beyond, it would show them a second time.
+// A photograph: pose, then the camera's lens. The plane's homography and the lens distortion are
+// one mapping here, so that a photo is resampled once. Points farther from the axis than where the
+// radial polynomial turns back have no image: beyond, it would show them a second time.
 class CameraProjection : public PlaneProjection {
  public:
   CameraProjection(Camera camera, Rigid3 camera_from_sample);
@@ -42,8 +42,8 @@ class HomographyProjection : public PlaneProjection {
   Eigen::Matrix3d image_from_plane_;
 };
 
-// A picture that shows the plane already from the top: a rectified view of width_px × height_px that
-// fills the plane's extent, sampled as the plane says.
+// A picture that shows the plane already from the top: a rectified view of width_px × height_px
+// that fills the plane's extent, sampled as the plane says.
 HomographyProjection TopViewProjection(const SamplePlane& plane, int width_px, int height_px);
 
 }  // namespace glint

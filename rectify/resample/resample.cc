@@ -165,7 +165,8 @@ ResampledView ResampleToPlane(const LinearPhoto& photo, const PlaneProjection& p
                               const SamplePlane& plane, const ResampleOptions& options,
                               const std::vector<TexelStatus>& status_before) {
   const size_t texels = static_cast<size_t>(plane.width) * plane.height;
-  ResampledView view{plane.width, plane.height, std::vector<float>(3 * texels, 0.0f), status_before};
+  ResampledView view{plane.width, plane.height, std::vector<float>(3 * texels, 0.0f),
+                     status_before};
   if (view.status.size() != texels) view.status.assign(texels, TexelStatus::kOutside);
   const Resampler resampler(photo, projection, plane, options, &view);
 

@@ -13,7 +13,8 @@ namespace glint {
 
 struct ResampleOptions {
   FilterKind filter = FilterKind::kSharp;
-  // How far, in pixels, the texel's own area may stick out of the picture and still count as inside.
+  // How far, in pixels, the texel's own area may stick out of the picture and still count as
+  // inside.
   double border_px = 1e-3;
   int threads = 1;  // never changes a value
 };
@@ -32,12 +33,12 @@ struct ResampledView {
   std::vector<TexelStatus> status;  // [H·W]
 };
 
-// Per texel: the image of its centre, the ellipse its area covers there, and the weighted mean of the
-// linear pixel values under the kernel stretched over that ellipse. Never aliases when the photo is
-// finer than the texels, at any tilt; interpolates when it is coarser. Weights are normalised, so that
-// constants stay constants; negative results (the kernel's lobes beside a highlight) become 0. Threaded
-// by tiles; the result does not depend on the number of threads. Texels marked kMasked in
-// `status_before` (empty, or [H·W]) are passed over.
+// Per texel: the image of its centre, the ellipse its area covers there, and the weighted mean of
+// the linear pixel values under the kernel stretched over that ellipse. Never aliases when the
+// photo is finer than the texels, at any tilt; interpolates when it is coarser. Weights are
+// normalised, so that constants stay constants; negative results (the kernel's lobes beside a
+// highlight) become 0. Threaded by tiles; the result does not depend on the number of threads.
+// Texels marked kMasked in `status_before` (empty, or [H·W]) are passed over.
 ResampledView ResampleToPlane(const LinearPhoto& photo, const PlaneProjection& projection,
                               const SamplePlane& plane, const ResampleOptions& options,
                               const std::vector<TexelStatus>& status_before = {});

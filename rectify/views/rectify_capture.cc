@@ -121,8 +121,8 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     view.file = view.name + ".exr";
     view.photo = calibrated.photo;
     view.ldr = photo.ldr;
-    view.view = ViewOf(calibration, calibrated, task.ambient,
-                       capture.work() / "calib" / "manifest.json");
+    view.view =
+        ViewOf(calibration, calibrated, task.ambient, capture.work() / "calib" / "manifest.json");
     const CameraProjection projection(calibration.cameras[static_cast<size_t>(calibrated.camera)],
                                       calibrated.camera_from_sample);
     ViewCounts counts;

@@ -14,8 +14,9 @@ constexpr int kMaxResolution_px = 16384;
 void AddRectifyOptions(OptionSet* set, RectifyOptions* options) {
   set->AddRange("resolution", &options->resolution, 0, kMaxResolution_px,
                 "width of the views in texels; 0: as [sample] resolution_px says");
-  set->AddChoice("filter", &options->filter, {"sharp", "soft", "lanczos"},
-                 "resampling kernel: sharp, soft (least ringing) or lanczos (best low-pass, slower)");
+  set->AddChoice(
+      "filter", &options->filter, {"sharp", "soft", "lanczos"},
+      "resampling kernel: sharp, soft (least ringing) or lanczos (best low-pass, slower)");
   set->AddRange("saturation-level", &options->saturation_level, 0.5, 1.01,
                 "stored value (of 1) from which a pixel of an 8 or 16 bit photo counts as clipped; "
                 "above 1: none does");
@@ -34,7 +35,8 @@ RectifyTask ResolveTask(const Capture& capture, const RectifyOptions& options) {
   task.sample_size_mm = {capture.sample_size_mm[0], capture.sample_size_mm[1]};
   int width = capture.resolution_px[0], height = capture.resolution_px[1];
   if (options.resolution > 0) {
-    height = static_cast<int>(std::lround(static_cast<double>(options.resolution) * height / width));
+    height =
+        static_cast<int>(std::lround(static_cast<double>(options.resolution) * height / width));
     width = options.resolution;
   }
   if (width < kMinResolution_px || height < kMinResolution_px || height > kMaxResolution_px) {

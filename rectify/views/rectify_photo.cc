@@ -34,11 +34,15 @@ ViewCounts Count(const ResampledView& view) {
     }
   }
   const auto fraction = [&](TexelStatus status) {
-    return static_cast<double>(by_status[static_cast<size_t>(status)]) / static_cast<double>(texels);
+    return static_cast<double>(by_status[static_cast<size_t>(status)]) /
+           static_cast<double>(texels);
   };
-  return {fraction(TexelStatus::kUsable),    fraction(TexelStatus::kOutside),
-          fraction(TexelStatus::kSaturated), fraction(TexelStatus::kMasked),
-          static_cast<double>(black) / static_cast<double>(texels), 0};
+  return {fraction(TexelStatus::kUsable),
+          fraction(TexelStatus::kOutside),
+          fraction(TexelStatus::kSaturated),
+          fraction(TexelStatus::kMasked),
+          static_cast<double>(black) / static_cast<double>(texels),
+          0};
 }
 
 void RequireUsable(const ViewCounts& counts, const std::filesystem::path& file) {
@@ -75,14 +79,16 @@ View ViewOf(const Calibration& calibration, const CalibratedPhoto& photo,
   const Eigen::Vector3d light = sample_from_camera * photo.light_in_camera_mm;
   for (const auto& [what, z] : {std::pair{"camera", camera.z()}, std::pair{"light", light.z()}}) {
     if (z > 0) continue;
-    throw UserError(calibration_file, photo.photo,
-                    "a " + std::string(what) + " behind the sample (z = " + std::to_string(z) + " mm)",
-                    "check [board] and [light] offset_mm and run calib again");
+    throw UserError(
+        calibration_file, photo.photo,
+        "a " + std::string(what) + " behind the sample (z = " + std::to_string(z) + " mm)",
+        "check [board] and [light] offset_mm and run calib again");
   }
   View view;
   view.camera_in_sample_mm = {camera.x(), camera.y(), camera.z()};
   view.light_in_sample_mm = {light.x(), light.y(), light.z()};
-  view.light_rgb = {calibration.light_rgb.x(), calibration.light_rgb.y(), calibration.light_rgb.z()};
+  view.light_rgb = {calibration.light_rgb.x(), calibration.light_rgb.y(),
+                    calibration.light_rgb.z()};
   view.ambient_rgb = {ambient[0], ambient[1], ambient[2]};
   return view;
 }
@@ -102,8 +108,8 @@ RectifiedImage RectifyPhoto(const LinearPhoto& photo, const PlaneProjection& pro
                             const SamplePlane& plane, const ResampleOptions& options,
                             const std::vector<TexelStatus>& status_before,
                             const std::filesystem::path& file, ViewCounts* counts) {
-  RectifiedImage image = MaskView(
-      ResampleToPlane(photo, projection, plane, options, status_before), file, counts);
+  RectifiedImage image =
+      MaskView(ResampleToPlane(photo, projection, plane, options, status_before), file, counts);
   counts->pixels_per_texel = PixelsPerTexel(projection, plane);
   return image;
 }

@@ -27,7 +27,8 @@ View ViewOf(const Calibration& calibration, const CalibratedPhoto& photo,
             const std::vector<double>& ambient, const std::filesystem::path& calibration_file);
 
 // Counts the texels of a view and makes status into a mask. Throws UserError naming `file` when no
-// texel is usable (sample outside of the photo, all saturated, all under the frame) or all are black.
+// texel is usable (sample outside of the photo, all saturated, all under the frame) or all are
+// black.
 RectifiedImage MaskView(ResampledView view, const std::filesystem::path& file, ViewCounts* counts);
 
 // ResampleToPlane and MaskView. `status_before` as MaskFrame gives it (or empty).

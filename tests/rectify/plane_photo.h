@@ -1,4 +1,5 @@
-// Photographs of a painted plane, made by supersampling: the truth that rectification must find again.
+// Photographs of a painted plane, made by supersampling: the truth that rectification must find
+// again.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,17 +13,16 @@
 
 namespace glint {
 
-// A camera `distance_mm` from the sample's centre, looking at it, tilted about the sample's x axis and
-// turned about its own axis. At tilt 0 image x is sample x and image y is −sample y.
+// A camera `distance_mm` from the sample's centre, looking at it, tilted about the sample's x axis
+// and turned about its own axis. At tilt 0 image x is sample x and image y is −sample y.
 inline Rigid3 LookAtSample(double distance_mm, double tilt_deg, double roll_deg) {
   constexpr double kDegree = 3.14159265358979323846 / 180;
   const Eigen::Matrix3d upright = Eigen::Vector3d(1, -1, -1).asDiagonal();
   Rigid3 camera_from_sample;
-  camera_from_sample.rotation =
-      (Eigen::AngleAxisd(roll_deg * kDegree, Eigen::Vector3d::UnitZ()) *
-       Eigen::AngleAxisd(tilt_deg * kDegree, Eigen::Vector3d::UnitX()))
-          .toRotationMatrix() *
-      upright;
+  camera_from_sample.rotation = (Eigen::AngleAxisd(roll_deg * kDegree, Eigen::Vector3d::UnitZ()) *
+                                 Eigen::AngleAxisd(tilt_deg * kDegree, Eigen::Vector3d::UnitX()))
+                                    .toRotationMatrix() *
+                                upright;
   camera_from_sample.translation = {0, 0, distance_mm};
   return camera_from_sample;
 }
@@ -36,8 +36,8 @@ inline Camera TestCamera(int side_px, double focal_px, double k1 = 0, double k2 
 }
 
 // Point of the plane z = 0 that the image point shows.
-inline std::pair<double, double> PlaneFromImage(const Camera& camera, const Rigid3& pose, double x_px,
-                                                double y_px) {
+inline std::pair<double, double> PlaneFromImage(const Camera& camera, const Rigid3& pose,
+                                                double x_px, double y_px) {
   const auto uv = NormalizedFromImage(camera, {x_px, y_px});
   const Rigid3 sample_from_camera = Inverse(pose);
   const Eigen::Vector3d ray = sample_from_camera.rotation * Eigen::Vector3d(uv->x(), uv->y(), 1);

@@ -41,7 +41,8 @@ void Fill(Image* image, int index, std::array<float, 3> color) {
   for (int c = 0; c < 3; ++c) {
     for (int row = 0; row < image->height; ++row) {
       for (int column = 0; column < image->height; ++column) {
-        image->channel(c)[static_cast<size_t>(row) * image->width + index * image->height + column] =
+        image->channel(
+            c)[static_cast<size_t>(row) * image->width + index * image->height + column] =
             color[static_cast<size_t>(c)];
       }
     }
@@ -141,8 +142,8 @@ TEST_F(MapFolder, WhatIsWrongIsNamed) {
   Write("NormalGL", kNormal);
   EXPECT_THAT(Message(), AllOf(HasSubstr("Roughness"), HasSubstr("no file")));
   Write("Roughness", {0.5f, 0.5f, 0.5f}, 2 * kSide);
-  EXPECT_THAT(Message(), AllOf(HasSubstr("Wood_01_Roughness.png"), HasSubstr("64x64"),
-                               HasSubstr("32x32")));
+  EXPECT_THAT(Message(),
+              AllOf(HasSubstr("Wood_01_Roughness.png"), HasSubstr("64x64"), HasSubstr("32x32")));
   test::WriteAll(folder_.path() / "Wood_01_Roughness.png", "not an image");
   EXPECT_THAT(Message(), AllOf(HasSubstr("Wood_01_Roughness.png"), HasSubstr("no image")));
   test::WriteAll(folder_.path() / "Stone_Color.jpg", "x");

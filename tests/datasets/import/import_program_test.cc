@@ -49,12 +49,8 @@ class ImportProgram : public testing::Test {
   fs::path ImageFile(int i) const { return source() / ("0" + std::to_string(i) + ".png"); }
 
   Json ViewsJson() const {
-    Json json = {{"glint_views", 1},
-                 {"size_mm", {96.0, 96.0}},
-                 {"encoding", "srgb"},
-                 {"convention", "photograph"},
-                 {"light_power", 5e4},
-                 {"views", Json::array()}};
+    Json json = {{"glint_views", 1},           {"size_mm", {96.0, 96.0}}, {"encoding", "srgb"},
+                 {"convention", "photograph"}, {"light_power", 5e4},      {"views", Json::array()}};
     for (int i = 0; i < 3; ++i) {
       json["views"].push_back({{"image", ImageFile(i).filename().string()},
                                {"camera_in_sample_mm", {10.0 * i, -5.0, 200.0}}});
@@ -184,7 +180,8 @@ TEST_F(ImportProgram, EstimatedPowerIsAGuessThatMakesAlbedoPlausible) {
 
 TEST_F(ImportProgram, OptionsOverrideTheSource) {
   WriteViews(ViewsJson());
-  ASSERT_EQ(Import({"--light-power", "7,8,9", "--convention", "materialgan", "--crop", "16"}).code, 0);
+  ASSERT_EQ(Import({"--light-power", "7,8,9", "--convention", "materialgan", "--crop", "16"}).code,
+            0);
   const RectifiedSet set = Set();
   EXPECT_EQ(set.views[1].view.light_rgb, (Vec3d{7, 8, 9}));
   EXPECT_EQ(set.convention, ReflectanceConvention::MaterialGan());

@@ -38,7 +38,8 @@ std::pair<double, double> Highlight(const RectifiedImage& image, const SamplePla
     sum[i] = image.rgb[i] + image.rgb[texels + i] + image.rgb[2 * texels + i];
   }
   std::vector<float> sorted = sum;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(texels * 19 / 20), sorted.end());
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(texels * 19 / 20),
+                   sorted.end());
   const float threshold = sorted[texels * 19 / 20];
   double x = 0, y = 0, count = 0;
   for (size_t i = 0; i < texels; ++i) {

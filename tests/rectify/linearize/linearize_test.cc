@@ -61,8 +61,8 @@ TEST(LinearPhoto, ReadsStoredCodesThroughTheCurve) {
     SaturationRule rule;
     rule.float_level = 0.995;
     const LinearPhoto linear(photo, Encoding::kSrgb, rule);
-    const auto [first, second] = linear.Visit(
-        [](const auto& reader) { return std::pair(reader.At(0), reader.At(1)); });
+    const auto [first, second] =
+        linear.Visit([](const auto& reader) { return std::pair(reader.At(0), reader.At(1)); });
     EXPECT_NEAR(first.rgb[0], LinearFromEncoded(Encoding::kSrgb, 10 / 255.0f), 1e-5);
     EXPECT_NEAR(first.rgb[2], LinearFromEncoded(Encoding::kSrgb, 40 / 255.0f), 1e-5);
     EXPECT_FALSE(first.saturated);
@@ -95,7 +95,8 @@ TEST(LightGuess, FindsTheLightOfASampleOfMiddlingAlbedo) {
           if (falloff == LightFalloff::kInverseSquare) value /= d * d;
           if (x == 0 && column < 70) value *= 20;  // a highlight, in one view only
           for (size_t c = 0; c < 3; ++c) {
-            image.rgb[c * 6000 + static_cast<size_t>(row) * 100 + column] = static_cast<float>(value);
+            image.rgb[c * 6000 + static_cast<size_t>(row) * 100 + column] =
+                static_cast<float>(value);
           }
         }
       }

@@ -63,7 +63,8 @@ TEST(Homography, OneViewOfAWallBecomesTheOther) {
         ResampleToPlane(other, HomographyProjection(half * h * index_from_plane), plane, {});
     std::vector<double> a, b;
     for (size_t i = 0; i < view.status.size(); ++i) {
-      if (view.status[i] != TexelStatus::kUsable || wanted.status[i] != TexelStatus::kUsable) continue;
+      if (view.status[i] != TexelStatus::kUsable || wanted.status[i] != TexelStatus::kUsable)
+        continue;
       a.push_back(std::log(0.02 + view.rgb[i]));
       b.push_back(std::log(0.02 + wanted.rgb[i]));
     }

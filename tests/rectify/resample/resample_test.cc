@@ -79,7 +79,8 @@ TEST(Resample, BlobsLandWhereTheyWerePainted) {
           double mass = 0, mx = 0, my = 0;
           for (int row = 0; row < texels; ++row) {
             for (int column = 0; column < texels; ++column) {
-              const double x = plane.x_mm(column) - i * pitch_mm, y = plane.y_mm(row) - j * pitch_mm;
+              const double x = plane.x_mm(column) - i * pitch_mm,
+                           y = plane.y_mm(row) - j * pitch_mm;
               if (x * x + y * y > 16 * sigma_mm * sigma_mm) continue;
               const double value = view.rgb[static_cast<size_t>(row) * texels + column];
               mass += value;
@@ -134,8 +135,7 @@ TEST(Resample, AveragesRadianceAndNotCodes) {
   const float white = LinearFromEncoded(Encoding::kGamma22, 250 / 255.0f);
   const LinearPhoto linear(std::move(photo), Encoding::kGamma22);
   const SamplePlane plane = Plane(64, 1);
-  const ResampledView view =
-      ResampleToPlane(linear, TopViewProjection(plane, 256, 256), plane, {});
+  const ResampledView view = ResampleToPlane(linear, TopViewProjection(plane, 256, 256), plane, {});
   EXPECT_NEAR(view.rgb[32 * 64 + 32], white / 2, 0.005);
 }
 

@@ -31,7 +31,8 @@ double TexelMean(double x_mm, double y_mm) {
   double sum = 0;
   for (int j = 0; j < 8; ++j) {
     for (int i = 0; i < 8; ++i) {
-      sum += Rings(x_mm + ((i + 0.5) / 8 - 0.5) * kTexel_mm, y_mm + ((j + 0.5) / 8 - 0.5) * kTexel_mm);
+      sum +=
+          Rings(x_mm + ((i + 0.5) / 8 - 0.5) * kTexel_mm, y_mm + ((j + 0.5) / 8 - 0.5) * kTexel_mm);
     }
   }
   return sum / 64;
@@ -69,7 +70,8 @@ Errors Measure(double tilt_deg, double roll_deg, FilterKind filter) {
         ++held_count;
       } else if (Frequency(x, y) > 0.85) {
         const Eigen::Vector2d at = *projection.ImageFromPlane(x, y);
-        const size_t pixel = static_cast<size_t>(at.y()) * camera.width_px + static_cast<size_t>(at.x());
+        const size_t pixel =
+            static_cast<size_t>(at.y()) * camera.width_px + static_cast<size_t>(at.x());
         fine += std::pow(value - 0.5, 2);
         point += std::pow(taken.image.channel(0)[pixel] - 0.5, 2);
         ++fine_count;
@@ -78,7 +80,8 @@ Errors Measure(double tilt_deg, double roll_deg, FilterKind filter) {
   }
   EXPECT_GT(held_count, 100);
   EXPECT_GT(fine_count, 3000);
-  return {std::sqrt(held / held_count), std::sqrt(fine / fine_count), std::sqrt(point / fine_count)};
+  return {std::sqrt(held / held_count), std::sqrt(fine / fine_count),
+          std::sqrt(point / fine_count)};
 }
 
 TEST(ZonePlate, DoesNotAliasStraightDown) {

@@ -38,7 +38,8 @@ TEST(FrameMask, OpeningIsTheWindowInTheSampleFrame) {
 }
 
 TEST(FrameMask, MasksWhatLiesUnderTheFrame) {
-  const auto status = MaskFrame(Plane(), {-40, -30, 45, 50}, 0, 0, ViewFrom({0, 0, 300}, {0, 0, 300}));
+  const auto status =
+      MaskFrame(Plane(), {-40, -30, 45, 50}, 0, 0, ViewFrom({0, 0, 300}, {0, 0, 300}));
   EXPECT_TRUE(Masked(status, 50, 9));    // x = −40.5
   EXPECT_FALSE(Masked(status, 50, 10));  // x = −39.5
   EXPECT_FALSE(Masked(status, 50, 94));  // x = 44.5

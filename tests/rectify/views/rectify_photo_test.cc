@@ -21,8 +21,9 @@ SamplePlane Plane() {
 std::string MessageFor(const Photo& photo, const Rigid3& pose) {
   ViewCounts counts;
   try {
-    RectifyPhoto(LinearPhoto(photo, Encoding::kGamma22), CameraProjection(TestCamera(300, 300), pose),
-                 Plane(), {}, {}, "photos/a.jpg", &counts);
+    RectifyPhoto(LinearPhoto(photo, Encoding::kGamma22),
+                 CameraProjection(TestCamera(300, 300), pose), Plane(), {}, {}, "photos/a.jpg",
+                 &counts);
   } catch (const UserError& error) {
     return error.what();
   }
@@ -31,14 +32,16 @@ std::string MessageFor(const Photo& photo, const Rigid3& pose) {
 
 TEST(RectifyPhoto, NamesWhatMakesAPhotoUseless) {
   const Rigid3 pose = LookAtSample(100, 10, 0);
-  EXPECT_THAT(MessageFor(FlatPhoto(300, 300, 1.0f, 8), pose),
-              testing::AllOf(HasSubstr("photos/a.jpg"), HasSubstr("saturated"), HasSubstr("expose")));
+  EXPECT_THAT(
+      MessageFor(FlatPhoto(300, 300, 1.0f, 8), pose),
+      testing::AllOf(HasSubstr("photos/a.jpg"), HasSubstr("saturated"), HasSubstr("expose")));
   EXPECT_THAT(MessageFor(FlatPhoto(300, 300, 0.0f, 8), pose),
               testing::AllOf(HasSubstr("photos/a.jpg"), HasSubstr("black"), HasSubstr("flash")));
   Rigid3 aside = pose;
   aside.translation.x() = 150;
-  EXPECT_THAT(MessageFor(FlatPhoto(300, 300, 0.5f, 8), aside),
-              testing::AllOf(HasSubstr("photos/a.jpg"), HasSubstr("outside"), HasSubstr("size_mm")));
+  EXPECT_THAT(
+      MessageFor(FlatPhoto(300, 300, 0.5f, 8), aside),
+      testing::AllOf(HasSubstr("photos/a.jpg"), HasSubstr("outside"), HasSubstr("size_mm")));
   EXPECT_EQ(MessageFor(FlatPhoto(300, 300, 0.5f, 8), pose), "");
 }
 
@@ -48,9 +51,9 @@ TEST(RectifyPhoto, CountsWhereTexelsWent) {
   // further and the photo's left edge cuts the sample in its middle.
   aside.translation.x() = -153.2 / 3;
   ViewCounts counts;
-  const RectifiedImage image =
-      RectifyPhoto(LinearPhoto(FlatPhoto(300, 300, 0.5f, 8), Encoding::kGamma22),
-                   CameraProjection(TestCamera(300, 300), aside), Plane(), {}, {}, "a.jpg", &counts);
+  const RectifiedImage image = RectifyPhoto(
+      LinearPhoto(FlatPhoto(300, 300, 0.5f, 8), Encoding::kGamma22),
+      CameraProjection(TestCamera(300, 300), aside), Plane(), {}, {}, "a.jpg", &counts);
   EXPECT_NEAR(counts.outside, 0.5, 1e-9);
   EXPECT_NEAR(counts.usable, 0.5, 1e-9);
   EXPECT_NEAR(counts.pixels_per_texel, 3, 1e-9);

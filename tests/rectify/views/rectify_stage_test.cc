@@ -209,7 +209,8 @@ TEST_F(RectifyStage, WarnsOfASampleThatIsCutOff) {
   TakePhoto(0);
   Calibrate();
   EXPECT_EQ(Run(), 0);
-  EXPECT_THAT(output_, AllOf(HasSubstr("photos/p0.png"), HasSubstr("% of the sample lies outside")));
+  EXPECT_THAT(output_,
+              AllOf(HasSubstr("photos/p0.png"), HasSubstr("% of the sample lies outside")));
 }
 
 TEST_F(RectifyStage, WrongOptionsAreNamed) {
