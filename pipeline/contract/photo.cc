@@ -4,13 +4,16 @@
 #include <cmath>
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
 #include "pipeline/contract/image.h"
+#include "pipeline/contract/jpeg_end.h"
 #include "pipeline/contract/oiio.h"
 
 namespace glint {
 namespace {
 
 constexpr int kSmallestSide_px = 16;
+constexpr std::size_t kMaxJpegBytes = 512u << 20;
 
 // EXIF orientations 5–8 exchange width and height.
 bool ExchangesAxes(int orientation) { return orientation >= 5; }
@@ -83,6 +86,13 @@ void ReadExif(const OIIO::ImageSpec& spec, Photo* photo) {
   photo->camera_model += model;
 }
 
+void RequireWholeJpeg(const std::filesystem::path& file, const OIIO::ImageInput& input) {
+  if (std::string_view(input.format_name()) != "jpeg") return;
+  if (JpegIsComplete(ReadTextFile(file, kMaxJpegBytes))) return;
+  throw UserError(file, "", "a truncated JPEG file, which ends before its picture does",
+                  "copy the photograph again, or take it out");
+}
+
 void RequireFinite(const std::filesystem::path& file, const Image& image) {
   for (size_t i = 0; i < image.samples.size(); ++i) {
     if (std::isfinite(image.samples[i])) continue;
@@ -106,6 +116,7 @@ Photo ReadPhoto(const std::filesystem::path& file) {
                     "a photograph of at least " + std::to_string(kSmallestSide_px) +
                         " pixels a side is expected");
   }
+  RequireWholeJpeg(file, *input);
   Photo photo;
   const bool turned = ExchangesAxes(Orientation(spec));
   photo.image =

@@ -7,6 +7,7 @@
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/image.h"
+#include "pipeline/contract/jpeg_end.h"
 #include "tests/pipeline/contract/temp_folder.h"
 
 namespace glint {
@@ -75,6 +76,20 @@ TEST(Photo, BadFilesAreNamed) {
   nan.samples[40] = std::numeric_limits<float>::quiet_NaN();
   WriteExr(folder / "nan.exr", nan);
   EXPECT_THAT(complaint("nan.exr"), HasSubstr("(8, 1)"));
+}
+
+// Segments as in ITU-T T.81: a table that holds an end marker, a scan with a stuffed byte and a
+// restart marker, the end, and what a phone appends.
+TEST(Photo, JpegIsCompleteUpToItsOwnEndMarker) {
+  const std::string table("\xff\xdb\x00\x04\xff\xd9", 6), scan("\xff\xda\x00\x03\x01", 5);
+  const std::string data("\x12\xff\x00\x34\xff\xd0\x56", 7), end = "\xff\xd9";
+  const std::string whole = "\xff\xd8" + table + scan + data + end;
+  EXPECT_TRUE(JpegIsComplete(whole));
+  EXPECT_TRUE(JpegIsComplete(whole + "appended by a phone"));
+  EXPECT_TRUE(JpegIsComplete("no JPEG"));
+  for (size_t size = 2; size < whole.size(); ++size) {
+    EXPECT_FALSE(JpegIsComplete(std::string_view(whole).substr(0, size))) << size;
+  }
 }
 
 TEST(Photo, TruncatedPngIsRefused) {
