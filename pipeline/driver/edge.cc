@@ -41,8 +41,11 @@ struct FileStamp {
   }
 };
 
+// −1: none.
+int DescriptorVariable(const char* name) { return std::atoi(Variable(name, "-1").c_str()); }
+
 void Note(const EdgeOutcome& outcome) {
-  const int descriptor = std::atoi(Variable(kRunOutcomesVariable, "-1").c_str());
+  const int descriptor = DescriptorVariable(kRunOutcomesVariable);
   if (descriptor < 0) return;
   const std::string line = outcome.stage + " " + std::to_string(outcome.code) + " " +
                            (outcome.changed ? "1" : "0") + "\n";
@@ -64,6 +67,9 @@ int RunEdge(const std::vector<std::string>& words) {
   child.arguments.insert(child.arguments.end(), words.begin() + 2, words.end());
   std::istringstream more(Variable(kRunArgumentsVariable, ""));
   for (std::string word; std::getline(more, word);) child.arguments.push_back(word);
+
+  const int result_descriptor = DescriptorVariable(kRunStdoutVariable);
+  if (result_descriptor >= 0) ::dup2(result_descriptor, STDOUT_FILENO);
 
   const fs::path manifest = fs::absolute(ManifestPath(words[0]));
   const FileStamp before(manifest);

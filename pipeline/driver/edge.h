@@ -7,7 +7,9 @@
 //   GLINT_RUN_FOLDER     the folder in which the person works
 //   GLINT_RUN_CAPTURE    the capture as the person named it, so that messages do too
 //   GLINT_RUN_ARGUMENTS  further arguments, one a line (threads, log level)
-//   GLINT_RUN_OUTCOMES   the descriptor's number
+//   GLINT_RUN_OUTCOMES   number of the descriptor to note outcomes on
+//   GLINT_RUN_STDOUT     number of the descriptor for the program's stdout: Ninja's own has its
+//   remarks
 // Without them the program runs on the current folder and nothing is noted.
 #pragma once
 
@@ -21,6 +23,7 @@ inline constexpr char kRunFolderVariable[] = "GLINT_RUN_FOLDER";
 inline constexpr char kRunCaptureVariable[] = "GLINT_RUN_CAPTURE";
 inline constexpr char kRunArgumentsVariable[] = "GLINT_RUN_ARGUMENTS";
 inline constexpr char kRunOutcomesVariable[] = "GLINT_RUN_OUTCOMES";
+inline constexpr char kRunStdoutVariable[] = "GLINT_RUN_STDOUT";
 
 struct EdgeOutcome {
   std::string stage;

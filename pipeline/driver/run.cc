@@ -1,6 +1,8 @@
 #include "pipeline/driver/run.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -97,8 +99,7 @@ void RequireEarlierResults(const Capture& capture, const std::vector<StageStep>&
       throw UserError(
           file, "", "no such file",
           imported
-              ? "write it with glint import, or describe the [board] in " +
-                    capture.file.string()
+              ? "write it with glint import, or describe the [board] in " + capture.file.string()
               : "stage " + step.stage + " reads it: run without --from " + steps.front().stage);
     }
   }
@@ -118,16 +119,25 @@ std::vector<NinjaEdge> Edges(const Capture& capture, const std::vector<StageStep
   return edges;
 }
 
-// Ninja's remarks are not results; its errors go to stderr by themselves.
-void PassLine(const std::string& line, const RunOptions& options) {
-  const bool from_ninja = line.rfind("ninja: ", 0) == 0;
-  if (from_ninja ? !options.verbose : options.quiet_stdout) return;
-  std::fprintf(from_ninja ? stderr : stdout, "%s\n", line.c_str());
-  std::fflush(stdout);
-}
+// Where the stages' results go: to this program's stdout, or nowhere.
+class ResultDescriptor {
+ public:
+  explicit ResultDescriptor(bool quiet)
+      : value_(quiet ? ::open("/dev/null", O_WRONLY | O_CLOEXEC)
+                     : ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)) {}
+  ~ResultDescriptor() {
+    if (value_ >= 0) ::close(value_);
+  }
+  ResultDescriptor(const ResultDescriptor&) = delete;
+  ResultDescriptor& operator=(const ResultDescriptor&) = delete;
+  int get() const { return value_; }
+
+ private:
+  int value_;
+};
 
 ChildProcess NinjaProcess(const fs::path& ninja, const Capture& capture, const RunOptions& options,
-                          const std::vector<StageStep>& steps, const OutcomeFile& outcomes) {
+                          const std::vector<StageStep>& steps, int outcomes, int results) {
   ChildProcess child;
   child.arguments = {ninja.string(), "-C", capture.folder.string(), "-f", "glint/build.ninja"};
   if (options.verbose) {
@@ -143,9 +153,14 @@ ChildProcess NinjaProcess(const fs::path& ninja, const Capture& capture, const R
   child.environment = {{kRunFolderVariable, fs::current_path().string()},
                        {kRunCaptureVariable, capture.folder.string()},
                        {kRunArgumentsVariable, more},
-                       {kRunOutcomesVariable, std::to_string(outcomes.descriptor())}};
-  child.kept_descriptors = {outcomes.descriptor()};
-  child.on_line = [&options](const std::string& line) { PassLine(line, options); };
+                       {kRunOutcomesVariable, std::to_string(outcomes)},
+                       {kRunStdoutVariable, std::to_string(results)}};
+  child.kept_descriptors = {outcomes, results};
+  // On stdout Ninja makes remarks, and repeats what a failing stage has said; errors of its own go
+  // to stderr.
+  child.on_line = [&options](const std::string& line) {
+    if (options.verbose) std::fprintf(stderr, "%s\n", line.c_str());
+  };
   return child;
 }
 
@@ -220,7 +235,9 @@ RunSummary RunCapture(const RunOptions& options) {
   WriteFileAtomically(capture.work() / "build.ninja",
                       NinjaText(edges, RequireGlintProgram("glint"), options.choices));
   const OutcomeFile outcomes;
-  ChildProcess child = NinjaProcess(ninja, capture, options, steps, outcomes);
+  const ResultDescriptor results(options.quiet_stdout);
+  ChildProcess child =
+      NinjaProcess(ninja, capture, options, steps, outcomes.descriptor(), results.get());
   child.kept_descriptors.push_back(lock->descriptor());
   const int code = RunChild(child);
   RunSummary summary;

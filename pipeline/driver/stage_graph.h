@@ -40,9 +40,9 @@ const std::vector<std::string>& StageNames();
 // "glint/<stage>/manifest.json"
 std::string ManifestPath(const std::string& stage);
 
-// The stages of `capture` in an order in which they can run. A capture without a board was imported:
-// it starts at fit, from the rectified set that is already there.
-// Throws UserError when the capture has a board and no photographs.
+// The stages of `capture` in an order in which they can run. A capture without a board was
+// imported: it starts at fit, from the rectified set that is already there. Throws UserError when
+// the capture has a board and no photographs.
 std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choices);
 
 // The steps from `from` to `until` ("": first, last). Throws UserError for a stage that is unknown

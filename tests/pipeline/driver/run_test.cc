@@ -205,6 +205,7 @@ TEST_F(RunTest, AFailingStagesExitCodeAndMessagePassThroughOnce) {
                                        "/capture.toml: made to fail\n"));
     EXPECT_EQ(outcome.err.find("error"), outcome.err.rfind("error")) << outcome.err;
     EXPECT_THAT(outcome.out + outcome.err, Not(HasSubstr("ninja")));
+    EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(test::ReadAll(manifest("refine")), before);
     EXPECT_EQ(test::ReadAll(capture() / "glint/report/manifest.json").empty(), false);
   }
