@@ -1,0 +1,158 @@
+#include "fitting/latent/fit_stage.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "fitting/bootstrap/bootstrap.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/progress.h"
+#include "pipeline/contract/rectified_set.h"
+#include "pipeline/contract/svbrdf_file.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsLatent(const FitStageOptions& options) { return options.method == "latent"; }
+
+FitOptions Resolved(const FitStageOptions& options, int threads) {
+  FitOptions fit = IsLatent(options) ? options.latent : options.classic;
+  if (options.iterations > 0) fit.coarse_iterations = options.iterations;
+  if (options.fine_iterations > 0) fit.fine_iterations = options.fine_iterations;
+  if (options.learning_rate > 0) fit.learning_rate = options.learning_rate;
+  fit.threads = threads;
+  return fit;
+}
+
+// Errors of the auto-encoder name file, part, found and mend; here they become the user's.
+template <class Action>
+auto AsUserError(const Action& action) {
+  try {
+    return action();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw UserError(error.what());
+  }
+}
+
+PhotographSet Load(const RectifiedSet& set, const std::vector<RectifiedView>& views) {
+  PhotographSet photographs;
+  photographs.plane = set.plane;
+  photographs.convention = set.convention;
+  photographs.light_power_known = set.light_power_known;
+  for (const RectifiedView& view : views) {
+    RectifiedImage image = ReadRectifiedImage(set, view);
+    photographs.photographs.push_back(
+        {view.view, view.ldr, std::move(image.rgb), std::move(image.mask)});
+  }
+  if (const std::string wrong = photographs.Check(); !wrong.empty()) {
+    throw UserError(set.manifest_file, "data.views", wrong,
+                    "check the photographs and run rectify again");
+  }
+  return photographs;
+}
+
+SvbrdfMaps Start(const FitStageOptions& options, const PhotographSet& photographs, int threads) {
+  if (options.start.empty()) return EstimateMaps(photographs, threads);
+  return ReadSvbrdf(options.start);
+}
+
+Json Metrics(const FitResult& fit, const std::vector<RectifiedView>& views) {
+  Json levels = Json::array();
+  for (const FitLevel& level : fit.levels) {
+    levels.push_back({{"width", level.width},
+                      {"height", level.height},
+                      {"iterations", level.loss.size()},
+                      {"converged", level.converged},
+                      {"loss", level.loss}});
+  }
+  Json losses = Json::array();
+  for (size_t i = 0; i < views.size(); ++i) {
+    losses.push_back(
+        {{"name", views[i].name}, {"photo", views[i].photo}, {"log_l1", fit.view_loss[i]}});
+  }
+  return {{"start_log_l1", fit.start_loss},
+          {"log_l1", fit.final_loss},
+          {"levels", levels},
+          {"views", losses}};
+}
+
+Json Data(const FitResult& fit, const RectifiedSet& set, const FitStageOptions& options,
+          const std::vector<RectifiedView>& views) {
+  Json names = Json::array();
+  for (const RectifiedView& view : views) names.push_back(view.name);
+  return {{"convention", ToString(set.convention)},
+          {"light_scale_rgb", std::vector<double>(3, fit.light_scale)},
+          {"views", names},
+          {"method", options.method}};
+}
+
+}  // namespace
+
+void AddFitOptions(OptionSet* set, FitStageOptions* options) {
+  set->AddChoice("method", &options->method, {"latent", "classic"},
+                 "latent: in the learned space; classic: the maps themselves, texel by texel");
+  set->AddRange("iterations", &options->iterations, 0, 1e6,
+                "most steps at the first, coarse level; 0: the method's own");
+  set->AddRange("fine-iterations", &options->fine_iterations, 0, 1e6,
+                "most steps at each later level; 0: the method's own");
+  set->AddRange("learning-rate", &options->learning_rate, 0, 1,
+                "Adam's rate at the start of a level; 0: the method's own");
+  set->Add("start", &options->start,
+           "maps to start from, an svbrdf.exr (default: estimated from the photographs)");
+  set->Add("weights", &options->weights, "the auto-encoder's weights (default: those shipped)");
+  set->Add("views", &options->views, "views to use, by name or photo (default: all)");
+  set->Add("exclude", &options->exclude, "views to keep back, by name or photo");
+}
+
+std::vector<fs::path> FitInputs(const FitStageOptions& options) {
+  std::vector<fs::path> inputs;
+  if (IsLatent(options)) {
+    inputs.push_back(AsUserError([&] { return FindModel(kAutoencoderModel, options.weights); }));
+  }
+  if (!options.start.empty()) inputs.push_back(options.start);
+  return inputs;
+}
+
+FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptions& options,
+                           int threads, Stage* stage) {
+  const RectifiedSet set = ReadRectifiedSet(rectify_manifest);
+  const std::vector<RectifiedView> views = SelectViews(set, options.views, options.exclude);
+  const PhotographSet photographs = Load(set, views);
+  const FitOptions fit_options = Resolved(options, threads);
+  if (const std::string wrong = fit_options.Check(); !wrong.empty())
+    throw UserError("fit: " + wrong);
+
+  const auto began = std::chrono::steady_clock::now();
+  const SvbrdfMaps start = Start(options, photographs, threads);
+  FitStageResult result;
+  {
+    std::unique_ptr<Progress> bar;
+    const FitProgress progress = [&](int done, int total, double loss) {
+      if (bar == nullptr) bar = std::make_unique<Progress>("fit", total);
+      bar->Set(done, "log-L1 " + std::to_string(loss));
+    };
+    if (IsLatent(options)) {
+      const Autoencoder network = AsUserError(
+          [&] { return Autoencoder::Load(FindModel(kAutoencoderModel, options.weights)); });
+      result.fit = FitLatent(photographs, start, network, fit_options, progress);
+    } else {
+      result.fit = FitClassic(photographs, start, fit_options, progress);
+    }
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  result.width = result.fit.maps.width;
+  result.height = result.fit.maps.height;
+  result.data = Data(result.fit, set, options, views);
+  result.metrics = Metrics(result.fit, views);
+  WriteSvbrdf(stage->Output("svbrdf.exr"), result.fit.maps, set.convention);
+  stage->Commit(result.data, result.metrics);
+  return result;
+}
+
+}  // namespace glint

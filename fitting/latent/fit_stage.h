@@ -1,0 +1,46 @@
+// Stage "fit" of a capture: rectified views in, svbrdf.exr out.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fitting/latent/fit.h"
+#include "pipeline/contract/stage.h"
+
+namespace glint {
+
+// Raised whenever the same inputs give other bytes.
+inline constexpr int kFitVersion = 1;
+
+struct FitStageOptions {
+  std::string method = "latent";  // latent: in the learned space; classic: texel by texel
+  FitOptions latent = FitOptions::Latent();
+  FitOptions classic = FitOptions::Classic();
+  int iterations = 0;                // at the first level; 0: the method's own
+  int fine_iterations = 0;           // at each later level; 0: the method's own
+  double learning_rate = 0;          // 0: the method's own
+  std::filesystem::path start;       // maps to start from (svbrdf.exr); empty: from the photographs
+  std::filesystem::path weights;     // of the auto-encoder; empty: the shipped ones
+  std::vector<std::string> views;    // names of those to use; empty: all
+  std::vector<std::string> exclude;  // names of those kept back
+};
+
+void AddFitOptions(OptionSet* set, FitStageOptions* options);
+
+// The files the result depends on beside the rectified set's manifest: weights, start. Throws
+// UserError when one is missing.
+std::vector<std::filesystem::path> FitInputs(const FitStageOptions& options);
+
+struct FitStageResult {
+  Json data, metrics;
+  FitResult fit;
+  int width = 0, height = 0;
+  double seconds = 0;  // for a person only
+};
+
+// Reads, fits, writes the stage's outputs and commits them. Throws UserError, ComputationError.
+FitStageResult RunFitStage(const std::filesystem::path& rectify_manifest,
+                           const FitStageOptions& options, int threads, Stage* stage);
+
+}  // namespace glint
