@@ -127,8 +127,8 @@ void RequireFocalLengths(const BundleResult& result, const std::vector<double>& 
             ? fmt::format("uncertain by {:.0f} %", std::min(999.0, 100 * focal_sigmas[c]))
             : std::string("undetermined");
     throw UserError(fmt::format(
-        "photos: found {} that see the board tilted by {}, which leaves the focal length {}; tilt "
-        "the phone by 20 to 40 degrees in several photographs, or give the intrinsics "
+        "photos: found {} with the board tilted by {}, which leaves the focal length {}; tilt "
+        "the phone by 20 to 40 degrees, in several directions, or give the intrinsics "
         "(fix-intrinsics)",
         result.cameras[c].photos == 1 ? std::string("one photograph")
                                       : fmt::format("{} photographs", result.cameras[c].photos),

@@ -51,7 +51,7 @@ struct BundleOptions {
   int min_corners = 6;            // a photo with fewer inliers is rejected
   double min_inlier_share = 0.5;  // and one with a smaller share of them
   double max_photo_ratio = 4;     // and one whose median residual is this many times the usual
-  double max_focal_sigma = 0.03;  // relative; beyond, the focal length counts as undetermined
+  double max_focal_sigma = 0.05;  // relative; beyond, a focal length counts as undetermined
   int max_iterations = 200;       // of one Ceres solve
 };
 

@@ -143,10 +143,13 @@ std::vector<double> Covariance(const BundleProblem& problem, const BundleOptions
       const Eigen::MatrixXd link = j.pose.householderQr().solve(j.camera);
       FillPhoto((*pose + link * *camera * link.transpose()) * variance, &result->photos[i]);
     }
-    if (!free.empty() && free[0] == 0) {
-      const double least = std::max(variance, kLeastResidual_px * kLeastResidual_px);
-      focal_sigmas[c] =
-          std::sqrt((*camera)(0, 0) * least) / std::abs(state.cameras[c].parameters[0]);
+    const double least = std::max(variance, kLeastResidual_px * kLeastResidual_px);
+    const auto& names = CameraParameterNames(state.cameras[c].model);
+    for (long i = 0; i < n; ++i) {
+      if (names[free[i]][0] != 'f') continue;
+      const double relative =
+          std::sqrt((*camera)(i, i) * least) / std::abs(state.cameras[c].parameters[free[i]]);
+      focal_sigmas[c] = std::max(focal_sigmas[c], relative);
     }
   }
   return focal_sigmas;

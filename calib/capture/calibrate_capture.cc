@@ -49,6 +49,19 @@ BundleResult Adjust(const Capture& capture, const CalibOptions& options, BundleP
   }
 }
 
+// A focal length that is known to a hundredth only is worth a word.
+void WarnOfUncertainty(const BundleResult& bundle) {
+  for (const CameraEstimate& estimate : bundle.cameras) {
+    if (estimate.photos == 0) continue;
+    const double sigma = estimate.sigma[0] / estimate.camera.focal_length_x();
+    if (sigma < 0.01) continue;
+    spdlog::warn(
+        "the focal length is uncertain by {:.1f} %; photographs tilted by 20 to 40 degrees in "
+        "several directions mend that",
+        100 * sigma);
+  }
+}
+
 // Why a flash photograph is left out; "": it is not.
 std::string Reason(const CalibSummary& summary, size_t photo) {
   const DetectedPhoto& detected = summary.photos[photo];
@@ -206,6 +219,7 @@ CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& option
   RequireBoard(capture, options, summary.photos);
   const BundleProblem problem = MakeProblem(summary.photos, summary.groups, &summary.photo_index);
   summary.bundle = Adjust(capture, options, problem);
+  WarnOfUncertainty(summary.bundle);
   FillPhotos(capture, &summary);
   FillLight(capture, options, &summary);
   WriteOutputs(summary, stage);

@@ -131,8 +131,13 @@ double MarkerScale(const std::vector<Match>& matches, const std::map<int, Found>
   for (const auto& [id, one] : found) points.push_back(one.point);
   std::vector<double> ratios;
   for (const Match& match : matches) {
-    const auto h = LocalHomography(points, match.corners[0].board, kReachSquares);
-    if (!h) continue;
+    // Markers among corners only: a homography tells little of what lies far from its points.
+    const Eigen::Vector2d at = 0.5 * (match.corners[0].board + match.corners[2].board);
+    const auto near = std::count_if(points.begin(), points.end(), [&](const PlanePoint& point) {
+      return (point.board - at).norm() < 1.7;
+    });
+    const auto h = LocalHomography(points, at, kReachSquares);
+    if (near < 4 || !h) continue;
     double side = 0;
     for (int k = 0; k < 4; ++k) {
       const auto a = ApplyHomography(*h, match.corners[k].board);
@@ -141,7 +146,7 @@ double MarkerScale(const std::vector<Match>& matches, const std::map<int, Found>
     }
     if (side > 0) ratios.push_back(match.side_px / side);
   }
-  if (ratios.size() < 4) return 0;
+  if (ratios.size() < 4 || found.size() < 8) return 0;
   std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
   return ratios[ratios.size() / 2];
 }

@@ -27,6 +27,11 @@ enum Parameter {
 constexpr int kAll = 11;
 constexpr int kWithoutGain = 9;  // too few pixels to tell b from the rest
 
+// A pixel averages over its area, so that no edge is sharper than a box one pixel wide, whose
+// standard deviation this is. Sharper models have no slope at any pixel's centre, and so no
+// optimum.
+constexpr double kLeastBlur_px = 0.29;
+
 using Vector = Eigen::Matrix<double, kAll, 1>;
 using Matrix = Eigen::Matrix<double, kAll, kAll>;
 
@@ -167,7 +172,8 @@ bool Minimize(const Window& window, int active, Vector* p) {
     const Vector delta = -damped.ldlt().solve(jtr);
     if (!delta.allFinite()) return false;
     Vector trial = *p + delta;
-    trial[kLogBlur] = std::clamp(trial[kLogBlur], std::log(0.15), std::log(window.radius_px));
+    trial[kLogBlur] =
+        std::clamp(trial[kLogBlur], std::log(kLeastBlur_px), std::log(window.radius_px));
     const double trial_cost = SumOfSquares(window, trial);
     fresh = trial_cost <= cost;
     if (!fresh) {
@@ -261,8 +267,9 @@ SaddleFit FitSaddle(const GrayImage& image, const SaddleGuess& guess,
   fit.worst_sector = WorstSector(window, p) / std::abs(p[kContrast]);
   fit.sigma_px = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
   // Light that falls off steeply over a few pixels is something that hides a part.
-  const bool even = std::hypot(p[kGainX], p[kGainY]) <= options.max_ramp * std::abs(p[kContrast]) &&
-                    std::hypot(p[kRampX], p[kRampY]) <= options.max_ramp * std::abs(p[kContrast]);
+  const double contrast = std::abs(p[kContrast]);
+  const bool even = std::hypot(p[kGainX], p[kGainY]) <= options.max_gain * contrast &&
+                    std::hypot(p[kRampX], p[kRampY]) <= options.max_ramp * contrast;
   fit.ok = even && fit.contrast >= options.min_contrast && fit.residual <= options.max_residual &&
            fit.worst_sector <= options.max_sector_residual &&
            fit.sigma_px <= options.max_sigma_px && fit.blur_px < 0.7 * window.radius_px &&

@@ -40,7 +40,8 @@ struct SaddleOptions {
   double min_contrast = 4;            // |k| in 8-bit levels
   double max_residual = 0.30;         // RMS / |k|; noise counts too
   double max_sector_residual = 0.15;  // what hides a part of the corner shows here
-  double max_ramp = 0.5;              // |a|, |b| over the fit's radius / |k|
+  double max_ramp = 0.9;              // |a| over the fit's radius / |k|
+  double max_gain = 0.6;              // |b| over the fit's radius / |k|; near 1: half is hidden
   double max_sigma_px = 0.5;
   double max_turn_deg = 15;  // of each edge, from the guess
 };
