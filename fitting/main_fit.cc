@@ -22,15 +22,15 @@ ProgramResult Summarise(const Stage& stage, const FitStageOptions& options,
   return result;
 }
 
-ProgramResult Run(const std::filesystem::path& folder, bool force, OptionSet* set,
-                  FitStageOptions* options, const CommonOptions& common) {
+ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, FitStageOptions* options,
+                  const CommonOptions& common) {
   const Capture capture = ReadCapture(folder);
   set->LoadToml(capture.file, "fit");
   const auto rectify_manifest = capture.work() / "rectify" / "manifest.json";
   VerifyOutputs(rectify_manifest, ReadManifest(rectify_manifest, "rectify"));
   std::vector<std::filesystem::path> inputs = {rectify_manifest};
   for (const auto& input : FitInputs(*options)) inputs.push_back(input);
-  Stage stage(capture.work() / "fit", {"fit", kFitVersion}, *set, common, inputs, force);
+  Stage stage(capture.work() / "fit", {"fit", kFitVersion}, *set, common, inputs);
   if (stage.UpToDate()) {
     return {stage.UpToDateText(),
             {{"stage", "fit"}, {"up_to_date", true}, {"manifest", stage.manifest_file().string()}}};
@@ -44,17 +44,15 @@ ProgramResult Run(const std::filesystem::path& folder, bool force, OptionSet* se
 
 int main(int argc, char** argv) {
   std::filesystem::path folder = ".";
-  bool force = false;
   glint::FitStageOptions options;
   glint::OptionSet set;
   set.AddPositional("capture", &folder, "the capture's folder", false);
-  set.Add("force", &force, "compute anew even when up to date", glint::Invalidates::kNo);
   glint::AddFitOptions(&set, &options);
   const glint::ProgramInfo info{
       "glint-fit",
       "Fits maps to the rectified views: in the auto-encoder's latent space, or texel by texel.",
       GLINT_VERSION, "Example: glint fit wood --method latent --exclude view_003,view_007"};
   return glint::RunProgram(argc, argv, info, &set, [&](const glint::CommonOptions& common) {
-    return glint::Run(folder, force, &set, &options, common);
+    return glint::Run(folder, &set, &options, common);
   });
 }
