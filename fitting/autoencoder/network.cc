@@ -141,8 +141,18 @@ Tensor AutoencoderNetwork::EncodeRaw(const Tensor& encoded, torch::Dtype compute
   return x.to(encoded.scalar_type());
 }
 
-Tensor AutoencoderNetwork::NormaliseByBatch(const Tensor& raw, double momentum) {
-  return at::batch_norm(raw, {}, {}, code_mean, code_variance, true, momentum, kNormEpsilon, false);
+Tensor AutoencoderNetwork::NormaliseForTraining(const Tensor& raw, double momentum) {
+  Tensor scale, shift;
+  {
+    torch::NoGradGuard no_gradient;
+    const auto [variance, mean] = torch::var_mean(raw, {0, 2, 3}, false);
+    const Tensor running = torch::rsqrt(code_variance + kNormEpsilon);
+    scale = (torch::sqrt(variance + kNormEpsilon) * running).view({1, -1, 1, 1});
+    shift = ((mean - code_mean) * running).view({1, -1, 1, 1});
+  }
+  const Tensor by_batch =
+      at::batch_norm(raw, {}, {}, code_mean, code_variance, true, momentum, kNormEpsilon, false);
+  return by_batch * scale + shift;
 }
 
 Tensor AutoencoderNetwork::NormaliseByRunning(const Tensor& raw) const {

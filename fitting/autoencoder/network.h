@@ -42,8 +42,10 @@ struct AutoencoderNetwork {
   // Convolutions run in `compute`; result in the type of `encoded`.
   torch::Tensor EncodeRaw(const torch::Tensor& encoded, torch::Dtype compute) const;
 
-  // Normalised by the batch's own statistics, which also move the running ones by `momentum`.
-  torch::Tensor NormaliseByBatch(const torch::Tensor& raw, double momentum);
+  // Values normalised by the running statistics, which the batch then moves by `momentum`; gradients
+  // those of batch normalisation. (Batch renormalisation, Ioffe 2017: a batch of few crops has means
+  // of its own, and normalising by them would take the crops' very colour out of the code.)
+  torch::Tensor NormaliseForTraining(const torch::Tensor& raw, double momentum);
   torch::Tensor NormaliseByRunning(const torch::Tensor& raw) const;
 
   // z [B, C, h, w] → encoded maps [B, 9, 32·h, 32·w] in [−1, 1], in z's type.

@@ -23,7 +23,7 @@ namespace {
 using torch::Tensor;
 
 constexpr int kValidationMaterials = 16;
-constexpr double kBatchStatisticsMomentum = 0.02;
+constexpr double kBatchStatisticsMomentum = 0.005;
 constexpr double kReportSeconds = 5.0;
 constexpr std::uint64_t kNoiseStream = 0x5EED0001;
 constexpr std::uint64_t kViewStream = 0x5EED0002;
@@ -112,7 +112,7 @@ class Trainer {
     const int64_t twice = options_.smoothness > 0
                               ? std::lround(options_.smoothness_share * static_cast<double>(count))
                               : 0;
-    const Tensor z = state_.network.NormaliseByBatch(
+    const Tensor z = state_.network.NormaliseForTraining(
         state_.network.EncodeRaw(batch, compute_), kBatchStatisticsMomentum);
     Tensor codes = z;
     if (twice > 0) {
