@@ -11,9 +11,10 @@ namespace {
 ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined) {
   const double texels = static_cast<double>(refined.width) * refined.height;
   ProgramResult result;
-  result.text = fmt::format("refine: {}x{} texels from {} views in {:.1f} s ({:.0f} texels/s)\n  {}\n",
-                            refined.width, refined.height, refined.views.size(), refined.seconds,
-                            texels / refined.seconds, refined.summary.BriefReport());
+  result.text =
+      fmt::format("refine: {}x{} texels from {} views in {:.1f} s ({:.0f} texels/s)\n  {}\n",
+                  refined.width, refined.height, refined.views.size(), refined.seconds,
+                  texels / refined.seconds, refined.summary.BriefReport());
   for (const Json& view : refined.metrics["views"]) {
     result.text += fmt::format("  {}  {:<28} loss {}\n", view["name"].get<std::string>(),
                                view["photo"].get<std::string>(), view["log_l1"].dump());
@@ -25,8 +26,8 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined) {
   return result;
 }
 
-ProgramResult Run(const std::filesystem::path& folder, OptionSet* set,
-                  RefineStageOptions* options, const CommonOptions& common) {
+ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RefineStageOptions* options,
+                  const CommonOptions& common) {
   const Capture capture = ReadCapture(folder);
   set->LoadToml(capture.file, "refine");
   const RefineStart start = ResolveRefineStart(capture.work(), *options);
@@ -36,11 +37,12 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set,
   inputs.push_back(start.manifest_file.empty() ? start.maps_file : start.manifest_file);
   Stage stage(capture.work() / "refine", {"refine", kRefineVersion}, *set, common, inputs);
   if (stage.UpToDate()) {
-    return {stage.UpToDateText(), {{"stage", "refine"},
-                                   {"up_to_date", true},
-                                   {"manifest", stage.manifest_file().string()}}};
+    return {
+        stage.UpToDateText(),
+        {{"stage", "refine"}, {"up_to_date", true}, {"manifest", stage.manifest_file().string()}}};
   }
-  return Summarise(stage, RunRefineStage(rectify_manifest, start, *options, common.threads, &stage));
+  return Summarise(stage,
+                   RunRefineStage(rectify_manifest, start, *options, common.threads, &stage));
 }
 
 }  // namespace

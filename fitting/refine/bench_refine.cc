@@ -1,8 +1,9 @@
 // Refinement against one bounded ceres::Solve per texel: the same texels, starts and residuals (20
 // views of 8 bit, robust, with the prior), one thread, one process. Prints texels per second, the
-// ratio and both mean costs. Refinement's time is all of it: several starts, neighbours, confidence.
-// Ceres is measured twice: with the residuals as one writes them (autodiff of brdf.h, a block per
-// view), and with refinement's own residual kernel as one block, which leaves the solver's share.
+// ratio and both mean costs. Refinement's time is all of it: several starts, neighbours,
+// confidence. Ceres is measured twice: with the residuals as one writes them (autodiff of brdf.h, a
+// block per view), and with refinement's own residual kernel as one block, which leaves the
+// solver's share.
 #include <ceres/ceres.h>
 #include <fmt/format.h>
 #include <time.h>
@@ -109,8 +110,7 @@ void MakeScene(Scene* scene) {
   }
   Photograph(truth, scene);
   for (int i = 0; i < kViews; ++i) {
-    scene->problem.views.push_back(
-        {scene->views[i], true, scene->photographs[i], scene->mask});
+    scene->problem.views.push_back({scene->views[i], true, scene->photographs[i], scene->mask});
   }
 }
 
@@ -250,9 +250,9 @@ void AddViewBlocks(const Scene& scene, size_t t, const KernelOptions& options,
                    ceres::Problem* problem, TexelValues* texel) {
   for (const RefineView& view : scene.problem.views) {
     auto* residuals = new ViewResiduals;
-    residuals->geometry = TexelGeometryInView<double>(
-        view.view, scene.problem.convention.falloff, scene.problem.plane.x_mm(int(t % kSize)),
-        scene.problem.plane.y_mm(int(t / kSize)));
+    residuals->geometry = TexelGeometryInView<double>(view.view, scene.problem.convention.falloff,
+                                                      scene.problem.plane.x_mm(int(t % kSize)),
+                                                      scene.problem.plane.y_mm(int(t / kSize)));
     for (int c = 0; c < 3; ++c) {
       const double radiance = view.rgb[c * scene.start.texels() + t];
       residuals->log_target[c] = std::log(radiance + kLogOffset);
@@ -281,26 +281,27 @@ int Main() {
   Print("refine, all of it", refine);
 
   const KernelOptions kernel{scene.problem.convention.diffuse_weight, options.robust_scale};
-  const PriorWeights weights =
-      HoldToStart(options.prior, refined.summary.residual_sigma, refined.summary.distinct_views, {});
+  const PriorWeights weights = HoldToStart(options.prior, refined.summary.residual_sigma,
+                                           refined.summary.distinct_views, {});
   const Side plain =
-      Measure(scene, weights, [&](size_t t, const TexelObservations&, const TexelPrior& prior,
-                                  TexelValues* texel) {
-        ceres::Problem problem;
-        AddViewBlocks(scene, t, kernel, &problem, texel);
-        problem.AddResidualBlock(new PriorResiduals(prior), nullptr, texel->data());
-        return SolveBounded(&problem, texel);
-      });
+      Measure(scene, weights,
+              [&](size_t t, const TexelObservations&, const TexelPrior& prior, TexelValues* texel) {
+                ceres::Problem problem;
+                AddViewBlocks(scene, t, kernel, &problem, texel);
+                problem.AddResidualBlock(new PriorResiduals(prior), nullptr, texel->data());
+                return SolveBounded(&problem, texel);
+              });
   Print("bounded ceres::Solve per texel, residuals by autodiff", plain);
   KernelRows rows(kViews);
   const Side shared =
-      Measure(scene, weights, [&](size_t, const TexelObservations& observations,
-                                  const TexelPrior& prior, TexelValues* texel) {
-        ceres::Problem problem;
-        problem.AddResidualBlock(new KernelResiduals(kernel, observations, prior, &rows), nullptr,
-                                 texel->data());
-        return SolveBounded(&problem, texel);
-      });
+      Measure(scene, weights,
+              [&](size_t, const TexelObservations& observations, const TexelPrior& prior,
+                  TexelValues* texel) {
+                ceres::Problem problem;
+                problem.AddResidualBlock(new KernelResiduals(kernel, observations, prior, &rows),
+                                         nullptr, texel->data());
+                return SolveBounded(&problem, texel);
+              });
   Print("bounded ceres::Solve per texel, refinement's residual kernel", shared);
   fmt::print("ratio {:.1f} (wanted: 15 or more), mean cost {:.6f} against {:.6f}\n",
              refine.rate / plain.rate, refine.cost, plain.cost);

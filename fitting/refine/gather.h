@@ -11,6 +11,7 @@ namespace glint {
 inline constexpr double kClipped = 0.9956;
 
 // Replaces what `observations` holds by the usable views of the texel.
-void GatherObservations(const RefineProblem& problem, size_t texel, TexelObservations* observations);
+void GatherObservations(const RefineProblem& problem, size_t texel,
+                        TexelObservations* observations);
 
 }  // namespace glint

@@ -94,7 +94,7 @@ class Refiner {
   RefineResult result_;
   enum Origin : unsigned char { kConverged = 1, kOtherStart = 2, kNeighbour = 4 };
   std::vector<unsigned char> origin_;
-  std::vector<float> cost_;  // of the texels as they stand, prior included
+  std::vector<float> cost_;          // of the texels as they stand, prior included
   std::vector<double> start_costs_;  // sums by piece
 };
 
@@ -152,10 +152,8 @@ void Refiner::EstimateNoise() {
     if (freedom < 6) return;
     const TexelValues start = ReadTexel(start_, texel);
     const TexelPrior prior(weak, start);
-    const TexelSolution solution =
-        w.search.FromStart(w.observations, prior, weak, start).solution;
-    variances[i] =
-        (2.0 * solution.cost - prior.SquaredNorm(solution.values)) / freedom;
+    const TexelSolution solution = w.search.FromStart(w.observations, prior, start).solution;
+    variances[i] = (2.0 * solution.cost - prior.SquaredNorm(solution.values)) / freedom;
   });
   std::erase_if(variances, [](double v) { return v < 0.0; });
   summary.residual_sigma = kTypicalSigma;
@@ -192,8 +190,7 @@ void Refiner::SolveFromStarts() {
     }
     const TexelValues start = ReadTexel(start_, texel);
     const TexelPrior prior(weights_, start);
-    const TexelSearch::Found found =
-        worker->search.FromStart(worker->observations, prior, weights_, start);
+    const TexelSearch::Found found = worker->search.FromStart(worker->observations, prior, start);
     start_costs_[texel / kTexelsPerPiece] += found.start_cost;
     if (found.other_start) origin_[texel] |= kOtherStart;
     Keep(texel, found.solution);
@@ -223,7 +220,7 @@ void Refiner::SolveFromNeighbours(int colour) {
     const TexelPrior prior(weights_, ReadTexel(start_, texel));
     const TexelSolution current = Current(texel, prior, worker);
     const TexelSearch::Found found = worker->search.FromNeighbours(
-        worker->observations, prior, weights_, current, std::span(neighbours).first(count));
+        worker->observations, prior, current, std::span(neighbours).first(count));
     if (!found.other_start) return;
     origin_[texel] |= kNeighbour;
     Keep(texel, found.solution);
@@ -259,8 +256,8 @@ void Refiner::Conclude() {
     for (size_t v = 0; v < views; ++v) {
       if (!(problem_.views[v].mask[texel] >= 0.5f)) continue;
       for (int c = 0; c < 3; ++c) {
-        sum[1 + v] += std::abs(LogResidual(rows.row(c, KernelRows::kResidual)[row],
-                                           kernel_.robust_scale));
+        sum[1 + v] +=
+            std::abs(LogResidual(rows.row(c, KernelRows::kResidual)[row], kernel_.robust_scale));
       }
       sum[1 + views + v] += 3.0;
       ++row;

@@ -28,9 +28,9 @@ namespace glint {
 // One photograph of the problem. The spans belong to the caller.
 struct RefineView {
   View view;
-  bool ldr = true;                // radiance ≥ 1 means "at least 1"
-  std::span<const float> rgb;     // planar, 3·H·W, linear
-  std::span<const float> mask;    // H·W; texels of less than ½ are left out
+  bool ldr = true;              // radiance ≥ 1 means "at least 1"
+  std::span<const float> rgb;   // planar, 3·H·W, linear
+  std::span<const float> mask;  // H·W; texels of less than ½ are left out
 };
 
 struct RefineProblem {
@@ -40,11 +40,11 @@ struct RefineProblem {
 };
 
 struct RefineOptions {
-  int iterations = 40;         // most Levenberg–Marquardt steps of one solve
-  int starts = 2;              // solves per texel: 1: the start alone; more: so many roughnesses
-  int neighbour_passes = 2;    // how often a texel tries its neighbours' solutions
-  double prior = 1.0;          // factor on the prior's weight; 0: none
-  double robust_scale = 0.1;   // residuals (log units) beyond it count linearly
+  int iterations = 40;        // most Levenberg–Marquardt steps of one solve
+  int starts = 2;             // solves per texel: 1: the start alone; more: so many roughnesses
+  int neighbour_passes = 2;   // how often a texel tries its neighbours' solutions
+  double prior = 1.0;         // factor on the prior's weight; 0: none
+  double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
 
   // Empty: all is well; otherwise what is wrong.
   std::string Check() const;
@@ -68,12 +68,12 @@ enum ConfidencePlane : int {
 struct RefineSummary {
   double start_cost = 0;  // means over texels
   double final_cost = 0;
-  double residual_sigma = 0;         // noise found in the photographs, log units
-  double distinct_views = 0;         // how many views tell something of their own (refine_prior.h)
-  double converged = 0;              // share of texels
-  double other_start = 0;            // share of texels whose solution came from another start …
-  double neighbour = 0;              // … or from a neighbour
-  std::vector<double> view_loss;     // per view: mean |log(I + 0.01) − log(R + 0.01)|, NaN: masked
+  double residual_sigma = 0;      // noise found in the photographs, log units
+  double distinct_views = 0;      // how many views tell something of their own (refine_prior.h)
+  double converged = 0;           // share of texels
+  double other_start = 0;         // share of texels whose solution came from another start …
+  double neighbour = 0;           // … or from a neighbour
+  std::vector<double> view_loss;  // per view: mean |log(I + 0.01) − log(R + 0.01)|, NaN: masked
 
   std::string BriefReport() const;
 };
@@ -87,8 +87,8 @@ struct RefineResult {
 // `start` has the plane's size. `progress` (may be empty) is called with texels done so far and all
 // texel visits to come, from one thread at a time.
 // Throws std::invalid_argument when sizes do not fit, values are not finite or an option is wrong.
-RefineResult Refine(const RefineProblem& problem, const SvbrdfMaps& start,
-                    const RefineOptions& options, int threads,
-                    const std::function<void(std::int64_t done, std::int64_t total)>& progress = {});
+RefineResult Refine(
+    const RefineProblem& problem, const SvbrdfMaps& start, const RefineOptions& options,
+    int threads, const std::function<void(std::int64_t done, std::int64_t total)>& progress = {});
 
 }  // namespace glint

@@ -6,7 +6,9 @@
 namespace glint {
 namespace {
 
-constexpr double kOneView = 15.0;  // how much harder than belief one view has the start held
+// How much harder than belief a single view has the start held, and how fast that falls with views.
+constexpr double kOneView = 15.0;
+constexpr double kFall = 1.4;
 
 }  // namespace
 
@@ -28,17 +30,13 @@ double DistinctViews(const RefineProblem& problem) {
 }
 
 PriorWeights BelieveStart(double residual_sigma, const StartErrors& errors) {
-  PriorWeights weights;
-  weights.normal = residual_sigma / errors.normal;
-  weights.roughness = residual_sigma / errors.roughness;
-  weights.diffuse = residual_sigma / errors.diffuse;
-  weights.specular = residual_sigma / errors.specular;
-  return weights;
+  return {residual_sigma, errors};
 }
 
 PriorWeights HoldToStart(double factor, double residual_sigma, double distinct_views,
                          const StartErrors& errors) {
-  const double harder = std::sqrt(kOneView * factor) / std::max(distinct_views, 1.0);
+  const double views = std::max(distinct_views, 1.0);
+  const double harder = std::sqrt(factor * kOneView * std::pow(views, -kFall));
   return BelieveStart(residual_sigma * harder, errors);
 }
 

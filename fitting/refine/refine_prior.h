@@ -7,27 +7,19 @@
 
 namespace glint {
 
-// Standard deviations expected of a start's error.
-struct StartErrors {
-  double normal = 0.10;  // of n_x, n_y
-  double roughness = 0.10;
-  double diffuse = 0.05;
-  double specular = 0.05;
-};
-
 // Number of views that tell something of their own: n² / Σ_ij exp(−θ_ij²/2τ²) with θ_ij the angle
-// between half vectors of views i and j at the sample's centre, τ = 8°. n views from one place count
-// as one; views spread over the hemisphere count fully.
+// between half vectors of views i and j at the sample's centre, τ = 8°. n views from one place
+// count as one; views spread over the hemisphere count fully.
 double DistinctViews(const RefineProblem& problem);
 
-// Square roots of weights (sigma / start error)²: a start with such errors is one more observation,
+// Residuals sigma·(departure / start error): a start with such errors is one more observation,
 // in units of the residuals' noise.
 PriorWeights BelieveStart(double residual_sigma, const StartErrors& errors);
 
-// The same times factor·15/distinct². From one photograph the hold has to be far stronger than
-// belief: its three numbers are exact, and nine unknowns explain them in many wrong ways, which
-// least squares takes for knowledge. Best factors measured on procedural materials, 8 bit: 10–30 with
-// one view, 10 with two, 3 with five, 1–3 with twenty, relative to 1/distinct.
+// The same, its weight times factor·15/distinct^1.4. From one photograph the hold has to be far
+// stronger than belief: its three numbers are exact, and nine unknowns explain them in many wrong
+// ways, which least squares takes for knowledge. Measured on procedural materials in 8-bit views
+// (docs/experiments.md); the hold also vanishes as sigma² does, against residuals that are seen.
 PriorWeights HoldToStart(double factor, double residual_sigma, double distinct_views,
                          const StartErrors& errors);
 

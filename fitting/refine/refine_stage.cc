@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 // In the order of ConfidencePlane.
 const std::vector<std::string> kConfidenceChannels = {
-    "normal.X",   "normal.Y",   "diffuse.R",   "diffuse.G",   "diffuse.B",
-    "specular.R", "specular.G", "specular.B",  "roughness.Y", "cost.Y"};
+    "normal.X",   "normal.Y",   "diffuse.R",  "diffuse.G",   "diffuse.B",
+    "specular.R", "specular.G", "specular.B", "roughness.Y", "cost.Y"};
 
 std::vector<RectifiedView> ChooseViews(const RectifiedSet& set, const RefineStart& start,
                                        const RefineStageOptions& options) {
@@ -154,8 +154,7 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
                      });
   }
   RefineStageResult result;
-  result.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   result.summary = refined.summary;
   result.width = maps.width;
   result.height = maps.height;

@@ -1,4 +1,5 @@
-// Stage "refine" of a capture: maps of fit and rectified views in, svbrdf.exr and confidence.exr out.
+// Stage "refine" of a capture: maps of fit and rectified views in, svbrdf.exr and confidence.exr
+// out.
 #pragma once
 
 #include <filesystem>
@@ -31,7 +32,8 @@ struct RefineStart {
 };
 
 // Throws UserError (no result of fit, a damaged manifest, wrong options).
-RefineStart ResolveRefineStart(const std::filesystem::path& work, const RefineStageOptions& options);
+RefineStart ResolveRefineStart(const std::filesystem::path& work,
+                               const RefineStageOptions& options);
 
 struct RefineStageResult {
   Json data, metrics;

@@ -47,7 +47,8 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_al
                                 w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
   const double half_square = 0.5 * f * f;
   return exponent * 6.93147180369123816490e-01 -
-         ((half_square - (s * (half_square + (odd + even)) + exponent * 1.90821492927058770002e-10)) -
+         ((half_square -
+           (s * (half_square + (odd + even)) + exponent * 1.90821492927058770002e-10)) -
           f);
 }
 
@@ -106,9 +107,8 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_al
     const double s_per_nl = ratio * ratio * p;
     const double s = s_per_nl * nl;
     const double by_t = -2.0 * s * inverse_t * t_on;
-    const double by_alpha =
-        2.0 * ratio * inverse_t * p * nl + by_t * 2.0 * alpha * nh * nh -
-        k_by_alpha * s * ((1.0 - nl) * inverse_a + (1.0 - nv) * inverse_b);
+    const double by_alpha = 2.0 * ratio * inverse_t * p * nl + by_t * 2.0 * alpha * nh * nh -
+                            k_by_alpha * s * ((1.0 - nl) * inverse_a + (1.0 - nv) * inverse_b);
     const double by_nl = s_per_nl * k * inverse_a * nl_on;
     const double by_nv = -s * one_minus_k * inverse_b * nv_on;
     const double by_nh = by_t * 2.0 * nh * (alpha2 - 1.0) * nh_on;
@@ -195,8 +195,8 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_al
 }
 
 // The upper triangle of one channel's rows times themselves.
-[[gnu::always_inline]] inline void AccumulateChannel(const KernelRows& rows, int channel,
-                                                     int views, double products[21]) {
+[[gnu::always_inline]] inline void AccumulateChannel(const KernelRows& rows, int channel, int views,
+                                                     double products[21]) {
   constexpr int kRows = KernelRows::kRows;
   Lanes sums[21];
   for (auto& sum : sums) sum = Lanes{};
@@ -220,12 +220,9 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_al
 
 void AddChannelToGram(const double products[21], int channel, TexelGram* gram) {
   // The rows stand in the order of the parameters.
-  const int place[KernelRows::kRows] = {DiffuseParameter(channel),
-                                        SpecularParameter(channel),
-                                        kRough,
-                                        kSlopeX,
-                                        kSlopeY,
-                                        kTexelParameters};
+  const int place[KernelRows::kRows] = {
+      DiffuseParameter(channel), SpecularParameter(channel), kRough, kSlopeX, kSlopeY,
+      kTexelParameters};
   int next = 0;
   for (int a = 0; a < KernelRows::kRows; ++a) {
     for (int b = a; b < KernelRows::kRows; ++b) (*gram)[place[a]][place[b]] += products[next++];
@@ -361,7 +358,7 @@ double LogResidual(double residual, double robust_scale) {
 }
 
 AlbedoFit FitAlbedos(const KernelOptions& options, const TexelObservations& observations,
-                     double diffuse_hold, double specular_hold, TexelValues* texel,
+                     const double holds[6], const TexelValues& toward, TexelValues* texel,
                      KernelRows* rows) {
   AlbedoSums sums[3];
   EvaluateAlbedoSums(observations, *texel, rows, sums);
@@ -372,12 +369,18 @@ AlbedoFit FitAlbedos(const KernelOptions& options, const TexelObservations& obse
     const bool one_minus = options.diffuse_weight == DiffuseWeight::kOneMinusSpecular;
     // The weight 1 − k_s goes into the diffuse unknown.
     double lobe = one_minus ? diffuse * (1.0 - specular) : diffuse;
+    const double specular_start = toward[SpecularParameter(c)];
+    const double lobe_start =
+        toward[DiffuseParameter(c)] * (one_minus ? 1.0 - specular_start : 1.0);
+    const double diffuse_hold = holds[DiffuseParameter(c)];
+    const double specular_hold = holds[SpecularParameter(c)];
     AlbedoSums& q = sums[c];
     q.aa += diffuse_hold;
-    q.ay += diffuse_hold * lobe;
+    q.ay += diffuse_hold * lobe_start;
     q.bb += specular_hold;
-    q.by += specular_hold * specular;
-    q.yy += diffuse_hold * lobe * lobe + specular_hold * specular * specular;
+    q.by += specular_hold * specular_start;
+    q.yy +=
+        diffuse_hold * lobe_start * lobe_start + specular_hold * specular_start * specular_start;
     fit.before += Squares(q, lobe, specular);
     fit.after += SolveInUnitSquare(q, &lobe, &specular);
     diffuse = lobe;

@@ -81,14 +81,14 @@ double LogResidual(double residual, double robust_scale);
 
 // Albedos that fit the texel best with its normal and roughness as they are: per channel a 2×2
 // least squares of I + 0.01 relative to itself (the logarithm to first order), held toward the
-// texel's own albedos by `diffuse_hold` and `specular_hold` (weights of squared differences), and
+// albedos of `toward` by `holds` (weights of squared differences, in the parameters' order), and
 // kept in [0, 1]. Clipped observations do not take part.
 struct AlbedoFit {
   double before = 0;  // sum of squared (relative) residuals with the albedos given …
   double after = 0;   // … and with those found
 };
 AlbedoFit FitAlbedos(const KernelOptions& options, const TexelObservations& observations,
-                     double diffuse_hold, double specular_hold, TexelValues* texel,
+                     const double holds[6], const TexelValues& toward, TexelValues* texel,
                      KernelRows* rows);
 
 }  // namespace glint

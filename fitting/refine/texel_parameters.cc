@@ -54,8 +54,8 @@ void ToTexelValues(const double variables[kTexelParameters], TexelValues* values
 
 void ToVariables(const TexelValues& values, double variables[kTexelParameters]) {
   for (int i = 0; i < kTexelParameters; ++i) {
-    variables[i] = i == kSlopeX || i == kSlopeY ? values[i]
-                                                : UnboundedVariable(BoundsOf(i), values[i]);
+    variables[i] =
+        i == kSlopeX || i == kSlopeY ? values[i] : UnboundedVariable(BoundsOf(i), values[i]);
   }
 }
 

@@ -3,25 +3,35 @@
 #include <cmath>
 
 namespace glint {
+namespace {
+
+void NormalOf(const TexelValues& texel, double normal[2], double* length) {
+  const double x = texel[kSlopeX], y = texel[kSlopeY];
+  *length = 1.0 / std::sqrt(1.0 + x * x + y * y);
+  normal[0] = x * *length;
+  normal[1] = y * *length;
+}
+
+}  // namespace
 
 TexelPrior::TexelPrior(const PriorWeights& weights, const TexelValues& start) : start_(start) {
-  weight_[kSlopeX] = weight_[kSlopeY] = weights.normal;
-  weight_[kRough] = weights.roughness;
+  const StartErrors& errors = weights.errors;
+  const double strength = weights.strength;
+  weight_[kSlopeX] = weight_[kSlopeY] = strength / errors.normal;
+  weight_[kRough] = strength / errors.roughness;
   for (int c = 0; c < 3; ++c) {
-    weight_[DiffuseParameter(c)] = weights.diffuse;
-    weight_[SpecularParameter(c)] = weights.specular;
+    const int d = DiffuseParameter(c), s = SpecularParameter(c);
+    weight_[d] = strength / (errors.diffuse + errors.diffuse_relative * start[d]);
+    weight_[s] = strength / (errors.specular + errors.specular_relative * start[s]);
   }
-  const double x = start[kSlopeX], y = start[kSlopeY];
-  const double length = 1.0 / std::sqrt(1.0 + x * x + y * y);
-  start_normal_[0] = x * length;
-  start_normal_[1] = y * length;
+  double length;
+  NormalOf(start, start_normal_, &length);
 }
 
 void TexelPrior::Evaluate(const TexelValues& texel, double residuals[kTexelParameters],
                           double jacobian[kTexelParameters][kTexelParameters]) const {
-  const double px = texel[kSlopeX], py = texel[kSlopeY];
-  const double length = 1.0 / std::sqrt(1.0 + px * px + py * py);
-  const double normal[2] = {px * length, py * length};
+  double normal[2], length;
+  NormalOf(texel, normal, &length);
   for (int i = 0; i < kTexelParameters; ++i) {
     for (int j = 0; j < kTexelParameters; ++j) jacobian[i][j] = 0.0;
     if (i <= kRough) {
@@ -59,15 +69,10 @@ void TexelPrior::AddTo(const TexelValues& texel, TexelGram* gram) const {
 }
 
 double TexelPrior::SquaredNorm(const TexelValues& texel) const {
-  const double px = texel[kSlopeX], py = texel[kSlopeY];
-  const double length = 1.0 / std::sqrt(1.0 + px * px + py * py);
-  const double dx = weight_[kSlopeX] * (px * length - start_normal_[0]);
-  const double dy = weight_[kSlopeY] * (py * length - start_normal_[1]);
-  double sum = dx * dx + dy * dy;
-  for (int i = 0; i <= kRough; ++i) {
-    const double d = weight_[i] * (texel[i] - start_[i]);
-    sum += d * d;
-  }
+  double f[kTexelParameters], j[kTexelParameters][kTexelParameters];
+  Evaluate(texel, f, j);
+  double sum = 0.0;
+  for (const double residual : f) sum += residual * residual;
   return sum;
 }
 

@@ -1,16 +1,25 @@
-// The hold on a texel's start: residuals weight·(value − start), in physical units.
+// The hold on a texel's start: residuals strength·(value − start)/error, in physical units.
+// Quadratic: with a loss that flattens, texels whose photographs are explained in many ways
+// wandered off (map error at five views one half higher).
 #pragma once
 
 #include "fitting/refine/texel_kernel.h"
 
 namespace glint {
 
-// Square roots of weights: how strongly each kind of value is held.
+// Standard deviations expected of a start's error. Albedos: error + relative·value.
+struct StartErrors {
+  double normal = 0.10;  // of n_x, n_y
+  double roughness = 0.10;
+  double diffuse = 0.03;
+  double diffuse_relative = 0.1;
+  double specular = 0.02;
+  double specular_relative = 0.2;
+};
+
 struct PriorWeights {
-  double normal = 0.0;  // of n_x and n_y
-  double roughness = 0.0;
-  double diffuse = 0.0;
-  double specular = 0.0;
+  double strength = 0.0;  // of one expected error, in units of the residuals; 0: no hold
+  StartErrors errors;
 };
 
 class TexelPrior {
@@ -22,6 +31,9 @@ class TexelPrior {
                 double jacobian[kTexelParameters][kTexelParameters]) const;
   // Adds its residuals' products to a Gram matrix by the physical values (upper triangle).
   void AddTo(const TexelValues& texel, TexelGram* gram) const;
+  const TexelValues& start() const { return start_; }
+  // Weight of a squared departure of parameter `i`.
+  double hold(int i) const { return weight_[i] * weight_[i]; }
   // Sum of its squared residuals.
   double SquaredNorm(const TexelValues& texel) const;
 

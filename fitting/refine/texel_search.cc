@@ -10,11 +10,11 @@ namespace {
 // Roughnesses to look at: steps of 1.4, about the width of the valley in which one solve converges.
 constexpr std::array<double, 8> kRoughnesses = {0.07, 0.10, 0.14, 0.20, 0.28, 0.39, 0.55, 0.77};
 
-// Another start is worth a solve when it promises this much less cost; solutions that differ by less
-// are the same for every practical purpose.
+// Another start is worth a solve when it promises this much less cost; solutions that differ by
+// less are the same for every practical purpose.
 constexpr double kWorthwhile = 0.98;
 constexpr double kWorthStep = 0.03;  // gain of a step against one residual's noise
-constexpr double kExplained = 1.5;  // squared residuals against noise alone
+constexpr double kExplained = 1.5;   // squared residuals against noise alone
 
 }  // namespace
 
@@ -43,20 +43,28 @@ bool TexelSearch::TrySolve(const TexelObservations& observations, const TexelPri
 }
 
 TexelSearch::Candidate TexelSearch::WithFittedAlbedos(const TexelObservations& observations,
-                                                      const PriorWeights& weights,
+                                                      const TexelPrior& prior,
                                                       const TexelValues& values) {
   Candidate candidate{values, {}};
-  candidate.fit = FitAlbedos(options_, observations, weights.diffuse * weights.diffuse,
-                             weights.specular * weights.specular, &candidate.values, &rows_);
+  double holds[kRough];
+  for (int i = 0; i < kRough; ++i) holds[i] = prior.hold(i);
+  candidate.fit =
+      FitAlbedos(options_, observations, holds, prior.start(), &candidate.values, &rows_);
+  // What the hold on normal and roughness costs; that on albedos is in the fit.
+  TexelValues rest = values;
+  std::copy_n(prior.start().begin() + kAlbedos, static_cast<int>(kRough), rest.begin() + kAlbedos);
+  const double held = prior.SquaredNorm(rest);
+  candidate.fit.before += held;
+  candidate.fit.after += held;
   return candidate;
 }
 
 void TexelSearch::TryRoughnesses(const TexelObservations& observations, const TexelPrior& prior,
-                                 const PriorWeights& weights, Found* best) {
+                                 Found* best) {
   const auto fit = [&](double roughness) {
     TexelValues values = best->solution.values;
     values[kRough] = roughness;
-    return WithFittedAlbedos(observations, weights, values);
+    return WithFittedAlbedos(observations, prior, values);
   };
   // The profile over roughness, with the solution's own in its place.
   constexpr int kProfile = static_cast<int>(kRoughnesses.size()) + 1;
@@ -83,9 +91,8 @@ void TexelSearch::TryRoughnesses(const TexelObservations& observations, const Te
                         (i + 1 == kProfile || here < profile[i + 1].fit.after);
     if (valley && here < kWorthwhile * own_squares) valleys[count++] = i;
   }
-  std::stable_sort(valleys.begin(), valleys.begin() + count, [&](int a, int b) {
-    return profile[a].fit.after < profile[b].fit.after;
-  });
+  std::stable_sort(valleys.begin(), valleys.begin() + count,
+                   [&](int a, int b) { return profile[a].fit.after < profile[b].fit.after; });
   for (int i = 0; i < std::min(count, starts_ - 1); ++i) {
     if (TrySolve(observations, prior, profile[valleys[i]].values, &best->solution)) {
       best->other_start = true;
@@ -94,8 +101,7 @@ void TexelSearch::TryRoughnesses(const TexelObservations& observations, const Te
 }
 
 TexelSearch::Found TexelSearch::FromStart(const TexelObservations& observations,
-                                          const TexelPrior& prior, const PriorWeights& weights,
-                                          const TexelValues& start) {
+                                          const TexelPrior& prior, const TexelValues& start) {
   Found best;
   best.solution.values = start;
   best.solution.cost = solver_.Cost(observations, prior, start);
@@ -103,24 +109,22 @@ TexelSearch::Found TexelSearch::FromStart(const TexelObservations& observations,
   best.start_cost = best.solution.cost;
   TrySolve(observations, prior, start, &best.solution);
   if (starts_ > 1 && Unexplained(observations.views(), best.solution.cost)) {
-    TryRoughnesses(observations, prior, weights, &best);
+    TryRoughnesses(observations, prior, &best);
   }
   return best;
 }
 
 TexelSearch::Found TexelSearch::FromNeighbours(const TexelObservations& observations,
                                                const TexelPrior& prior,
-                                               const PriorWeights& weights,
                                                const TexelSolution& current,
                                                std::span<const TexelValues> neighbours) {
   Found best{current, current.cost, false};
   if (!Unexplained(observations.views(), current.cost)) return best;
-  double least =
-      kWorthwhile * WithFittedAlbedos(observations, weights, current.values).fit.before;
+  double least = kWorthwhile * WithFittedAlbedos(observations, prior, current.values).fit.before;
   Candidate promising;
   bool any = false;
   const auto consider = [&](const TexelValues& values) {
-    const Candidate candidate = WithFittedAlbedos(observations, weights, values);
+    const Candidate candidate = WithFittedAlbedos(observations, prior, values);
     if (!(candidate.fit.after < least)) return;
     least = candidate.fit.after;
     promising = candidate;

@@ -12,8 +12,8 @@ class TexelSearch {
  public:
   TexelSearch(const KernelOptions& options, int most_iterations, int most_views, int starts);
 
-  // Squared residuals of a texel expected from noise alone, per residual. Solves end when they gain a
-  // small part of it, and texels that fit so well are not searched further.
+  // Squared residuals of a texel expected from noise alone, per residual. Solves end when they gain
+  // a small part of it, and texels that fit so well are not searched further.
   void SetNoise(double residual_sigma);
 
   // Whether the cost of a texel seen in `views` leaves room for a better minimum.
@@ -28,13 +28,12 @@ class TexelSearch {
   // The best local minimum among those reached from `start` and from up to `starts − 1` other
   // roughnesses, each with albedos fitted to it. Never costlier than `start`.
   Found FromStart(const TexelObservations& observations, const TexelPrior& prior,
-                  const PriorWeights& weights, const TexelValues& start);
+                  const TexelValues& start);
 
   // The best of `current` and the minimum near the neighbour that promises least: its normal and
   // roughness, or its roughness alone, with albedos fitted to this texel.
   Found FromNeighbours(const TexelObservations& observations, const TexelPrior& prior,
-                       const PriorWeights& weights, const TexelSolution& current,
-                       std::span<const TexelValues> neighbours);
+                       const TexelSolution& current, std::span<const TexelValues> neighbours);
 
   TexelSolver& solver() { return solver_; }
 
@@ -44,10 +43,9 @@ class TexelSearch {
     AlbedoFit fit;
   };
   // `values` with albedos fitted to the texel.
-  Candidate WithFittedAlbedos(const TexelObservations& observations, const PriorWeights& weights,
+  Candidate WithFittedAlbedos(const TexelObservations& observations, const TexelPrior& prior,
                               const TexelValues& values);
-  void TryRoughnesses(const TexelObservations& observations, const TexelPrior& prior,
-                      const PriorWeights& weights, Found* best);
+  void TryRoughnesses(const TexelObservations& observations, const TexelPrior& prior, Found* best);
   bool TrySolve(const TexelObservations& observations, const TexelPrior& prior,
                 const TexelValues& from, TexelSolution* best);
 

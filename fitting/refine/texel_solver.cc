@@ -64,8 +64,8 @@ using Solver = ceres::TinySolver<TexelCost, NormalCholesky>;
 constexpr double kSquaresTolerance = 1e-9;
 constexpr double kStepTolerance = 1e-6;
 // Full Gauss–Newton steps from a rough start throw texels into corners that hold them (no specular
-// at all; the smoothest lobe): with TinySolver's radius of 1e4 a third of texels ended in one, with 1
-// a twentieth (20 views), in no more steps.
+// at all; the smoothest lobe): with TinySolver's radius of 1e4 a third of texels ended in one, with
+// 1 a twentieth (20 views), in no more steps.
 constexpr double kFirstRadius = 1.0;
 
 }  // namespace

@@ -9,8 +9,7 @@
 
 namespace glint {
 
-void ForEachPiece(int pieces, int threads,
-                  const std::function<void(int piece, int worker)>& work) {
+void ForEachPiece(int pieces, int threads, const std::function<void(int piece, int worker)>& work) {
   std::atomic<int> next{0};
   std::exception_ptr failure;
   std::mutex failure_mutex;

@@ -244,7 +244,7 @@ TEST(RefinePrior, ViewsFromOnePlaceCountAsOneAndSpreadOnesMore) {
   const double distinct = DistinctViews(spread.Problem());
   EXPECT_GT(distinct, 2.0);
   EXPECT_LT(distinct, 5.0);
-  EXPECT_LT(HoldToStart(1, 0.01, distinct, {}).roughness, HoldToStart(1, 0.01, 1, {}).roughness);
+  EXPECT_LT(HoldToStart(1, 0.01, distinct, {}).strength, HoldToStart(1, 0.01, 1, {}).strength);
 }
 
 }  // namespace

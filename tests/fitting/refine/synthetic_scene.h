@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "fitting/reflectance/brdf.h"
 #include "fitting/refine/refine.h"
+#include "fitting/reflectance/brdf.h"
 
 namespace glint::test {
 
@@ -78,12 +78,12 @@ inline SyntheticScene Photograph(const SvbrdfMaps& truth, int views, int bits = 
       }
       texel.roughness = truth.plane(kRoughness)[t];
       double radiance[3];
-      ShadeRadiance(texel,
-                    TexelGeometryInView<double>(
-                        scene.views.back(), scene.convention.falloff,
-                        scene.plane.x_mm(static_cast<int>(t) % truth.width),
-                        scene.plane.y_mm(static_cast<int>(t) / truth.width)),
-                    scene.convention.diffuse_weight, radiance);
+      ShadeRadiance(
+          texel,
+          TexelGeometryInView<double>(scene.views.back(), scene.convention.falloff,
+                                      scene.plane.x_mm(static_cast<int>(t) % truth.width),
+                                      scene.plane.y_mm(static_cast<int>(t) / truth.width)),
+          scene.convention.diffuse_weight, radiance);
       for (int c = 0; c < 3; ++c) {
         double value = radiance[c];
         if (bits > 0) {

@@ -62,9 +62,8 @@ Point RandomPoint(std::mt19937* random, int views) {
       view.ambient_rgb[c] = Draw(random, 0, 0.1);
     }
     view.exposure = Draw(random, 0.5, 2);
-    point.geometry.push_back(TexelGeometryInView<double>(view, LightFalloff::kInverseSquare,
-                                                         Draw(random, -50, 50),
-                                                         Draw(random, -50, 50)));
+    point.geometry.push_back(TexelGeometryInView<double>(
+        view, LightFalloff::kInverseSquare, Draw(random, -50, 50), Draw(random, -50, 50)));
     point.radiance.push_back({Draw(random, 0, 1), Draw(random, 0, 1), Draw(random, 0, 1)});
     point.clipped.push_back({false, Draw(random, 0, 1) < 0.2, false});
   }
@@ -182,14 +181,14 @@ TEST(TexelCost, GradientAgreesWithFiniteDifferencesAtAThousandPoints) {
       // Fourth-order central difference; where a tail begins the second derivative jumps.
       constexpr double h = 2e-4;
       const ValueBounds& bounds = p == kRough ? kRoughnessBounds : kAlbedoBounds;
-      const bool beside = p <= kRough &&
-                          (std::abs(variables[p] - bounds.low - bounds.tail) < 2.1 * h ||
-                           std::abs(variables[p] - bounds.high + bounds.tail) < 2.1 * h);
+      const bool beside =
+          p <= kRough && (std::abs(variables[p] - bounds.low - bounds.tail) < 2.1 * h ||
+                          std::abs(variables[p] - bounds.high + bounds.tail) < 2.1 * h);
       const double numeric = (8.0 * (half_squares(p, h) - half_squares(p, -h)) -
                               (half_squares(p, 2 * h) - half_squares(p, -2 * h))) /
                              (12.0 * h);
-      ASSERT_NEAR(gradient[p], numeric, (beside ? 1e-4 : 1e-6) *
-                      (gradient.cwiseAbs().maxCoeff() + residuals.norm()))
+      ASSERT_NEAR(gradient[p], numeric,
+                  (beside ? 1e-4 : 1e-6) * (gradient.cwiseAbs().maxCoeff() + residuals.norm()))
           << "point " << i << " parameter " << p;
     }
   }
