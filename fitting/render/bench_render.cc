@@ -9,11 +9,11 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <functional>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "fitting/reflectance/svbrdf_maps.h"
@@ -51,27 +51,38 @@ Problem MakeProblem(int size, int views) {
   return problem;
 }
 
-double Milliseconds(const std::function<void()>& run) {
+// Milliseconds by the wall's clock, and of processor time over all threads.
+struct Times {
+  double wall = 0, processor = 0;
+};
+
+Times Measure(const std::function<void()>& run) {
+  const std::clock_t processor_start = std::clock();
   const auto start = std::chrono::steady_clock::now();
   run();
-  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
-  return spent.count();
+  const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
+  return {wall.count(), 1e3 * static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC};
 }
 
-// Medians of kRepeats after one unmeasured call of each; in turn, so that both meet the same
-// machine.
-std::pair<double, double> MedianMilliseconds(const std::function<void()>& first,
-                                             const std::function<void()>& second) {
-  std::vector<double> first_times, second_times;
-  for (int i = 0; i <= kRepeats; ++i) {
-    const double first_time = Milliseconds(first), second_time = Milliseconds(second);
-    if (i == 0) continue;
-    first_times.push_back(first_time);
-    second_times.push_back(second_time);
-  }
-  std::sort(first_times.begin(), first_times.end());
-  std::sort(second_times.begin(), second_times.end());
-  return {first_times[kRepeats / 2], second_times[kRepeats / 2]};
+Times Median(std::vector<Times> times) {
+  const size_t middle = times.size() / 2;
+  Times median;
+  std::sort(times.begin(), times.end(), [](auto& a, auto& b) { return a.wall < b.wall; });
+  median.wall = times[middle].wall;
+  std::sort(times.begin(), times.end(), [](auto& a, auto& b) { return a.processor < b.processor; });
+  median.processor = times[middle].processor;
+  return median;
+}
+
+// Medians of kRepeats after two unmeasured calls. Not in turn with other work: the memory that goes
+// back to the system after a call of one side would be counted at the other's.
+Times MedianTimes(const std::function<void()>& run) {
+  malloc_trim(0);
+  std::vector<Times> times;
+  run();
+  run();
+  for (int i = 0; i < kRepeats; ++i) times.push_back(Measure(run));
+  return Median(times);
 }
 
 double LossAndBackward(const Problem& problem,
@@ -96,6 +107,7 @@ void ResetPeak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
 // Peak memory above what is held before the call: the maps and images are there already.
 double PeakGrowthMiB(const std::function<void()>& run) {
+  malloc_trim(0);
   ResetPeak();
   const double before = StatusMiB("VmRSS");
   run();
@@ -117,14 +129,18 @@ void CompareSpeed(int threads, int size, int views) {
       return LogLossBatch(maps, problem.images, {}, {}, problem.batch, options);
     });
   };
-  const auto [reference_ms, fused_ms] = MedianMilliseconds(reference, fused);
+  const Times fused_times = MedianTimes(fused), torch_times = MedianTimes(reference);
   std::printf("%dx%d, %d views, %d thread%s, %s: forward + adjoint, median of %d\n", size, size,
               views, threads, threads == 1 ? "" : "s", kernel::Name(kernel::BestInstructionSet()),
               kRepeats);
-  std::printf("  torch operations %9.2f ms  (loss %.7f)\n", reference_ms, reference_loss);
-  std::printf("  fused kernel     %9.2f ms  (loss %.7f), %.2f ns per texel and view\n", fused_ms,
-              fused_loss, fused_ms * 1e6 / (static_cast<double>(size) * size * views));
-  std::printf("  ratio            %9.1f\n", reference_ms / fused_ms);
+  std::printf("                      wall ms   processor ms   loss\n");
+  std::printf("  torch operations %10.2f %14.2f   %.7f\n", torch_times.wall, torch_times.processor,
+              reference_loss);
+  std::printf("  fused kernel     %10.2f %14.2f   %.7f  (%.2f ns per texel and view)\n",
+              fused_times.wall, fused_times.processor, fused_loss,
+              fused_times.wall * 1e6 / (static_cast<double>(size) * size * views));
+  std::printf("  ratio            %10.1f %14.1f\n", torch_times.wall / fused_times.wall,
+              torch_times.processor / fused_times.processor);
 }
 
 void CompareMemory(int threads, int size) {
