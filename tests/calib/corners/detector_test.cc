@@ -87,9 +87,10 @@ TEST_P(Cover, LeavesTheOtherCornersAndNoneWrong) {
   const Camera camera = PhoneCamera();
   const int least[] = {35, 25, 20, 10};
   for (int step = 0; step < 4; ++step) {
-    for (int side = 0; side < 4; ++side) {
+    for (int side = step == 0 ? 2 : 0; side < 4; side += 2) {
       const double share = 0.2 * step;
       PhotoSettings settings;
+      settings.samples = 3;
       settings.seed = step;
       settings.cover = [=](double x, double y) -> std::optional<double> {
         const double u = side == 0   ? x / 160 + 0.5
@@ -106,11 +107,11 @@ TEST_P(Cover, LeavesTheOtherCornersAndNoneWrong) {
       Add(detection, camera, pose, &errors);
       // Covered from the long side, 20 % more of the rows go than of the columns; the count is for
       // the short side.
-      if (side < 2) {
+      if (side < 2 || step == 0) {
         EXPECT_GE(errors.corners, least[step]) << share << " from side " << side;
       }
       EXPECT_EQ(errors.wrong, 0) << share << " from side " << side;
-      if (side == 0) std::printf("%.0f %% covered: %d corners\n", 100 * share, errors.corners);
+      if (side == 0 || step == 0) std::printf("%.0f %% covered: %d corners\n", 100 * share, errors.corners);
       for (const CornerObservation& corner : detection.corners) {
         const Eigen::Vector2d& at = corner.position_in_sample_mm;
         EXPECT_FALSE(settings.cover(at.x(), at.y())) << "a hidden corner was reported";

@@ -106,7 +106,8 @@ GrayImage Photograph(const Board& board, const Camera& camera, const Rigid3& cam
       for (int i = 0; i < settings.samples * settings.samples; ++i) {
         const double sx = (i % settings.samples + 0.5) / settings.samples;
         const double sy = (i / settings.samples + 0.5) / settings.samples;
-        const Eigen::Vector3d ray = sample_from_camera.rotation * rays(x + sx, y + sy).homogeneous();
+        const Eigen::Vector3d ray =
+            sample_from_camera.rotation * rays(x + sx, y + sy).homogeneous();
         const Eigen::Vector3d& origin = sample_from_camera.translation;
         if (ray.z() >= 0) continue;
         const Eigen::Vector3d at = origin - ray * (origin.z() / ray.z());

@@ -1,0 +1,234 @@
+// glint-calib as a person runs it: results, errors, and what is left on disk.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "pipeline/contract/calibration.h"
+#include "pipeline/contract/image.h"
+#include "tests/calib/testing/synthetic_photo.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using testing::LookAt;
+
+constexpr char kCaptureToml[] = R"([sample]
+size_mm = [40, 40]
+[photos]
+files = ["photos/*.png"]
+[board]
+kind = "charuco"
+squares = [8, 6]
+square_mm = 20
+marker_mm = 12
+dictionary = "DICT_5X5_100"
+[light]
+offset_mm = [12, 0, 0]
+)";
+
+Board CaptureBoard() {
+  Board board;
+  board.squares_x = 8;
+  board.squares_y = 6;
+  board.square_mm = 20;
+  board.marker_mm = 12;
+  board.dictionary = "DICT_5X5_100";
+  return board;
+}
+
+const Camera kCamera{CameraModel::kRadial, 640, 480, {560, 323.3, 237.1, 0.06, -0.08}};
+
+void WriteText(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file) << text;
+}
+
+std::string ReadText(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+void WritePhoto(const fs::path& file, const GrayImage& gray) {
+  fs::create_directories(file.parent_path());
+  Image image(gray.width, gray.height, {"R", "G", "B"});
+  for (size_t i = 0; i < gray.samples.size(); ++i) {
+    for (int c = 0; c < 3; ++c) image.channel(c)[i] = gray.samples[i] / 255.0f;
+  }
+  WritePng(file, image);
+}
+
+GrayImage TakePhoto(int index, double tilt_scale = 1) {
+  testing::PhotoSettings settings;
+  settings.samples = 2;
+  settings.seed = index;
+  return Photograph(CaptureBoard(), kCamera,
+                    LookAt(230 + 5 * index, tilt_scale * (6 + 6 * index), 100 * index, 20 * index),
+                    settings);
+}
+
+struct Result {
+  int code = -1;
+  std::string output;  // stdout and stderr
+};
+
+Result Calibrate(const fs::path& capture, const std::string& options = "") {
+  const std::string command =
+      std::string(GLINT_BIN_DIR) + "/glint-calib " + capture.string() + " " + options + " 2>&1";
+  Result result;
+  FILE* pipe = popen(command.c_str(), "r");
+  std::array<char, 4096> buffer;
+  while (const size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) {
+    result.output.append(buffer.data(), n);
+  }
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) result.code = WEXITSTATUS(status);
+  return result;
+}
+
+class CalibProgram : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    root_ = fs::temp_directory_path() / ("glint_calib_" + std::to_string(::getpid()));
+    for (int i = 0; i < 6; ++i) {
+      WritePhoto(root_ / "good/photos" / ("p" + std::to_string(i) + ".png"), TakePhoto(i));
+    }
+    WriteText(root_ / "good/capture.toml", kCaptureToml);
+  }
+  static void TearDownTestSuite() { fs::remove_all(root_); }
+
+  // A copy of the good capture, with its results where it was calibrated before.
+  static fs::path Copy(const std::string& name, bool calibrated = false) {
+    fs::create_directories((root_ / name).parent_path());
+    fs::copy(root_ / "good", root_ / name, fs::copy_options::recursive);
+    if (calibrated) {
+      EXPECT_EQ(Calibrate(root_ / name).code, 0);
+    } else {
+      fs::remove_all(root_ / name / "glint");
+    }
+    return root_ / name;
+  }
+  // Exit code 2, all the words, and an earlier result byte for byte as it was.
+  static void ExpectUserError(const fs::path& capture, const std::vector<std::string>& words,
+                              const std::string& options = "") {
+    const fs::path manifest = capture / "glint/calib/manifest.json";
+    const std::string before = ReadText(manifest);
+    const Result result = Calibrate(capture, options);
+    EXPECT_EQ(result.code, 2) << result.output;
+    for (const std::string& word : words) EXPECT_THAT(result.output, HasSubstr(word));
+    EXPECT_EQ(ReadText(manifest), before);
+  }
+  static fs::path root_;
+};
+fs::path CalibProgram::root_;
+
+TEST_F(CalibProgram, CalibratesTheSameForAnyThreadCountAndPlace) {
+  const fs::path a = Copy("a"), b = Copy("elsewhere/b");
+  const Result first = Calibrate(a, "--threads 1"), second = Calibrate(b, "--threads 3");
+  ASSERT_EQ(first.code, 0) << first.output;
+  ASSERT_EQ(second.code, 0) << second.output;
+  for (const char* name : {"manifest.json", "residuals.json", "residuals_camera0.png"}) {
+    EXPECT_FALSE(ReadText(a / "glint/calib" / name).empty()) << name;
+    EXPECT_EQ(ReadText(a / "glint/calib" / name), ReadText(b / "glint/calib" / name)) << name;
+  }
+  const Calibration calibration = ReadCalibration(a / "glint/calib/manifest.json");
+  ASSERT_EQ(calibration.photos.size(), 6u);
+  EXPECT_NEAR(calibration.cameras[0].focal_length_x() / 560, 1, 0.003);
+  EXPECT_EQ(calibration.photos[0].light_in_camera_mm, Eigen::Vector3d(12, 0, 0));
+  EXPECT_TRUE(calibration.light_power_known);
+  for (int i = 0; i < 6; ++i) {
+    const Rigid3 truth = LookAt(230 + 5 * i, 6 + 6 * i, 100 * i, 20 * i);
+    const Eigen::Vector3d position = Inverse(truth).translation;
+    EXPECT_LT((Inverse(calibration.photos[i].camera_from_sample).translation - position).norm(),
+              0.003 * position.norm());
+  }
+  EXPECT_THAT(Calibrate(a).output, HasSubstr("up to date"));
+}
+
+TEST_F(CalibProgram, NamesPhotosWithoutTheBoard) {
+  const fs::path capture = Copy("noboard", true);
+  const GrayImage gray{640, 480, std::vector<unsigned char>(640 * 480, 120)};
+  for (int i = 1; i < 6; ++i)
+    WritePhoto(capture / "photos" / ("p" + std::to_string(i) + ".png"), gray);
+  ExpectUserError(capture, {"capture.toml", "photos: found the board in only one of the 6",
+                            "photos/p0.png", "photos/p3.png", "at least two are needed"});
+  WritePhoto(capture / "photos/p0.png", gray);
+  ExpectUserError(capture, {"found the board in none of the 6 photographs", "photos/p0.png"});
+}
+
+TEST_F(CalibProgram, LeavesOutAPhotoWithoutTheBoardAndSaysSo) {
+  const fs::path capture = Copy("onewithout");
+  WritePhoto(capture / "photos/p2.png", {640, 480, std::vector<unsigned char>(640 * 480, 120)});
+  const Result result = Calibrate(capture);
+  EXPECT_EQ(result.code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("left out: photos/p2.png"));
+  EXPECT_EQ(ReadCalibration(capture / "glint/calib/manifest.json").photos.size(), 5u);
+}
+
+TEST_F(CalibProgram, SaysThatTheBoardIsAnother) {
+  const fs::path capture = Copy("otherboard", true);
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = kCaptureToml;
+    text.replace(text.find(from), from.size(), to);
+    WriteText(capture / "capture.toml", text);
+  };
+  with("[8, 6]", "[6, 8]");
+  ExpectUserError(capture, {"board: found a board that does not fit", "6 x 8 squares"});
+  with("[8, 6]", "[5, 4]");
+  ExpectUserError(capture, {"ids up to 23"});
+  with("marker_mm = 12", "marker_mm = 16");
+  ExpectUserError(capture, {"correct marker_mm"});
+  with("DICT_5X5_100", "DICT_6X6_250");
+  ExpectUserError(capture, {"found the board in none", "markers of DICT_5X5"});
+}
+
+TEST_F(CalibProgram, NamesAPhotoOfAnotherSize) {
+  const fs::path capture = Copy("othersize", true);
+  GrayImage small = TakePhoto(3);
+  int factor = 1;
+  small = Reduced(small, 320, &factor);
+  WritePhoto(capture / "photos/p3.png", small);
+  ExpectUserError(capture, {"photos/p3.png: size: found 320x240 pixels", "640x480"});
+}
+
+TEST_F(CalibProgram, RefusesPhotosThatAllLookStraightDown) {
+  const fs::path capture = Copy("flat", true);
+  for (int i = 0; i < 6; ++i) {
+    WritePhoto(capture / "photos" / ("p" + std::to_string(i) + ".png"), TakePhoto(i, 0));
+  }
+  ExpectUserError(capture, {"capture.toml", "6 photographs", "tilt the phone"});
+  // The intrinsics of the good capture mend that.
+  Calibrate(root_ / "good");
+  const Result result =
+      Calibrate(capture, "--fix-intrinsics " + (root_ / "good/glint/calib/manifest.json").string());
+  EXPECT_EQ(result.code, 0) << result.output;
+}
+
+TEST_F(CalibProgram, NamesABadPhotoAndMissingTables) {
+  const fs::path capture = Copy("badphoto", true);
+  WriteText(capture / "photos/p4.png", "this is no picture");
+  ExpectUserError(capture, {"photos/p4.png"});
+  WriteText(capture / "capture.toml",
+            "[sample]\nsize_mm = [40, 40]\n[photos]\nfiles = \"photos/*.png\"\n");
+  ExpectUserError(capture, {"capture.toml", "board"});
+}
+
+TEST_F(CalibProgram, RefusesUnknownParametersToHold) {
+  const fs::path capture = Copy("hold");
+  ExpectUserError(capture, {"hold", "k9", "OPENCV"}, "--hold k9");
+}
+
+}  // namespace
+}  // namespace glint
