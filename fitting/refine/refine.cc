@@ -74,6 +74,8 @@ class Refiner {
   void SolveFromStarts();
   void SolveFromNeighbours(int colour);
   void Conclude();
+  void ConcludeTexel(size_t texel, Worker* worker);
+  size_t SumColumns() const { return 1 + 2 * problem_.views.size(); }
 
   void ForEachTexel(const std::function<void(size_t texel, Worker* worker)>& visit);
   TexelSolution Current(size_t texel, const TexelPrior& prior, Worker* worker);
@@ -92,10 +94,12 @@ class Refiner {
   std::vector<std::unique_ptr<Worker>> workers_;
   PriorWeights weights_;
   RefineResult result_;
-  enum Origin : unsigned char { kConverged = 1, kOtherStart = 2, kNeighbour = 4 };
+  enum Origin : unsigned char { kConverged = 1, kOtherStart = 2, kNeighbour = 4, kConcluded = 8 };
   std::vector<unsigned char> origin_;
-  std::vector<float> cost_;          // of the texels as they stand, prior included
-  std::vector<double> start_costs_;  // sums by piece
+  std::vector<float> cost_;  // of the texels as they stand, prior included
+  // Sums by piece, added up in the pieces' order.
+  std::vector<double> start_costs_;
+  std::vector<double> sums_;  // cost, then log differences and their number by view
 };
 
 Refiner::Refiner(const RefineProblem& problem, const SvbrdfMaps& start,
@@ -118,7 +122,9 @@ Refiner::Refiner(const RefineProblem& problem, const SvbrdfMaps& start,
   result_.confidence.assign(start.texels() * kConfidencePlanes, 0.0f);
   origin_.assign(start.texels(), 0);
   cost_.assign(start.texels(), 0.0f);
-  start_costs_.assign((start.texels() + kTexelsPerPiece - 1) / kTexelsPerPiece, 0.0);
+  const size_t pieces = (start.texels() + kTexelsPerPiece - 1) / kTexelsPerPiece;
+  start_costs_.assign(pieces, 0.0);
+  sums_.assign(pieces * SumColumns(), 0.0);
 }
 
 void Refiner::ForEachTexel(const std::function<void(size_t, Worker*)>& visit) {
@@ -186,6 +192,7 @@ void Refiner::SolveFromStarts() {
     GatherObservations(problem_, texel, &worker->observations);
     if (worker->observations.views() == 0) {
       origin_[texel] = kConverged;  // nothing to learn: the start stays
+      ConcludeTexel(texel, worker);
       return;
     }
     const TexelValues start = ReadTexel(start_, texel);
@@ -194,6 +201,10 @@ void Refiner::SolveFromStarts() {
     start_costs_[texel / kTexelsPerPiece] += found.start_cost;
     if (found.other_start) origin_[texel] |= kOtherStart;
     Keep(texel, found.solution);
+    // Neighbours are not asked where noise explains all: such texels are done.
+    if (!worker->search.Unexplained(worker->observations.views(), found.solution.cost)) {
+      ConcludeTexel(texel, worker);
+    }
   });
 }
 
@@ -227,44 +238,50 @@ void Refiner::SolveFromNeighbours(int colour) {
   });
 }
 
-void Refiner::Conclude() {
+// Confidence and the texel's share of the summary, from the observations that `worker` holds.
+void Refiner::ConcludeTexel(size_t texel, Worker* worker) {
+  origin_[texel] |= kConcluded;
   const size_t texels = start_.texels();
   const size_t views = problem_.views.size();
-  // Sums by piece, added in the pieces' order.
-  const size_t pieces = (texels + kTexelsPerPiece - 1) / kTexelsPerPiece;
-  const size_t columns = 1 + 2 * views;
+  const TexelValues values = ReadTexel(result_.maps, texel);
+  const TexelValues start = ReadTexel(start_, texel);
   // The start is believed as far as its expected errors say: not held harder, as the fit does.
   const PriorWeights believed =
       options_.prior > 0.0 ? BelieveStart(result_.summary.residual_sigma, {}) : PriorWeights{};
-  std::vector<double> sums(pieces * columns, 0.0);
-  ForEachTexel([&](size_t texel, Worker* worker) {
-    GatherObservations(problem_, texel, &worker->observations);
-    const TexelValues values = ReadTexel(result_.maps, texel);
-    const TexelValues start = ReadTexel(start_, texel);
-    TexelGram gram;
-    worker->search.solver().Gram(worker->observations, TexelPrior({}, start), values, &gram);
-    const double squares = gram[kTexelParameters][kTexelParameters];
-    TexelPrior(believed, values).AddTo(values, &gram);
-    const auto planes = TexelConfidence(gram, values, 3 * worker->observations.views(),
-                                        result_.summary.residual_sigma);
-    for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];
+  TexelGram gram;
+  worker->search.solver().Gram(worker->observations, TexelPrior({}, start), values, &gram);
+  const double squares = gram[kTexelParameters][kTexelParameters];
+  TexelPrior(believed, values).AddTo(values, &gram);
+  const auto planes = TexelConfidence(gram, values, 3 * worker->observations.views(),
+                                      result_.summary.residual_sigma);
+  for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];
 
-    double* sum = &sums[texel / kTexelsPerPiece * columns];
-    sum[0] += 0.5 * (squares + TexelPrior(weights_, start).SquaredNorm(values));
-    const KernelRows& rows = worker->search.solver().rows();
-    int row = 0;
-    for (size_t v = 0; v < views; ++v) {
-      if (!(problem_.views[v].mask[texel] >= 0.5f)) continue;
-      for (int c = 0; c < 3; ++c) {
-        sum[1 + v] +=
-            std::abs(LogResidual(rows.row(c, KernelRows::kResidual)[row], kernel_.robust_scale));
-      }
-      sum[1 + views + v] += 3.0;
-      ++row;
+  double* sum = &sums_[texel / kTexelsPerPiece * SumColumns()];
+  sum[0] += 0.5 * (squares + TexelPrior(weights_, start).SquaredNorm(values));
+  const KernelRows& rows = worker->search.solver().rows();
+  int row = 0;
+  for (size_t v = 0; v < views; ++v) {
+    if (!(problem_.views[v].mask[texel] >= 0.5f)) continue;
+    for (int c = 0; c < 3; ++c) {
+      sum[1 + v] +=
+          std::abs(LogResidual(rows.row(c, KernelRows::kResidual)[row], kernel_.robust_scale));
     }
+    sum[1 + views + v] += 3.0;
+    ++row;
+  }
+}
+
+void Refiner::Conclude() {
+  const size_t texels = start_.texels();
+  const size_t views = problem_.views.size();
+  ForEachTexel([&](size_t texel, Worker* worker) {
+    if (origin_[texel] & kConcluded) return;
+    GatherObservations(problem_, texel, &worker->observations);
+    ConcludeTexel(texel, worker);
   });
+  const size_t columns = SumColumns();
   std::vector<double> total(columns, 0.0);
-  for (size_t i = 0; i < sums.size(); ++i) total[i % columns] += sums[i];
+  for (size_t i = 0; i < sums_.size(); ++i) total[i % columns] += sums_[i];
   RefineSummary& summary = result_.summary;
   for (const double cost : start_costs_) summary.start_cost += cost;
   summary.start_cost /= static_cast<double>(texels);

@@ -327,6 +327,14 @@ double SolveInUnitSquare(const AlbedoSums& q, double* a, double* b) {
   return best;
 }
 
+GLINT_VECTOR_CLONES
+void TakeAllLogarithms(int count, double* __restrict values, double* __restrict inverses) {
+  for (int i = 0; i < count; ++i) {
+    inverses[i] = 1.0 / values[i];
+    values[i] = Log(values[i]);
+  }
+}
+
 }  // namespace
 
 KernelRows::KernelRows(int most_views)
@@ -336,6 +344,10 @@ KernelRows::KernelRows(int most_views)
   const auto address = reinterpret_cast<std::uintptr_t>(storage_.data());
   const std::uintptr_t aligned = (address + kAlignment - 1) / kAlignment * kAlignment;
   rows_ = storage_.data() + (aligned - address) / sizeof(double);
+}
+
+void TakeLogarithms(int count, double* values, double* inverses) {
+  TakeAllLogarithms(count, values, inverses);
 }
 
 void EvaluateRows(const KernelOptions& options, const TexelObservations& observations,

@@ -68,6 +68,10 @@ class KernelRows {
   double* rows_;
 };
 
+// Replaces `values` (> 0, `count` a multiple of kLanes, aligned as the observations are) by their
+// logarithms, and writes their inverses.
+void TakeLogarithms(int count, double* values, double* inverses);
+
 // Residuals and derivatives of every view and channel into `rows`.
 void EvaluateRows(const KernelOptions& options, const TexelObservations& observations,
                   const TexelValues& texel, KernelRows* rows);

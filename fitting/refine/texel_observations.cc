@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "fitting/refine/texel_kernel.h"
+
 namespace glint {
 namespace {
 
@@ -32,8 +34,7 @@ void TexelObservations::Add(const TexelGeometry<double>& geometry, const double 
     plane(kHalfX + i)[v] = geometry.half[i];
     plane(kIrradiance + i)[v] = geometry.irradiance[i];
     plane(kAmbient + i)[v] = geometry.ambient[i];
-    plane(kLogTarget + i)[v] = std::log(radiance[i] + kLogOffset);
-    plane(kInverseTarget + i)[v] = 1.0 / (radiance[i] + kLogOffset);
+    plane(kLogTarget + i)[v] = radiance[i] + kLogOffset;
     plane(kCeiling + i)[v] = clipped[i] ? 0.0 : kNoCeiling;
   }
   plane(kFresnel)[v] = geometry.fresnel;
@@ -46,6 +47,10 @@ void TexelObservations::Finish() {
     for (int p = 0; p < kPlanes; ++p) plane(p)[v] = 0.0;
     // Any geometry that keeps the arithmetic finite.
     plane(kLightZ)[v] = plane(kCameraZ)[v] = plane(kHalfZ)[v] = 1.0;
+    for (int c = 0; c < 3; ++c) plane(kLogTarget + c)[v] = 1.0;
+  }
+  for (int c = 0; c < 3; ++c) {
+    TakeLogarithms(padded_, plane(kLogTarget + c), plane(kInverseTarget + c));
   }
 }
 

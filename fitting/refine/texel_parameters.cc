@@ -64,7 +64,7 @@ TexelValues ReadTexel(const SvbrdfMaps& maps, size_t texel) {
   TexelValues values;
   const double z = std::max(at(kNormalZ), 1e-3);
   double x = at(kNormalX) / z, y = at(kNormalY) / z;
-  const double slope = std::hypot(x, y);
+  const double slope = std::sqrt(x * x + y * y);
   if (slope > kMostSlope) {
     x *= kMostSlope / slope;
     y *= kMostSlope / slope;
