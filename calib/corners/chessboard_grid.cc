@@ -58,12 +58,6 @@ bool FindChessboardGrid(const GrayImage& image, int columns, int rows, int longe
     return cv::findChessboardCornersSB(picture, size, points, cv::CALIB_CB_NORMALIZE_IMAGE);
   };
   if (Tried(exact) && accept(GridFrom(points, columns, rows, whole, factor))) return true;
-  const auto quads = [&] {
-    return cv::findChessboardCorners(
-        picture, size, points,
-        cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK);
-  };
-  if (Tried(quads) && accept(GridFrom(points, columns, rows, whole, factor))) return true;
   for (const cv::Rect& part : Parts(picture.size())) {
     cv::Mat meta;
     const auto larger = [&] {
@@ -75,7 +69,13 @@ bool FindChessboardGrid(const GrayImage& image, int columns, int rows, int longe
     if (static_cast<size_t>(meta.cols) * meta.rows != points.size()) continue;
     if (accept(GridFrom(points, meta.cols, meta.rows, part, factor))) return true;
   }
-  return false;
+  // Slow where it fails, hence last.
+  const auto quads = [&] {
+    return cv::findChessboardCorners(
+        picture, size, points,
+        cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK);
+  };
+  return Tried(quads) && accept(GridFrom(points, columns, rows, whole, factor));
 }
 
 }  // namespace glint::corners

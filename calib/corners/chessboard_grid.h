@@ -17,8 +17,8 @@ struct SeenGrid {
 
 // Looks for grids, most likely ones first, until `accept` says that one is a checkerboard: one of
 // exactly columns × rows inner corners; the largest that the detector can make out in the picture,
-// and in overlapping parts of it, where something may hide the rest of the board. False: none
-// accepted.
+// and in overlapping parts of it, where something may hide the rest of the board; at last what
+// OpenCV's older detector finds. False: none accepted.
 bool FindChessboardGrid(const GrayImage& image, int columns, int rows, int longest_px,
                         const std::function<bool(const SeenGrid&)>& accept);
 
