@@ -20,8 +20,8 @@ namespace glint {
 struct ViewImages {
   View view;
   const float* rgb_linear_planar = nullptr;
-  const float* mask = nullptr;  // height·width weights ≥ 0; null: all 1. Where 0, the photograph
-                                // may hold anything, NaN too.
+  const float* mask = nullptr;  // height·width weights ≥ 0; null: all 1. A texel with NaN in the
+                                // photograph counts as masked out.
 };
 
 struct LogLossOptions {

@@ -137,7 +137,6 @@ GLINT_INLINE void CompareVector(const Job<T>& job, const View<T>& view, const Pl
                                 const Texels<T>& target_texels, const Directions<T>& d,
                                 const Shading<T>& s, VectorOf<T>* by_image, VectorOf<T>* sums) {
   using V = VectorOf<T>;
-  const V zero = V{};
   V weight = Broadcast(T(1));
   if (view.mask != nullptr) {
     weight = Load(view.mask + place.texel, place.count);
@@ -153,13 +152,14 @@ GLINT_INLINE void CompareVector(const Job<T>& job, const View<T>& view, const Pl
     }
   } else {
     LoadImage(job, view.image, place, target);
+    // Nothing is known where the image is not a number; Compare takes that as 0.
+    for (int c = 0; c < 3; ++c) weight = target[c] == target[c] ? weight : V{};
   }
   for (int c = 0; c < 3; ++c) rendered[c] = Radiance(view, d, s, c);
   const LogDifference<T> difference = Compare(job, rendered, target);
-  // Choices, and not only products, as the image may hold NaN where the weight is 0.
-  sums[0] += weight > zero ? difference.value * weight : zero;
+  sums[0] += difference.value * weight;
   sums[1] += weight;
-  for (int c = 0; c < 3; ++c) by_image[c] = weight > zero ? difference.slope[c] * weight : zero;
+  for (int c = 0; c < 3; ++c) by_image[c] = difference.slope[c] * weight;
 }
 
 // Modes without a gradient, in one view of a chunk that starts at index `first` of the planes.
