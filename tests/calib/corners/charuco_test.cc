@@ -12,7 +12,11 @@
 namespace glint {
 namespace {
 
+using testing::Charuco;
+using testing::Checkerboard;
+using testing::Errors;
 using testing::LookAt;
+using testing::PhoneCamera;
 using testing::Photograph;
 using testing::PhotoSettings;
 
