@@ -3,8 +3,8 @@
 //   loss = Σ mask·|log(I + 0.01) − log(R + 0.01)| / (3·Σ mask)    over texels, views and channels
 //
 // (Gao et al. 2019, eq. 2), with I the photograph and R the rendering, clamped to [0, 1] for
-// low-dynamic-range photographs and below at 0 always. No rendering is stored: memory does not grow
-// with the number of views (but for a few sums per view).
+// low-dynamic-range photographs and below at 0 always (radiances above 1e12 count as 1e12). No
+// rendering is stored: memory does not grow with the number of views (but for a few sums per view).
 #pragma once
 
 #include <span>
