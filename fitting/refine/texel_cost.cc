@@ -13,23 +13,23 @@ void FactorGram(const TexelGram& gram, TexelGram* factor) {
   for (int i = 0; i < kGramSize; ++i) {
     for (int j = i; j < kGramSize; ++j) f[i][j] = gram[i][j];
   }
+  // LDLᵀ first, then all square roots at once: they do not wait for each other.
+  double scale[kGramSize];
   for (int k = 0; k < kGramSize; ++k) {
     const double pivot = f[k][k];
-    if (!(pivot > kRankTolerance * gram[k][k])) {
-      // The last pivot is the squared residual that no step can remove: zero at an exact fit.
-      for (int j = k; j < kGramSize; ++j) f[k][j] = 0.0;
-      continue;
-    }
-    const double root = std::sqrt(pivot);
-    const double inverse = 1.0 / root;
-    f[k][k] = root;
-    for (int j = k + 1; j < kGramSize; ++j) f[k][j] *= inverse;
+    // The last pivot is the squared residual that no step can remove: zero at an exact fit.
+    const bool usable = pivot > kRankTolerance * gram[k][k];
+    scale[k] = usable ? 1.0 / pivot : 0.0;
     // Rows of other channels' albedos have nothing in common with this one.
     const int first = k < kRough ? (k % 2 == 0 ? k + 1 : kRough) : k + 1;
     for (int i = first; i < kGramSize; i = i < kRough ? static_cast<int>(kRough) : i + 1) {
-      const double across = f[k][i];
+      const double across = f[k][i] * scale[k];
       for (int j = i; j < kGramSize; ++j) f[i][j] -= across * f[k][j];
     }
+  }
+  for (int k = 0; k < kGramSize; ++k) {
+    const double root = std::sqrt(scale[k]);
+    for (int j = k; j < kGramSize; ++j) f[k][j] *= root;
   }
 }
 

@@ -1,5 +1,6 @@
 #include "fitting/refine/texel_kernel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -99,9 +100,12 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_al
     const double t_free = 1.0 + nh * nh * (alpha2 - 1.0);
     const double t = t_free > kDenominatorClamp ? t_free : kDenominatorClamp;
     const double t_on = t_free > kDenominatorClamp ? 1.0 : 0.0;
-    const double inverse_t = 1.0 / t;
-    const double inverse_a = 1.0 / (nl * one_minus_k + k);
-    const double inverse_b = 1.0 / (nv * one_minus_k + k);
+    const double a = nl * one_minus_k + k;
+    const double b = nv * one_minus_k + k;
+    const double inverse = 1.0 / (t * a * b);  // one division for three
+    const double inverse_t = inverse * a * b;
+    const double inverse_a = inverse * t * b;
+    const double inverse_b = inverse * t * a;
     const double ratio = alpha * inverse_t;
     const double p = (0.25 * kInversePi) * inverse_a * inverse_b;
     const double s_per_nl = ratio * ratio * p;
@@ -174,10 +178,13 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_al
     const double on = free < ceiling[v] ? 1.0 : 0.0;
     const double scaled = error * inverse_scale;
     const double root = std::sqrt(1.0 + scaled * scaled);
-    const double shrink = std::sqrt(2.0 / (1.0 + root));
+    // One division serves 2/(1 + root) and 1/(root·(R + 0.01)).
+    const double above = 1.0 + root, below = root * offset_radiance;
+    const double inverse = 1.0 / (above * below);
+    const double shrink = std::sqrt(2.0 * below * inverse);
     residual[v] = weight[v] * (error * shrink);
-    // g'(e) = 1/(root·shrink), and ∂e/∂R = 1/(R + 0.01)
-    const double chain = weight[v] * on / (root * shrink * offset_radiance);
+    // g'(e) = 1/(root·shrink) = shrink·(1 + root)/(2·root), and ∂e/∂R = 1/(R + 0.01)
+    const double chain = weight[v] * on * (0.5 * shrink * above * above * inverse);
 
     const double diffuse_normal = e * lobe;
     const double specular_normal = e * f;
@@ -190,16 +197,31 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_al
 }
 
 [[gnu::always_inline]] inline double Sum(const Lanes& lanes) {
-  return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) +
-         ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
+  using Half = double __attribute__((vector_size(4 * sizeof(double))));
+  using Quarter = double __attribute__((vector_size(2 * sizeof(double))));
+  const Half half = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) +
+                    __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+  const Quarter quarter =
+      __builtin_shufflevector(half, half, 0, 1) + __builtin_shufflevector(half, half, 2, 3);
+  return quarter[0] + quarter[1];
 }
 
-// The upper triangle of one channel's rows times themselves.
+// Products of the rows that one channel has for itself with all its rows, and of the others among
+// themselves, which add up over the channels. Upper triangles, row by row.
+constexpr int kOwnRows = 2;  // by the channel's diffuse and specular albedo
+constexpr int kOwnProducts = 6 + 5;
+constexpr int kSharedProducts = 4 + 3 + 2 + 1;
+struct Products {
+  double own[3][kOwnProducts];
+  double shared[kSharedProducts];
+};
+
 [[gnu::always_inline]] inline void AccumulateChannel(const KernelRows& rows, int channel, int views,
-                                                     double products[21]) {
+                                                     double own_sums[kOwnProducts],
+                                                     Lanes shared[kSharedProducts]) {
   constexpr int kRows = KernelRows::kRows;
-  Lanes sums[21];
-  for (auto& sum : sums) sum = Lanes{};
+  Lanes own[kOwnProducts];
+  for (auto& sum : own) sum = Lanes{};
   const double* base = rows.row(channel, 0);
   const std::ptrdiff_t stride = rows.row(channel, 1) - base;
   for (int v = 0; v < views; v += kLanes) {
@@ -211,21 +233,31 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_al
     int next = 0;
 #pragma GCC unroll 6
     for (int a = 0; a < kRows; ++a) {
+      if (a == kOwnRows) next = 0;
 #pragma GCC unroll 6
-      for (int b = a; b < kRows; ++b) sums[next++] += values[a] * values[b];
+      for (int b = a; b < kRows; ++b) {
+        (a < kOwnRows ? own : shared)[next++] += values[a] * values[b];
+      }
     }
   }
-  for (int i = 0; i < 21; ++i) products[i] = Sum(sums[i]);
+  for (int i = 0; i < kOwnProducts; ++i) own_sums[i] = Sum(own[i]);
 }
 
-void AddChannelToGram(const double products[21], int channel, TexelGram* gram) {
-  // The rows stand in the order of the parameters.
-  const int place[KernelRows::kRows] = {
-      DiffuseParameter(channel), SpecularParameter(channel), kRough, kSlopeX, kSlopeY,
-      kTexelParameters};
-  int next = 0;
-  for (int a = 0; a < KernelRows::kRows; ++a) {
-    for (int b = a; b < KernelRows::kRows; ++b) (*gram)[place[a]][place[b]] += products[next++];
+// The rows stand in the order of the parameters.
+void FillGram(const Products& products, TexelGram* gram) {
+  for (auto& row : *gram) row.fill(0.0);
+  for (int c = 0; c < 3; ++c) {
+    const double* from = products.own[c];
+    const int d = DiffuseParameter(c), s = SpecularParameter(c);
+    (*gram)[d][d] = from[0];
+    (*gram)[d][s] = from[1];
+    std::copy_n(from + 2, kGramSize - kRough, (*gram)[d].begin() + kRough);
+    (*gram)[s][s] = from[6];
+    std::copy_n(from + 7, kGramSize - kRough, (*gram)[s].begin() + kRough);
+  }
+  const double* from = products.shared;
+  for (int a = kRough; a < kGramSize; from += kGramSize - a, ++a) {
+    std::copy_n(from, kGramSize - a, (*gram)[a].begin() + a);
   }
 }
 
@@ -238,12 +270,15 @@ void EvaluateAllRows(const KernelOptions& options, const TexelObservations& obse
 
 GLINT_VECTOR_CLONES
 void EvaluateProducts(const KernelOptions& options, const TexelObservations& observations,
-                      const TexelValues& texel, KernelRows* rows, double products[3][21]) {
+                      const TexelValues& texel, KernelRows* rows, Products* products) {
+  Lanes shared[kSharedProducts];
+  for (auto& sum : shared) sum = Lanes{};
   EvaluateLobes(observations, texel, rows);
   for (int c = 0; c < 3; ++c) {
     EvaluateChannel(options, observations, texel, c, rows);
-    AccumulateChannel(*rows, c, observations.padded_views(), products[c]);
+    AccumulateChannel(*rows, c, observations.padded_views(), products->own[c], shared);
   }
+  for (int i = 0; i < kSharedProducts; ++i) products->shared[i] = Sum(shared[i]);
 }
 
 // Sums over the views of one channel for FitAlbedos: the model is C + k_d·A + k_s·B.
@@ -357,10 +392,9 @@ void EvaluateRows(const KernelOptions& options, const TexelObservations& observa
 
 void EvaluateGram(const KernelOptions& options, const TexelObservations& observations,
                   const TexelValues& texel, KernelRows* rows, TexelGram* gram) {
-  double products[3][21];
-  EvaluateProducts(options, observations, texel, rows, products);
-  for (auto& row : *gram) row.fill(0.0);
-  for (int c = 0; c < 3; ++c) AddChannelToGram(products[c], c, gram);
+  Products products;
+  EvaluateProducts(options, observations, texel, rows, &products);
+  FillGram(products, gram);
 }
 
 double LogResidual(double residual, double robust_scale) {

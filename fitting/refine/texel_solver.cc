@@ -19,21 +19,21 @@ class NormalCholesky {
   using Matrix = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
   using Vector = Eigen::Matrix<double, kTexelParameters, 1>;
 
+  // matrix = Lᵀ·D·L with L unit upper triangular here: no square roots in the chain of pivots.
   void compute(const Matrix& matrix) {
     constexpr int n = kTexelParameters;
     for (int i = 0; i < n; ++i) {
       for (int j = i; j < n; ++j) factor_[i][j] = matrix(j, i);
     }
     for (int k = 0; k < n; ++k) {
-      // The damping keeps pivots positive; a NaN or a rounded-off pivot makes a step of NaN, which
-      // the solver rejects.
-      const double inverse = 1.0 / std::sqrt(factor_[k][k]);
+      // The damping keeps pivots positive; a pivot lost to rounding makes a step of NaN, which the
+      // solver rejects.
+      const double inverse = 1.0 / factor_[k][k];
       inverse_[k] = inverse;
-      for (int j = k + 1; j < n; ++j) factor_[k][j] *= inverse;
       // Rows of other channels' albedos have nothing in common with this one.
       const int first = k < kRough ? (k % 2 == 0 ? k + 1 : kRough) : k + 1;
       for (int i = first; i < n; i = i < kRough ? static_cast<int>(kRough) : i + 1) {
-        const double across = factor_[k][i];
+        const double across = factor_[k][i] * inverse;
         for (int j = i; j < n; ++j) factor_[i][j] -= across * factor_[k][j];
       }
     }
@@ -43,11 +43,17 @@ class NormalCholesky {
     constexpr int n = kTexelParameters;
     Vector x = right;
     for (int i = 0; i < n; ++i) {
-      x[i] *= inverse_[i];
-      for (int j = i + 1; j < n; ++j) x[j] -= factor_[i][j] * x[i];
+      const double scaled = x[i] * inverse_[i];
+      const int first = i < kRough ? (i % 2 == 0 ? i + 1 : kRough) : i + 1;
+      for (int j = first; j < n; j = j < kRough ? static_cast<int>(kRough) : j + 1) {
+        x[j] -= factor_[i][j] * scaled;
+      }
     }
     for (int i = n - 1; i >= 0; --i) {
-      for (int j = i + 1; j < n; ++j) x[i] -= factor_[i][j] * x[j];
+      const int first = i < kRough ? (i % 2 == 0 ? i + 1 : kRough) : i + 1;
+      for (int j = first; j < n; j = j < kRough ? static_cast<int>(kRough) : j + 1) {
+        x[i] -= factor_[i][j] * x[j];
+      }
       x[i] *= inverse_[i];
     }
     return x;
