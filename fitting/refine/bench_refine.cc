@@ -22,9 +22,9 @@
 namespace glint {
 namespace {
 
-constexpr int kSize = 64;
+constexpr int kSize = 128;
 constexpr int kViews = 20;
-constexpr int kRounds = 5;
+constexpr int kRounds = 3;
 
 // CPU time of this thread: other work on the machine does not count.
 double Now() {

@@ -103,11 +103,12 @@ void TexelSearch::TryRoughnesses(const TexelObservations& observations, const Te
 TexelSearch::Found TexelSearch::FromStart(const TexelObservations& observations,
                                           const TexelPrior& prior, const TexelValues& start) {
   Found best;
-  best.solution.values = start;
-  best.solution.cost = solver_.Cost(observations, prior, start);
-  best.solution.converged = true;
-  best.start_cost = best.solution.cost;
-  TrySolve(observations, prior, start, &best.solution);
+  best.solution = solver_.Solve(observations, prior, start);
+  best.start_cost = best.solution.start_cost;
+  if (!(best.solution.cost < best.start_cost)) {
+    best.solution.values = start;
+    best.solution.cost = best.start_cost;
+  }
   if (starts_ > 1 && Unexplained(observations.views(), best.solution.cost)) {
     TryRoughnesses(observations, prior, &best);
   }

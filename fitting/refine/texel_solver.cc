@@ -122,11 +122,18 @@ TexelSolution TexelSolver::Solve(const TexelObservations& observations, const Te
   const TexelCost cost(state_->options, observations, prior, &state_->rows);
   Solver::Parameters variables;
   ToVariables(start, variables.data());
-  const Solver::Summary& summary = state_->solver.Solve(cost, &variables);
   TexelSolution solution;
   TexelValues derivatives;
+  // Starts at a bound are moved off it, where the variables have a slope.
+  ToTexelValues(variables.data(), &solution.values, &derivatives);
+  bool moved = false;
+  for (int i = 0; i < kTexelParameters; ++i) {
+    moved = moved || std::abs(solution.values[i] - start[i]) > 1e-12;
+  }
+  const Solver::Summary& summary = state_->solver.Solve(cost, &variables);
   ToTexelValues(variables.data(), &solution.values, &derivatives);
   solution.cost = summary.final_cost;
+  solution.start_cost = moved ? Cost(observations, prior, start) : summary.initial_cost;
   solution.iterations = summary.iterations;
   solution.converged = summary.status != Solver::HIT_MAX_ITERATIONS;
   return solution;

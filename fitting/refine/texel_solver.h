@@ -10,7 +10,8 @@ namespace glint {
 
 struct TexelSolution {
   TexelValues values{};
-  double cost = 0;  // half the sum of squared residuals, prior included
+  double start_cost = 0;  // of the start as it was given
+  double cost = 0;        // half the sum of squared residuals, prior included
   int iterations = 0;
   bool converged = false;
 };
