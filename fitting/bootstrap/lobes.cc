@@ -14,7 +14,6 @@ constexpr int kBins = 28;
 constexpr double kBinDegrees = 2.5;
 constexpr int kMinInBin = 12;
 constexpr size_t kMaxSamples = 60'000;
-constexpr float kClipped = 0.99f;
 constexpr std::array<double, 12> kRoughness{0.12, 0.17, 0.22, 0.27, 0.32, 0.38,
                                             0.44, 0.5,  0.58, 0.66, 0.76, 0.88};
 constexpr double kTypicalRoughness = 0.38;
@@ -33,7 +32,6 @@ void Collect(const PhotographSet& set, const Photograph& photo, size_t stride,
   for (size_t i = stride / 2; i < texels; i += stride) {
     if (photo.mask[i] < 0.5f) continue;
     const float rgb[3] = {photo.rgb[i], photo.rgb[texels + i], photo.rgb[2 * texels + i]};
-    if (photo.ldr && std::max({rgb[0], rgb[1], rgb[2]}) >= kClipped) continue;
     const int row = static_cast<int>(i / set.plane.width);
     const int column = static_cast<int>(i % set.plane.width);
     const TexelGeometry<double> g =

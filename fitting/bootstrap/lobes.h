@@ -17,8 +17,9 @@ struct GlobalLobes {
 // angle between normal and half vector (medians, so that texture and scratches average out), and
 // k_d/π + D·G·F/(4·NoL·NoV) is fitted to them for a list of roughnesses; among fits of similar
 // residual a moderate roughness wins, since a start too rough with too little specular is a minimum
-// that fitting does not leave (Gao et al. 2019, Fig. 16). Clipped texels of LDR photographs are left
-// out. Angles that were not seen leave the defaults above.
+// that fitting does not leave (Gao et al. 2019, Fig. 16). Clipped texels count with the value they
+// have: too little, but left out they would take every sharp highlight with them. Angles that were
+// not seen leave the defaults above.
 GlobalLobes FitGlobalLobes(const PhotographSet& set);
 
 }  // namespace glint

@@ -47,6 +47,7 @@ PhotographSet Load(const RectifiedSet& set, const std::vector<RectifiedView>& vi
   photographs.light_power_known = set.light_power_known;
   for (const RectifiedView& view : views) {
     RectifiedImage image = ReadRectifiedImage(set, view);
+    AdmitClippedTexels(view, &image);
     photographs.photographs.push_back(
         {view.view, view.ldr, std::move(image.rgb), std::move(image.mask)});
   }

@@ -41,6 +41,7 @@ LoadedPhotographs Load(const RectifiedSet& set, const std::vector<RectifiedView>
   loaded.problem.convention = convention;
   for (const RectifiedView& view : views) {
     loaded.images.push_back(ReadRectifiedImage(set, view));
+    AdmitClippedTexels(view, &loaded.images.back());
     const RectifiedImage& image = loaded.images.back();
     RefineView& added = loaded.problem.views.emplace_back();
     added.view = view.view;

@@ -155,6 +155,17 @@ RectifiedImage ReadRectifiedImage(const RectifiedSet& set, const RectifiedView& 
   return result;
 }
 
+void AdmitClippedTexels(const RectifiedView& view, RectifiedImage* image) {
+  if (!view.ldr) return;
+  constexpr float kClipped = 0.99f;
+  const size_t texels = image->mask.size();
+  for (size_t i = 0; i < texels; ++i) {
+    const float brightest =
+        std::max({image->rgb[i], image->rgb[texels + i], image->rgb[2 * texels + i]});
+    if (brightest >= kClipped) image->mask[i] = 1.0f;
+  }
+}
+
 void WriteRectifiedImage(const std::filesystem::path& file, const RectifiedImage& rectified,
                          const RectifiedSet& set) {
   Image image(rectified.width, rectified.height, {"R", "G", "B", "mask.Y"});
