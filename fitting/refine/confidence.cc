@@ -20,7 +20,7 @@ void InvertFactor(const TexelGram& matrix, TexelGram* inverse) {
     for (int i = j - 1; i >= 0; --i) {
       double sum = 0.0;
       for (int k = i + 1; k <= j; ++k) sum += factor[i][k] * (*inverse)[k][j];
-      (*inverse)[i][j] = -sum / factor[i][i];
+      (*inverse)[i][j] = -sum * (*inverse)[i][i];
     }
   }
 }

@@ -57,9 +57,12 @@ std::vector<int> CanonicalOrder(const std::vector<RefineView>& views) {
 // What one thread owns.
 struct Worker {
   Worker(const KernelOptions& options, const RefineOptions& refine, int views)
-      : observations(views), search(options, refine.iterations, views, refine.starts) {}
+      : observations(views),
+        search(options, refine.iterations, views, refine.starts),
+        differences(3 * static_cast<size_t>(views)) {}
   TexelObservations observations;
   TexelSearch search;
+  std::vector<double> differences;
 };
 
 // One refinement in progress.
@@ -259,13 +262,16 @@ void Refiner::ConcludeTexel(size_t texel, Worker* worker) {
   double* sum = &sums_[texel / kTexelsPerPiece * SumColumns()];
   sum[0] += 0.5 * (squares + TexelPrior(weights_, start).SquaredNorm(values));
   const KernelRows& rows = worker->search.solver().rows();
+  const int usable = worker->observations.views();
+  std::vector<double>& differences = worker->differences;
+  for (int c = 0; c < 3; ++c) {
+    LogDifferences(rows.row(c, KernelRows::kResidual), usable, kernel_.robust_scale,
+                   differences.data() + c * usable);
+  }
   int row = 0;
   for (size_t v = 0; v < views; ++v) {
     if (!(problem_.views[v].mask[texel] >= 0.5f)) continue;
-    for (int c = 0; c < 3; ++c) {
-      sum[1 + v] +=
-          std::abs(LogResidual(rows.row(c, KernelRows::kResidual)[row], kernel_.robust_scale));
-    }
+    for (int c = 0; c < 3; ++c) sum[1 + v] += differences[c * usable + row];
     sum[1 + views + v] += 3.0;
     ++row;
   }

@@ -397,10 +397,13 @@ void EvaluateGram(const KernelOptions& options, const TexelObservations& observa
   FillGram(products, gram);
 }
 
-double LogResidual(double residual, double robust_scale) {
+void LogDifferences(const double* residuals, int count, double robust_scale, double* differences) {
   // g² = 2δ²(√(1+t²) − 1)
-  const double s = 1.0 + 0.5 * residual * residual / (robust_scale * robust_scale);
-  return std::copysign(robust_scale * std::sqrt(s * s - 1.0), residual);
+  const double half_inverse = 0.5 / (robust_scale * robust_scale);
+  for (int i = 0; i < count; ++i) {
+    const double s = 1.0 + half_inverse * residuals[i] * residuals[i];
+    differences[i] = robust_scale * std::sqrt(s * s - 1.0);
+  }
 }
 
 AlbedoFit FitAlbedos(const KernelOptions& options, const TexelObservations& observations,

@@ -80,8 +80,8 @@ void EvaluateRows(const KernelOptions& options, const TexelObservations& observa
 void EvaluateGram(const KernelOptions& options, const TexelObservations& observations,
                   const TexelValues& texel, KernelRows* rows, TexelGram* gram);
 
-// The inverse of g: e for a residual g(e) of weight 1.
-double LogResidual(double residual, double robust_scale);
+// The inverse of g: |e| for `count` residuals g(e) of weight 1.
+void LogDifferences(const double* residuals, int count, double robust_scale, double* differences);
 
 // Albedos that fit the texel best with its normal and roughness as they are: per channel a 2×2
 // least squares of I + 0.01 relative to itself (the logarithm to first order), held toward the
