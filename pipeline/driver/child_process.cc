@@ -32,6 +32,10 @@ EnvironmentError CannotStart(const std::string& program, int error) {
                           "; check that Glint is installed completely");
 }
 
+// OpenMP's threads spin while they wait, unless told otherwise before the program starts; beside any
+// other load on the machine that made fitting six times slower (docs/experiments.md).
+void LetOpenMpWaitPassively() { ::setenv("OMP_WAIT_POLICY", "passive", 0); }
+
 // In the child, between fork and exec: only calls that are safe there.
 [[noreturn]] void BecomeChild(const ChildProcess& child, std::vector<char*>* arguments,
                               int stdout_descriptor, int error_descriptor, pid_t parent) {
@@ -89,6 +93,7 @@ struct Pipe {
 }  // namespace
 
 int RunChild(const ChildProcess& child) {
+  LetOpenMpWaitPassively();
   for (const auto& [name, value] : child.environment) ::setenv(name.c_str(), value.c_str(), 1);
   std::vector<char*> arguments = ArgumentVector(child.arguments);
   std::fflush(nullptr);
@@ -110,6 +115,7 @@ int RunChild(const ChildProcess& child) {
 }
 
 void ReplaceProcess(const std::vector<std::string>& arguments) {
+  LetOpenMpWaitPassively();
   std::vector<char*> vector = ArgumentVector(arguments);
   std::fflush(nullptr);
   ::execvp(vector.front(), vector.data());
