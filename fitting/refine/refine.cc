@@ -75,7 +75,7 @@ class Refiner {
  private:
   void EstimateNoise();
   void SolveFromStarts();
-  void SolveFromNeighbours(int colour);
+  void SolveFromNeighbours(int half_pass);
   void Conclude();
   void ConcludeTexel(size_t texel, Worker* worker);
   size_t SumColumns() const { return 1 + 2 * problem_.views.size(); }
@@ -99,7 +99,7 @@ class Refiner {
   RefineResult result_;
   enum Origin : unsigned char { kConverged = 1, kOtherStart = 2, kNeighbour = 4, kConcluded = 8 };
   std::vector<unsigned char> origin_;
-  std::vector<float> cost_;  // of the texels as they stand, prior included
+  std::vector<int> changed_;  // half pass in which a texel last changed; 0: its own start
   // Sums by piece, added up in the pieces' order.
   std::vector<double> start_costs_;
   std::vector<double> sums_;  // cost, then log differences and their number by view
@@ -124,7 +124,7 @@ Refiner::Refiner(const RefineProblem& problem, const SvbrdfMaps& start,
   result_.maps = start;
   result_.confidence.assign(start.texels() * kConfidencePlanes, 0.0f);
   origin_.assign(start.texels(), 0);
-  cost_.assign(start.texels(), 0.0f);
+  changed_.assign(start.texels(), 0);
   const size_t pieces = (start.texels() + kTexelsPerPiece - 1) / kTexelsPerPiece;
   start_costs_.assign(pieces, 0.0);
   sums_.assign(pieces * SumColumns(), 0.0);
@@ -184,7 +184,6 @@ TexelSolution Refiner::Current(size_t texel, const TexelPrior& prior, Worker* wo
 }
 
 void Refiner::Keep(size_t texel, const TexelSolution& solution) {
-  cost_[texel] = static_cast<float>(solution.cost);
   WriteTexel(solution.values, texel, &result_.maps);
   origin_[texel] = static_cast<unsigned char>((origin_[texel] & ~kConverged) |
                                               (solution.converged ? kConverged : 0));
@@ -212,31 +211,36 @@ void Refiner::SolveFromStarts() {
 }
 
 // One colour of the checkerboard: the neighbours of a texel all have the other, and stand still.
-void Refiner::SolveFromNeighbours(int colour) {
+// Half passes count from 1; later ones pass over texels round which nothing changed since.
+void Refiner::SolveFromNeighbours(int half_pass) {
   const int width = start_.width, height = start_.height;
+  const auto changed_since = [&](size_t texel) { return changed_[texel] >= half_pass - 2; };
   ForEachTexel([&](size_t texel, Worker* worker) {
     const int column = static_cast<int>(texel % width);
     const int row = static_cast<int>(texel / width);
-    if ((row + column) % 2 != colour) return;
-    if (!worker->search.Unexplained(1, cost_[texel])) return;
-    GatherObservations(problem_, texel, &worker->observations);
-    if (!worker->search.Unexplained(worker->observations.views(), cost_[texel])) return;
+    if ((row + column + half_pass) % 2 != 0 || (origin_[texel] & kConcluded)) return;
     std::array<TexelValues, 4> neighbours;
     size_t count = 0;
+    bool any_change = changed_since(texel);
     const auto add = [&](int r, int c) {
       if (r < 0 || r >= height || c < 0 || c >= width) return;
-      neighbours[count++] = ReadTexel(result_.maps, static_cast<size_t>(r) * width + c);
+      const size_t neighbour = static_cast<size_t>(r) * width + c;
+      any_change = any_change || changed_since(neighbour);
+      neighbours[count++] = ReadTexel(result_.maps, neighbour);
     };
     add(row - 1, column);
     add(row, column - 1);
     add(row, column + 1);
     add(row + 1, column);
+    if (!any_change) return;
+    GatherObservations(problem_, texel, &worker->observations);
     const TexelPrior prior(weights_, ReadTexel(start_, texel));
     const TexelSolution current = Current(texel, prior, worker);
     const TexelSearch::Found found = worker->search.FromNeighbours(
         worker->observations, prior, current, std::span(neighbours).first(count));
     if (!found.other_start) return;
     origin_[texel] |= kNeighbour;
+    changed_[texel] = half_pass;
     Keep(texel, found.solution);
   });
 }
@@ -309,10 +313,7 @@ void Refiner::Conclude() {
 RefineResult Refiner::Run() {
   EstimateNoise();
   SolveFromStarts();
-  for (int pass = 0; pass < options_.neighbour_passes; ++pass) {
-    SolveFromNeighbours(0);
-    SolveFromNeighbours(1);
-  }
+  for (int half = 1; half <= 2 * options_.neighbour_passes; ++half) SolveFromNeighbours(half);
   Conclude();
   return std::move(result_);
 }

@@ -13,7 +13,7 @@ constexpr std::array<double, 8> kRoughnesses = {0.07, 0.10, 0.14, 0.20, 0.28, 0.
 // Another start is worth a solve when it promises this much less cost; solutions that differ by
 // less are the same for every practical purpose.
 constexpr double kWorthwhile = 0.98;
-constexpr double kWorthStep = 0.03;  // gain of a step against one residual's noise
+constexpr double kWorthStep = 0.05;  // gain of a step against one residual's noise
 constexpr double kExplained = 1.5;   // squared residuals against noise alone
 
 }  // namespace
@@ -134,7 +134,8 @@ TexelSearch::Found TexelSearch::FromNeighbours(const TexelObservations& observat
   for (const TexelValues& neighbour : neighbours) {
     TexelValues values = current.values;
     values[kRough] = neighbour[kRough];
-    consider(values);
+    // A roughness as its own would only find the texel's own minimum again.
+    if (std::abs(std::log(neighbour[kRough] / current.values[kRough])) > 0.1) consider(values);
     values[kSlopeX] = neighbour[kSlopeX];
     values[kSlopeY] = neighbour[kSlopeY];
     consider(values);
