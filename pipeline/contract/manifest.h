@@ -11,8 +11,12 @@ namespace glint {
 
 inline constexpr int kManifestFormat = 1;
 
+// Before the name of an input that is no part of the capture (weights, say); run.json beside the
+// manifest says where it lay.
+inline constexpr char kOutsidePrefix[] = "outside:";
+
 struct ManifestInput {
-  std::string path;  // relative to the manifest's folder, '/' as separator
+  std::string path;  // relative to the manifest's folder, '/' as separator; or outside:NAME
   std::string hash;
 };
 

@@ -192,7 +192,8 @@ Json OptionSet::Echo(Invalidates which) const {
         [&](auto* target) {
           if constexpr (std::is_same_v<std::remove_pointer_t<decltype(target)>,
                                        std::filesystem::path>) {
-            echo[option.name] = target->generic_string();
+            // Where a file lies is no part of a result; its content is, among the inputs.
+            echo[option.name] = target->filename().generic_string();
           } else {
             echo[option.name] = *target;
           }

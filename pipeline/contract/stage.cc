@@ -71,6 +71,14 @@ bool IsImage(const std::string& name) {
   return extension == ".exr" || extension == ".png";
 }
 
+// Whether a file is no part of the capture whose stage folder CAPTURE/glint/STAGE is: its path from
+// there depends on where the capture lies.
+bool IsOutside(const fs::path& file, const fs::path& stage_folder) {
+  const fs::path capture = stage_folder.parent_path().parent_path();
+  const fs::path relative = file.lexically_relative(capture);
+  return relative.empty() || *relative.begin() == "..";
+}
+
 ManifestOutput Describe(const fs::path& folder, const std::string& name) {
   ManifestOutput output;
   output.path = name;
@@ -128,9 +136,12 @@ Stage::Stage(fs::path folder, StageInfo info, const OptionSet& options, const Co
       started_s_(Now_s()) {
   options_["seed"] = common.seed;
   for (const fs::path& input : inputs) {
-    // Relative to the stage's folder, so that a capture can be moved as a whole.
-    const fs::path relative = fs::absolute(input).lexically_normal().lexically_relative(folder_);
-    inputs_.push_back({relative.generic_string(), HashFile(input)});
+    const fs::path file = fs::absolute(input).lexically_normal();
+    const bool outside = IsOutside(file, folder_);
+    inputs_.push_back({outside ? kOutsidePrefix + file.filename().string()
+                               : file.lexically_relative(folder_).generic_string(),
+                       HashFile(input)});
+    if (outside) outside_inputs_.push_back(file.generic_string());
   }
   if (common.check) throw StageCheck{info_.name, WhyStale()};
   MakeFolder(folder_.parent_path());
@@ -195,11 +206,9 @@ void Stage::WriteRunFacts() const {
   std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &utc);
   char host[256] = "";
   gethostname(host, sizeof(host) - 1);
-  const Json facts = {{"started", text},
-                      {"seconds", finished_s - started_s_},
-                      {"host", host},
-                      {"threads", threads_},
-                      {"options", run_options_}};
+  const Json facts = {
+      {"started", text},     {"seconds", finished_s - started_s_}, {"host", host},
+      {"threads", threads_}, {"outside", outside_inputs_},         {"options", run_options_}};
   WriteFileAtomically(staging() / "run.json", facts.dump(2) + "\n");
 }
 

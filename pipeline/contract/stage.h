@@ -70,6 +70,7 @@ class Stage {
   int threads_;
   std::unique_ptr<FileLock> lock_;
   std::vector<ManifestInput> inputs_;
+  std::vector<std::string> outside_inputs_;  // absolute paths, for run.json
   std::vector<std::string> outputs_;
   bool up_to_date_ = false;
   double started_s_ = 0;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <memory>
 #include <thread>
 
@@ -59,6 +60,21 @@ std::int64_t ModificationTime_ns(const fs::path& file) {
   return static_cast<std::int64_t>(status.st_mtim.tv_sec) * 1'000'000'000 + status.st_mtim.tv_nsec;
 }
 
+// Files outside the capture, which the manifest does not say the place of.
+void AddOutsideInputs(const fs::path& run_file, NinjaEdge* edge) {
+  std::ifstream stream(run_file);
+  const Json facts = Json::parse(stream, nullptr, false);
+  if (!facts.is_object() || !facts.contains("outside") || !facts["outside"].is_array()) return;
+  for (const Json& path : facts["outside"]) {
+    if (!path.is_string()) continue;
+    if (fs::exists(path.get<std::string>())) {
+      edge->more_inputs.push_back(path.get<std::string>());
+    } else {
+      edge->always = true;
+    }
+  }
+}
+
 // Adds to an edge what its last result says: files it read that the graph does not know, and
 // whether something is amiss that the times of the inputs do not show.
 void LookAtLastResult(const Capture& capture, NinjaEdge* edge) {
@@ -73,7 +89,9 @@ void LookAtLastResult(const Capture& capture, NinjaEdge* edge) {
     return;
   }
   const fs::path stage_folder = fs::path("glint") / edge->step.stage;
+  AddOutsideInputs(file.parent_path() / "run.json", edge);
   for (const ManifestInput& input : manifest.inputs) {
+    if (input.path.rfind(kOutsidePrefix, 0) == 0) continue;
     const fs::path path = (stage_folder / input.path).lexically_normal();
     if (fs::exists(capture.folder / path)) {
       edge->more_inputs.push_back(path.generic_string());

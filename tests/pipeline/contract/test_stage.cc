@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
 #include "pipeline/contract/stage.h"
 #include "tests/pipeline/contract/temp_folder.h"
 
@@ -80,6 +81,24 @@ TEST_F(StageTest, ManifestIsFreeOfThePlace) {
   const std::string manifest = ReadTextFile(folder_ / "glint/demo/manifest.json");
   EXPECT_EQ(manifest.find(folder_.path().string()), std::string::npos);
   EXPECT_THAT(manifest, HasSubstr("\"../../photo.txt\""));
+}
+
+TEST_F(StageTest, AnInputOutsideTheCaptureIsKnownByNameAndContent) {
+  const TempFolder elsewhere;
+  elsewhere.Write("weights.bin", "1");
+  const auto make = [&] {
+    return Stage(folder_ / "wood/glint/demo", {"demo", 1}, options_, common_,
+                 {elsewhere / "weights.bin"});
+  };
+  make().Commit(Json::object(), Json::object());
+  const std::string manifest = ReadTextFile(folder_ / "wood/glint/demo/manifest.json");
+  EXPECT_THAT(manifest, HasSubstr("\"outside:weights.bin\""));
+  EXPECT_EQ(manifest.find(elsewhere.path().string()), std::string::npos);
+  EXPECT_THAT(ReadTextFile(folder_ / "wood/glint/demo/run.json"),
+              HasSubstr((elsewhere / "weights.bin").string()));
+  EXPECT_TRUE(make().UpToDate());
+  elsewhere.Write("weights.bin", "2");
+  EXPECT_FALSE(make().UpToDate());
 }
 
 }  // namespace

@@ -129,6 +129,17 @@ TEST_F(RunTest, AFileThatOnlyTheLastResultNamesIsWatched) {
   EXPECT_THAT(RunJson().computed, ElementsAre("fit", "refine", "export", "report"));
 }
 
+TEST_F(RunTest, AFileOutsideTheCaptureIsWatched) {
+  RunJson();
+  const fs::path weights = folder_.path() / "weights";
+  test::WriteAll(weights, "1");
+  test::WriteAll(capture() / "glint/fit/run.json", Json({{"outside", {weights}}}).dump());
+  EXPECT_THAT(RunJson().started, testing::Contains("fit"));
+  EXPECT_THAT(RunJson().started, IsEmpty());
+  fs::remove(weights);
+  EXPECT_THAT(RunJson().started, testing::Contains("fit"));
+}
+
 TEST_F(RunTest, ADamagedOrRemovedOutputIsMadeAnew) {
   RunJson();
   fs::remove(capture() / "glint/fit/result.txt");
