@@ -133,6 +133,7 @@ TensorFile ReadTensorFile(const std::filesystem::path& path) {
   TensorFile file;
   try {
     const Json header = Json::parse(text, text + length);
+    if (!header.is_object()) Fail(path, "header", "JSON that is not an object");
     for (const auto& [name, entry] : header.items()) {
       if (name == "__metadata__") {
         file.metadata = entry.get<std::map<std::string, std::string>>();

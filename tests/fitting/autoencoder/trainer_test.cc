@@ -1,0 +1,143 @@
+#include "fitting/autoencoder/trainer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fitting/autoencoder/autoencoder.h"
+#include "tests/fitting/autoencoder/toy_materials.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+TrainOptions Tiny(std::int64_t steps) {
+  TrainOptions options;
+  options.channels = {8, 12, 16, 24, 32};
+  options.steps = steps;
+  options.batch = 4;
+  options.crop = 32;
+  options.learning_rate = 3e-3;
+  options.warmup_steps = 10;
+  options.render_views = 1;
+  options.pool.material_size = 64;
+  options.pool.window = 32;
+  options.pool.first = 8;
+  options.pool.per_step = 0.2;
+  options.bf16 = false;
+  return options;
+}
+
+SvbrdfMaps Toy(std::uint64_t k) { return ToyMaterial(k, 64, 64); }
+SvbrdfMaps Unseen(std::uint64_t k) { return ToyMaterial(k + 1'000'000, 64, 64); }
+
+TEST(Trainer, AShortTrainingTakesASeventhOffTheLossOnUnseenMaterials) {
+  const test::TemporaryFolder folder;
+  TrainOptions options = Tiny(150);
+  options.principal_start = false;
+  double first = 0;
+  const TrainProgress last = Train(options, {folder.path() / "w.safetensors", {}, {}, false}, Toy,
+                                   Unseen, [&](const TrainProgress& p) {
+                                     if (p.step == 0) first = *p.validation_map_loss;
+                                   });
+  ASSERT_TRUE(last.validation_map_loss.has_value());
+  EXPECT_GT(first, 0.1);
+  EXPECT_LT(*last.validation_map_loss, 0.86 * first);
+}
+
+TEST(Trainer, AResumedTrainingEndsWithTheSameBits) {
+  const test::TemporaryFolder folder;
+  const auto train = [&](const char* name, std::int64_t stop, std::int64_t steps, bool resume) {
+    TrainOptions options = Tiny(steps);
+    TrainFiles files{folder.path() / name, {}, {}, resume};
+    options.checkpoint_minutes = 1e-9;  // after every step
+    const auto report = [&](const TrainProgress& p) {
+      if (stop > 0 && p.step == stop) throw std::runtime_error("interrupted");
+    };
+    try {
+      Train(options, files, Toy, Unseen, report);
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "interrupted");
+    }
+  };
+  train("whole.safetensors", 0, 6, false);
+  train("parts.safetensors", 3, 6, false);
+  train("parts.safetensors", 0, 6, true);
+  EXPECT_EQ(test::ReadAll(folder.path() / "whole.safetensors"),
+            test::ReadAll(folder.path() / "parts.safetensors"));
+}
+
+class TrainedWeights : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TemporaryFolder;
+    Train(Tiny(1), {folder_->path() / "w.safetensors", {}, {}, false}, Toy, Unseen, {});
+    bytes_ = test::ReadAll(folder_->path() / "w.safetensors");
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  std::string LoadError(const std::string& bytes) {
+    const fs::path path = folder_->path() / "changed.safetensors";
+    test::WriteAll(path, bytes);
+    try {
+      Autoencoder::Load(path);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+  static inline test::TemporaryFolder* folder_ = nullptr;
+  static inline std::string bytes_;
+};
+
+TEST_F(TrainedWeights, AreReadBack) {
+  EXPECT_EQ(LoadError(bytes_), "");
+  EXPECT_EQ(Autoencoder::Load(folder_->path() / "w.safetensors").latent_channels(), 32);
+}
+
+TEST_F(TrainedWeights, TruncatedAreRefusedWithTheFilesName) {
+  for (const double share : {0.0, 0.01, 0.5, 0.999}) {
+    const std::string message =
+        LoadError(bytes_.substr(0, static_cast<size_t>(share * static_cast<double>(bytes_.size()))));
+    EXPECT_THAT(message, testing::AllOf(testing::HasSubstr("changed.safetensors"),
+                                        testing::HasSubstr("found"), testing::HasSubstr("again")));
+  }
+}
+
+TEST_F(TrainedWeights, OfAnotherEncodingAreRefused) {
+  std::string other = bytes_;
+  const size_t at = other.find("cubic-slope v1");
+  ASSERT_NE(at, std::string::npos);
+  other.replace(at, 14, "cubic-slope v9");
+  EXPECT_THAT(LoadError(other), testing::HasSubstr("encoding"));
+}
+
+TEST(Trainer, OptionsThatCannotBeAreRefused) {
+  const test::TemporaryFolder folder;
+  const TrainFiles files{folder.path() / "w.safetensors", {}, {}, false};
+  TrainOptions crop = Tiny(1), batch = Tiny(1), endless = Tiny(0);
+  crop.crop = 48;
+  batch.batch = 0;
+  EXPECT_THROW(Train(crop, files, Toy, Unseen, {}), std::runtime_error);
+  EXPECT_THROW(Train(batch, files, Toy, Unseen, {}), std::runtime_error);
+  EXPECT_THROW(Train(endless, files, Toy, Unseen, {}), std::runtime_error);
+}
+
+TEST(Models, AreFoundByEnvironmentAndNamedWhenMissing) {
+  const test::TemporaryFolder folder;
+  test::WriteAll(folder.path() / "some.safetensors", "x");
+  setenv("GLINT_MODELS", folder.path().c_str(), 1);
+  EXPECT_EQ(FindModel("some.safetensors"), folder.path() / "some.safetensors");
+  try {
+    FindModel("other.safetensors");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("other.safetensors"),
+                                             testing::HasSubstr(folder.path().string())));
+  }
+  unsetenv("GLINT_MODELS");
+  EXPECT_THROW(FindModel("some.safetensors", folder.path() / "none"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace glint
