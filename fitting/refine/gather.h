@@ -6,9 +6,9 @@
 
 namespace glint {
 
-// Linear radiance from which an 8-bit photograph is taken to be at its limit: half a step of gamma
-// 2.2 below 1.
-inline constexpr double kClipped = 0.9956;
+// Linear radiance from which a photograph that clips is taken to be at its limit; resampling may have
+// mixed a little of a darker pixel in (see AdmitClippedTexels).
+inline constexpr double kClipped = 0.99;
 
 // Replaces what `observations` holds by the usable views of the texel.
 void GatherObservations(const RefineProblem& problem, size_t texel,

@@ -28,7 +28,7 @@ class TexelSolver {
   // Cost of `texel` as it is.
   double Cost(const TexelObservations& observations, const TexelPrior& prior,
               const TexelValues& texel);
-  // The local minimum that Levenberg–Marquardt reaches from `start`; never costlier than `start`.
+  // The local minimum that Levenberg–Marquardt reaches from `start`, drawn off its bounds.
   TexelSolution Solve(const TexelObservations& observations, const TexelPrior& prior,
                       const TexelValues& start);
   // [J f]ᵀ[J f] by the physical values, prior included.
