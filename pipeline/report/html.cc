@@ -24,13 +24,14 @@ a { color: #175cd3; text-decoration: none; } a:hover { text-decoration: underlin
 .figures > div > span { color: var(--soft); font-size: 12.5px; }
 .pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(250px, 1fr)); gap: 14px; }
 figure { margin: 0; } figure img { width: 100%; display: block; border-radius: 4px; background: #eceef1; image-rendering: auto; }
+figure.wide { margin-top: 14px; max-width: 900px; }
 figcaption { font-size: 12.5px; color: var(--soft); margin-top: 4px; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 13px; width: 100%; }
 th { text-align: left; font-weight: 600; color: var(--soft); border-bottom: 1px solid var(--line); padding: 5px 12px 5px 0; white-space: nowrap; }
 td { border-bottom: 1px solid var(--line); padding: 5px 12px 5px 0; font-variant-numeric: tabular-nums; vertical-align: top; }
 td.number, th.number { text-align: right; } tr:last-child td { border-bottom: 0; }
-.views td { vertical-align: middle; } .views img { width: 100%; max-width: 300px; min-width: 120px; display: block; border-radius: 4px; }
+.views td { vertical-align: middle; } .views code { white-space: nowrap; } .views img { width: 100%; max-width: 300px; min-width: 120px; display: block; border-radius: 4px; }
 .kept { color: var(--mark); font-weight: 600; }
 .charts { display: flex; flex-wrap: wrap; gap: 18px; } svg text { font: 11px system-ui, "DejaVu Sans", sans-serif; fill: #667085; }
 details { margin-top: 8px; } summary { cursor: pointer; color: var(--soft); }
@@ -87,7 +88,7 @@ std::string NumberText(double value) {
   if (value == std::floor(value) && std::abs(value) < 1e9) {
     std::snprintf(text, sizeof(text), "%.0f", value);
   } else {
-    std::snprintf(text, sizeof(text), "%.4g", value);
+    std::snprintf(text, sizeof(text), std::abs(value) >= 100 ? "%.6g" : "%.4g", value);
   }
   return text;
 }

@@ -12,7 +12,7 @@ std::string HtmlText(std::string_view text);
 // RFC 4648, with padding.
 std::string Base64(std::string_view bytes);
 
-// A number as a person reads it: four significant digits, integers whole.
+// A number as a person reads it: four significant digits, six from 100 on, integers whole.
 std::string NumberText(double value);
 
 // The whole page round `body`; its style sheet is inside, nothing is loaded from elsewhere.

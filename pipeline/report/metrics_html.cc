@@ -97,7 +97,7 @@ std::string NamedObjectsTable(const Json& objects, const Trace& trace) {
 std::string CurveHtml(const std::string& name, const Json& list, const Trace& trace) {
   Chart chart;
   chart.title = name;
-  chart.x_label = "index";
+  chart.x_label = name.find("loss") != std::string::npos ? "iteration" : "index";
   chart.lines = {IndexedLine(name, list)};
   return "<div" + TooltipOf(trace) + ">" + ChartSvg(chart) + "</div>";
 }

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr char kOwnManifest[] = "manifest.json";
 constexpr float kDifferenceGain = 4;
-constexpr int kStagePicture_px = 900;
+constexpr int kStagePicture_px = 1200;
 constexpr double kPi = 3.14159265358979323846;
 
 std::string ManifestLink(const std::string& stage) { return "../" + stage + "/manifest.json"; }
@@ -26,9 +26,10 @@ std::string Section(const std::string& title, const std::string& source, const s
          "</h2>\n" + body + "</section>\n";
 }
 
-std::string Figure(const std::string& uri, const std::string& caption) {
-  return "<figure>" + ImageHtml(uri, caption) + "<figcaption>" + HtmlText(caption) +
-         "</figcaption></figure>\n";
+std::string Figure(const std::string& uri, const std::string& caption,
+                   const std::string& style = "") {
+  return "<figure class=\"" + style + "\">" + ImageHtml(uri, caption) + "<figcaption>" +
+         HtmlText(caption) + "</figcaption></figure>\n";
 }
 
 Image MapImage(const SvbrdfMaps& maps, int first_plane, const std::string& kind) {
@@ -236,17 +237,14 @@ std::string StageSection(const ReportInput& input, const std::string& stage) {
   const Manifest& manifest = input.manifests.at(stage);
   const std::string link = ManifestLink(stage);
   std::string body = MetricsHtml(manifest.metrics, {link, "metrics"});
-  if (stage == "calib" && manifest.data.contains("cameras")) {
-    body += "<h3>cameras</h3>\n" + ObjectsTable(manifest.data["cameras"], {link, "data.cameras"});
-  }
   std::string pictures;
   for (const ManifestOutput& output : manifest.outputs) {
     const std::string extension = fs::path(output.path).extension();
     if (extension != ".png" && extension != ".jpg") continue;
     const Photo photo = ReadPhoto(input.work / stage / output.path);
-    pictures += Figure(PngUri(Shrunk(photo.image, kStagePicture_px)), output.path);
+    pictures += Figure(PngUri(Shrunk(photo.image, kStagePicture_px)), output.path, "wide");
   }
-  if (!pictures.empty()) body += "<div class=\"pictures\">" + pictures + "</div>\n";
+  body += pictures;
   std::string files;
   for (const auto& [label, list] :
        {std::pair{"read", ToJson(manifest)["inputs"]}, {"written", ToJson(manifest)["outputs"]}}) {
