@@ -10,19 +10,38 @@ namespace glint {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kBins = 28;
-constexpr double kBinDegrees = 2.5;
-constexpr int kMinInBin = 12;
-constexpr size_t kMaxSamples = 60'000;
-constexpr std::array<double, 12> kRoughness{0.12, 0.17, 0.22, 0.27, 0.32, 0.38,
-                                            0.44, 0.5,  0.58, 0.66, 0.76, 0.88};
-constexpr double kTypicalRoughness = 0.38;
-constexpr double kRoughnessPenalty = 0.02;  // of the mean squared residual, per unit of r²
+// Angles between normal and half vector, degrees: fine where a polished sample's highlight lies.
+constexpr std::array<double, 24> kBinEdges{0,  0.4, 0.8, 1.3, 2,  3,  4,  5.5, 7,  9,  11, 13.5,
+                                           16, 19,  22,  25.5, 29, 33, 37, 42,  47, 53, 60, 70};
+constexpr size_t kBins = kBinEdges.size() - 1;
+constexpr size_t kMinInBin = 12;
+constexpr double kMostWeight = 200;  // texels beyond which a bin counts no more
+constexpr size_t kMaxSamples = 100'000;
+constexpr double kClipped = 0.99;
+constexpr double kOffset = 0.004;    // of the logarithms, in units of reflectance
+
+constexpr std::array<double, 15> kRoughness{0.06, 0.09, 0.13, 0.18, 0.23, 0.28, 0.34, 0.4,
+                                            0.46, 0.52, 0.59, 0.66, 0.74, 0.83, 0.93};
+constexpr std::array<double, 12> kSpecular{0.025, 0.035, 0.045, 0.06, 0.08, 0.12,
+                                           0.18,  0.26,  0.37,  0.5,  0.68, 0.9};
+// Weak preferences, in squared log residual: they decide where the photographs do not.
+constexpr double kTypicalRoughness = 0.45;
+constexpr double kRoughnessPenalty = 0.02;
+constexpr double kTypicalSpecular = 0.045;
+constexpr double kSpecularPenalty = 0.0008;
 
 struct Bin {
   std::vector<double> reflectance[3];
+  size_t clipped[3] = {0, 0, 0};
   std::array<double, kRoughness.size()> factor{};  // sums of D·G/(4·NoL·NoV), flat
   double fresnel = 0;
+};
+
+// A bin's mean, for one channel.
+struct Sample {
+  double reflectance;
+  bool at_least;  // clipped: the sample is this bright or brighter
+  double weight;
 };
 
 void Collect(const PhotographSet& set, const Photograph& photo, size_t stride,
@@ -31,7 +50,6 @@ void Collect(const PhotographSet& set, const Photograph& photo, size_t stride,
   TexelSvbrdf<double> flat{{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, 0.5};
   for (size_t i = stride / 2; i < texels; i += stride) {
     if (photo.mask[i] < 0.5f) continue;
-    const float rgb[3] = {photo.rgb[i], photo.rgb[texels + i], photo.rgb[2 * texels + i]};
     const int row = static_cast<int>(i / set.plane.width);
     const int column = static_cast<int>(i % set.plane.width);
     const TexelGeometry<double> g =
@@ -40,12 +58,13 @@ void Collect(const PhotographSet& set, const Photograph& photo, size_t stride,
     const double n_dot_l = g.light[2];
     if (n_dot_l < 0.1 || g.camera[2] < 0.1) continue;
     const double degrees = std::acos(std::min(1.0, g.half[2])) * 180.0 / kPi;
-    const int b = static_cast<int>(degrees / kBinDegrees);
-    if (b >= kBins) continue;
-    Bin& bin = (*bins)[b];
+    const auto edge = std::upper_bound(kBinEdges.begin(), kBinEdges.end(), degrees);
+    if (edge == kBinEdges.end()) continue;
+    Bin& bin = (*bins)[static_cast<size_t>(edge - kBinEdges.begin()) - 1];
     for (int c = 0; c < 3; ++c) {
-      bin.reflectance[c].push_back(std::max(0.0f, rgb[c]) /
-                                   std::max(1e-12, g.irradiance[c] * n_dot_l));
+      const double radiance = std::max(0.0f, photo.rgb[c * texels + i]);
+      bin.reflectance[c].push_back(radiance / std::max(1e-12, g.irradiance[c] * n_dot_l));
+      if (photo.ldr && radiance >= kClipped) ++bin.clipped[c];
     }
     for (size_t r = 0; r < kRoughness.size(); ++r) {
       flat.roughness = kRoughness[r];
@@ -55,31 +74,58 @@ void Collect(const PhotographSet& set, const Photograph& photo, size_t stride,
   }
 }
 
-double Median(std::vector<double>* values) {
-  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
+// Means and not medians: on a polished, uneven sample the highlight is a few glints in every bin.
+double Mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double x : values) sum += x;
+  return sum / static_cast<double>(values.size());
 }
 
-// Least squares of y = a + b·x with a ≥ 0, b ≥ 0 and weights; a weak pull of b to `b0`.
-void FitLine(const std::vector<double>& x, const std::vector<double>& y,
-             const std::vector<double>& w, double b0, double pull, double* a, double* b) {
-  double sw = 0, sx = 0, sy = 0, sxx = pull, sxy = pull * b0;
-  for (size_t i = 0; i < x.size(); ++i) {
-    sw += w[i];
-    sx += w[i] * x[i];
-    sy += w[i] * y[i];
-    sxx += w[i] * x[i] * x[i];
-    sxy += w[i] * x[i] * y[i];
+// k_d/π that fits the samples beside a known highlight, in relative least squares.
+double FitDiffuse(const std::vector<Sample>& samples, const std::vector<double>& highlight) {
+  double sum = 0, weight = 0;
+  for (size_t b = 0; b < samples.size(); ++b) {
+    if (samples[b].at_least) continue;
+    const double w = samples[b].weight / std::pow(samples[b].reflectance + kOffset, 2);
+    sum += w * (samples[b].reflectance - highlight[b]);
+    weight += w;
   }
-  const double determinant = sw * sxx - sx * sx;
-  *b = determinant > 1e-12 * sw * sxx ? (sw * sxy - sx * sy) / determinant : b0;
-  *b = std::clamp(*b, 0.0, 1.0);
-  *a = (sy - *b * sx) / sw;
-  if (*a < 0) {
-    *a = 0;
-    *b = std::clamp(sxy / sxx, 0.0, 1.0);
+  return weight > 0 ? std::clamp(sum / weight, 0.0, 1.0 / kPi) : 0.0;
+}
+
+double LogCost(const std::vector<Sample>& samples, const std::vector<double>& highlight,
+               double diffuse) {
+  double sum = 0, weight = 0;
+  for (size_t b = 0; b < samples.size(); ++b) {
+    const double difference = std::log(diffuse + highlight[b] + kOffset) -
+                              std::log(samples[b].reflectance + kOffset);
+    weight += samples[b].weight;
+    if (samples[b].at_least && difference > 0) continue;
+    sum += samples[b].weight * difference * difference;
   }
+  return sum / weight;
+}
+
+struct ChannelFit {
+  double diffuse = 0, specular = 0;
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+// Best albedos of one channel for a roughness; factor and fresnel are the bins' means.
+ChannelFit FitChannel(const std::vector<Sample>& samples, const std::vector<double>& factor,
+                      const std::vector<double>& fresnel) {
+  ChannelFit best;
+  std::vector<double> highlight(samples.size());
+  for (const double specular : kSpecular) {
+    for (size_t b = 0; b < samples.size(); ++b) {
+      highlight[b] = factor[b] * (specular + (1 - specular) * fresnel[b]);
+    }
+    const double diffuse = FitDiffuse(samples, highlight);
+    const double cost = LogCost(samples, highlight, diffuse) +
+                        kSpecularPenalty * std::pow(std::log(specular / kTypicalSpecular), 2);
+    if (cost < best.cost) best = {diffuse * kPi, specular, cost};
+  }
+  return best;
 }
 
 }  // namespace
@@ -89,48 +135,35 @@ GlobalLobes FitGlobalLobes(const PhotographSet& set) {
   const size_t stride = std::max<size_t>(1, texels * set.photographs.size() / kMaxSamples);
   std::vector<Bin> bins(kBins);
   for (const Photograph& photo : set.photographs) Collect(set, photo, stride, &bins);
-
+  std::erase_if(bins, [](const Bin& bin) { return bin.reflectance[0].size() < kMinInBin; });
   GlobalLobes best;
-  std::vector<Bin*> used;
-  for (Bin& bin : bins) {
-    if (bin.reflectance[0].size() >= kMinInBin) used.push_back(&bin);
-  }
-  if (used.empty()) return best;
-  std::vector<double> count(used.size()), y[3], w[3];
-  for (size_t b = 0; b < used.size(); ++b) {
-    count[b] = static_cast<double>(used[b]->reflectance[0].size());
+  if (bins.empty()) return best;
+
+  std::vector<Sample> samples[3];
+  std::vector<double> fresnel;
+  for (const Bin& bin : bins) {
+    const double count = static_cast<double>(bin.reflectance[0].size());
+    fresnel.push_back(bin.fresnel / count);
     for (int c = 0; c < 3; ++c) {
-      y[c].push_back(Median(&used[b]->reflectance[c]));
-      // Relative residuals; a bin of many texels counts more, but not by much.
-      w[c].push_back(std::sqrt(std::min(count[b], 400.0)) / std::pow(y[c][b] + 0.005, 2));
+      samples[c].push_back({Mean(bin.reflectance[c]), 2.0 * bin.clipped[c] > count,
+                            std::sqrt(std::min(count, kMostWeight))});
     }
   }
   double best_cost = std::numeric_limits<double>::infinity();
   for (size_t r = 0; r < kRoughness.size(); ++r) {
+    std::vector<double> factor;
+    for (const Bin& bin : bins) {
+      factor.push_back(bin.factor[r] / static_cast<double>(bin.reflectance[0].size()));
+    }
     GlobalLobes lobes;
     lobes.roughness = kRoughness[r];
-    double cost = 0, weight = 0;
+    double cost = kRoughnessPenalty * std::pow(lobes.roughness - kTypicalRoughness, 2);
     for (int c = 0; c < 3; ++c) {
-      // f = k_d/π + S·F₁ + k_s·S·(1 − F₁), with F₁ the Fresnel rise toward grazing.
-      std::vector<double> x(used.size()), target(used.size());
-      double scale = 0;
-      for (size_t b = 0; b < used.size(); ++b) {
-        const double s = used[b]->factor[r] / count[b], f = used[b]->fresnel / count[b];
-        x[b] = s * (1 - f);
-        target[b] = y[c][b] - s * f;
-        scale += w[c][b] * x[b] * x[b];
-      }
-      double a = 0, k_s = 0;
-      FitLine(x, target, w[c], 0.04, 1e-3 * scale, &a, &k_s);
-      lobes.diffuse[c] = std::clamp(a * kPi, 0.005, 0.95);
-      lobes.specular[c] = std::clamp(k_s, 0.02, 0.95);
-      for (size_t b = 0; b < used.size(); ++b) {
-        const double residual = lobes.diffuse[c] / kPi + lobes.specular[c] * x[b] - target[b];
-        cost += w[c][b] * residual * residual;
-        weight += w[c][b] * std::pow(y[c][b] + 0.005, 2);
-      }
+      const ChannelFit fit = FitChannel(samples[c], factor, fresnel);
+      lobes.diffuse[c] = std::clamp(fit.diffuse, 0.005, 0.95);
+      lobes.specular[c] = fit.specular;
+      cost += fit.cost / 3;
     }
-    cost = cost / weight + kRoughnessPenalty * std::pow(lobes.roughness - kTypicalRoughness, 2);
     if (cost < best_cost) {
       best_cost = cost;
       best = lobes;

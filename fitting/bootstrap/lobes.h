@@ -15,11 +15,10 @@ struct GlobalLobes {
 
 // The sample is taken as flat and of one material. Reflectances I / (E·NoL) are collected by the
 // angle between normal and half vector (medians, so that texture and scratches average out), and
-// k_d/π + D·G·F/(4·NoL·NoV) is fitted to them for a list of roughnesses; among fits of similar
-// residual a moderate roughness wins, since a start too rough with too little specular is a minimum
-// that fitting does not leave (Gao et al. 2019, Fig. 16). Clipped texels count with the value they
-// have: too little, but left out they would take every sharp highlight with them. Angles that were
-// not seen leave the defaults above.
+// k_d/π + D·G·F/(4·NoL·NoV) is fitted to their logarithms over lists of roughness and specular
+// albedo. Where an LDR photograph clips, the highlight is at least as bright. Weak preferences for
+// the usual F0 and a moderate roughness decide where the photographs do not: a start too rough with
+// too little specular is a minimum that fitting does not leave (Gao et al. 2019, Fig. 16).
 GlobalLobes FitGlobalLobes(const PhotographSet& set);
 
 }  // namespace glint
