@@ -24,6 +24,12 @@ constexpr std::array<double, 15> kRoughness{0.06, 0.09, 0.13, 0.18, 0.23, 0.28, 
                                             0.46, 0.52, 0.59, 0.66, 0.74, 0.83, 0.93};
 constexpr std::array<double, 12> kSpecular{0.025, 0.035, 0.045, 0.06, 0.08, 0.12,
                                            0.18,  0.26,  0.37,  0.5,  0.68, 0.9};
+// Glints: near the mirror direction the brightest texels stand out more than elsewhere.
+constexpr double kNearDegrees = 5.5, kFarDegrees = 16, kFarthestDegrees = 25.5;
+constexpr double kBrightest = 0.995;
+constexpr double kGlints = 4;           // ratio of the two; other materials stay below 2.3
+constexpr double kMostPolished = 0.18;  // roughness of a sample with glints, at most
+
 // Weak preferences, in squared log residual: they decide where the photographs do not.
 constexpr double kTypicalRoughness = 0.45;
 constexpr double kRoughnessPenalty = 0.02;
@@ -31,6 +37,7 @@ constexpr double kTypicalSpecular = 0.045;
 constexpr double kSpecularPenalty = 0.0008;
 
 struct Bin {
+  double degrees = 0;  // its lower edge
   std::vector<double> reflectance[3];
   size_t clipped[3] = {0, 0, 0};
   std::array<double, kRoughness.size()> factor{};  // sums of D·G/(4·NoL·NoV), flat
@@ -79,6 +86,30 @@ double Mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double x : values) sum += x;
   return sum / static_cast<double>(values.size());
+}
+
+double Quantile(std::vector<double> values, double share) {
+  const auto at = values.begin() +
+                  static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at + kOffset;
+}
+
+// A polished sample that is not quite flat shows its highlight as glints: too few to raise the mean
+// much, clipped before they could, and so mistaken for no highlight at all.
+bool ShowsGlints(const std::vector<Bin>& bins) {
+  std::vector<double> near, far;
+  for (const Bin& bin : bins) {
+    const std::vector<double>& green = bin.reflectance[1];
+    std::vector<double>* side = bin.degrees < kNearDegrees                                    ? &near
+                                : bin.degrees >= kFarDegrees && bin.degrees < kFarthestDegrees ? &far
+                                                                                               : nullptr;
+    if (side != nullptr) side->insert(side->end(), green.begin(), green.end());
+  }
+  if (near.size() < 200 || far.size() < 200) return false;
+  const double of_near = Quantile(near, kBrightest) / Quantile(near, 0.5);
+  const double of_far = Quantile(far, kBrightest) / Quantile(far, 0.5);
+  return of_near > kGlints * of_far;
 }
 
 // k_d/π that fits the samples beside a known highlight, in relative least squares.
@@ -134,6 +165,7 @@ GlobalLobes FitGlobalLobes(const PhotographSet& set) {
   const size_t texels = static_cast<size_t>(set.plane.width) * set.plane.height;
   const size_t stride = std::max<size_t>(1, texels * set.photographs.size() / kMaxSamples);
   std::vector<Bin> bins(kBins);
+  for (size_t b = 0; b < kBins; ++b) bins[b].degrees = kBinEdges[b];
   for (const Photograph& photo : set.photographs) Collect(set, photo, stride, &bins);
   std::erase_if(bins, [](const Bin& bin) { return bin.reflectance[0].size() < kMinInBin; });
   GlobalLobes best;
@@ -149,8 +181,9 @@ GlobalLobes FitGlobalLobes(const PhotographSet& set) {
                             std::sqrt(std::min(count, kMostWeight))});
     }
   }
+  const double most = ShowsGlints(bins) ? kMostPolished : 1.0;
   double best_cost = std::numeric_limits<double>::infinity();
-  for (size_t r = 0; r < kRoughness.size(); ++r) {
+  for (size_t r = 0; r < kRoughness.size() && kRoughness[r] <= most; ++r) {
     std::vector<double> factor;
     for (const Bin& bin : bins) {
       factor.push_back(bin.factor[r] / static_cast<double>(bin.reflectance[0].size()));

@@ -46,6 +46,21 @@ TEST(Lobes, WithoutAHighlightInViewAreTheTypicalOnes) {
   EXPECT_NEAR(lobes.diffuse[0], 0.3, 0.08);
 }
 
+TEST(Lobes, OfAPolishedUnevenSampleAreSharp) {
+  SvbrdfMaps truth = UniformMaps(128, 0.05f, 0.04f, 0.08f);
+  Stream random(8);
+  for (size_t i = 0; i < truth.texels(); ++i) {  // slopes of about 2°
+    const double x = 0.035 * random.Normal(), y = 0.035 * random.Normal();
+    const double z = 1 / std::sqrt(1 + x * x + y * y);
+    truth.plane(kNormalX)[i] = static_cast<float>(x * z);
+    truth.plane(kNormalY)[i] = static_cast<float>(y * z);
+    truth.plane(kNormalZ)[i] = static_cast<float>(z);
+  }
+  for (const int count : {1, 5}) {
+    EXPECT_LT(FitGlobalLobes(PhotographMaps(truth, count)).roughness, 0.2) << count;
+  }
+}
+
 TEST(Bootstrap, DiffuseTextureIsFound) {
   SvbrdfMaps truth = UniformMaps(64, 0.3f, 0.04f, 0.5f);
   for (int row = 0; row < 64; ++row) {
