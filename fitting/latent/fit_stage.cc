@@ -17,10 +17,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// From one photograph roughness and specular drift along ambiguities while the loss falls: stopping
+// early halves the damage (docs/experiments.md, "How long to fit one photograph").
+constexpr int kSinglePhotoIterations = 8;
+
 bool IsLatent(const FitStageOptions& options) { return options.method == "latent"; }
 
-FitOptions Resolved(const FitStageOptions& options, int threads) {
+FitOptions Resolved(const FitStageOptions& options, size_t photographs, int threads) {
   FitOptions fit = IsLatent(options) ? options.latent : options.classic;
+  if (IsLatent(options) && photographs == 1) {
+    fit.coarse_iterations = fit.fine_iterations = kSinglePhotoIterations;
+  }
   if (options.iterations > 0) fit.coarse_iterations = options.iterations;
   if (options.fine_iterations > 0) fit.fine_iterations = options.fine_iterations;
   if (options.learning_rate > 0) fit.learning_rate = options.learning_rate;
@@ -125,7 +132,7 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
   const RectifiedSet set = ReadRectifiedSet(rectify_manifest);
   const std::vector<RectifiedView> views = SelectViews(set, options.views, options.exclude);
   const PhotographSet photographs = Load(set, views);
-  const FitOptions fit_options = Resolved(options, threads);
+  const FitOptions fit_options = Resolved(options, views.size(), threads);
   if (const std::string wrong = fit_options.Check(); !wrong.empty())
     throw UserError("fit: " + wrong);
 

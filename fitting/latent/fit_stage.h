@@ -17,7 +17,7 @@ struct FitStageOptions {
   std::string method = "latent";  // latent: in the learned space; classic: texel by texel
   FitOptions latent = FitOptions::Latent();
   FitOptions classic = FitOptions::Classic();
-  int iterations = 0;                // at the first level; 0: the method's own
+  int iterations = 0;                // at the first level; 0: the method's own (few from one photo)
   int fine_iterations = 0;           // at each later level; 0: the method's own
   double learning_rate = 0;          // 0: the method's own
   std::filesystem::path start;       // maps to start from (svbrdf.exr); empty: from the photographs
