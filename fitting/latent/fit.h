@@ -39,7 +39,7 @@ struct FitOptions {
 struct FitLevel {
   int width = 0;
   int height = 0;
-  std::vector<double> loss;  // of the photographs, one value per iteration, before its step
+  std::vector<double> loss;  // one value per iteration, before its step
   bool converged = false;    // ended by tolerance, not by the number of iterations
 };
 
