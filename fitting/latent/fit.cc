@@ -26,6 +26,8 @@ class Parameters {
   virtual EncodedMaps ToMaps(std::span<const float> values) = 0;
   // Gradient by the parameters of the last ToMaps.
   virtual std::vector<float> Pull(const EncodedMaps& gradient) = 0;
+  // The descent begins at `values`, which stand for the maps `start`.
+  virtual void SetStart(const EncodedMaps&, std::span<const float>) {}
   // A regulariser's value; adds its gradient.
   virtual double Prior(std::span<const float>, std::span<float>) const { return 0; }
   // The maps of a result: as exact as can be.
@@ -76,31 +78,49 @@ class CodeParameters : public Parameters {
   }
   EncodedMaps ToMaps(std::span<const float> values) override {
     code_.values.assign(values.begin(), values.end());
-    return tape_.Forward(code_, width_, height_);
+    return WithDetail(tape_.Forward(code_, width_, height_));
+  }
+  void SetStart(const EncodedMaps& start, std::span<const float> values) override {
+    start_.assign(values.begin(), values.end());
+    if (!options_.keep_detail) return;
+    const EncodedMaps decoded = Final(values);
+    detail_ = start.planes;
+    for (size_t i = 0; i < detail_.size(); ++i) detail_[i] -= decoded.planes[i];
   }
   std::vector<float> Pull(const EncodedMaps& gradient) override { return tape_.Backward(gradient); }
   double Prior(std::span<const float> values, std::span<float> gradient) const override {
-    if (options_.code_prior <= 0) return 0;
-    double sum = 0;
-    const double scale = options_.code_prior / static_cast<double>(values.size());
+    const double count = static_cast<double>(values.size());
+    double sum = 0, start_sum = 0;
     for (size_t i = 0; i < values.size(); ++i) {
-      sum += static_cast<double>(values[i]) * values[i];
-      gradient[i] += static_cast<float>(2 * scale * values[i]);
+      const double z = values[i], moved = z - start_[i];
+      sum += z * z;
+      start_sum += moved * moved;
+      gradient[i] += static_cast<float>(
+          2 / count * (options_.code_prior * z + options_.start_prior * moved));
     }
-    return scale * sum;
+    return (options_.code_prior * sum + options_.start_prior * start_sum) / count;
   }
   EncodedMaps Final(std::span<const float> values) override {
     code_.values.assign(values.begin(), values.end());
-    return network_.Decode(code_, width_, height_, options_.threads);
+    return WithDetail(network_.Decode(code_, width_, height_, options_.threads));
   }
   const LatentCode& code() const { return code_; }
 
  private:
+  EncodedMaps WithDetail(EncodedMaps maps) const {
+    for (size_t i = 0; i < detail_.size(); ++i) {
+      maps.planes[i] = std::clamp(maps.planes[i] + detail_[i], -1.0f, 1.0f);
+    }
+    return maps;
+  }
+
   const Autoencoder& network_;
   Autoencoder::Tape tape_;
   int width_, height_;
   FitOptions options_;
   LatentCode code_;
+  std::vector<float> start_;
+  std::vector<float> detail_;  // of the start, beyond what its code decodes to; empty: none
 };
 
 // The common factor on the lights, by its logarithm, when the photographs leave it open.
@@ -161,6 +181,7 @@ EncodedMaps FitOneLevel(const PhotographSet& level_set, Parameters* parameters,
   const FitLoss loss(level_set, options.threads);
   std::vector<float> values = parameters->FromMaps(start);
   if (pull) values = PullOntoStart(parameters, std::move(values), start, options);
+  parameters->SetStart(start, values);
   Descent descent({iterations, options.learning_rate, options.tolerance, options.patience},
                   values.size());
   double rate = descent.rate();
@@ -236,7 +257,7 @@ std::string FitOptions::Check() const {
   if (coarse_size < 1) return "the coarse size must be at least 1 texel";
   if (!(learning_rate > 0)) return "the learning rate must be above 0";
   if (!(tolerance >= 0) || patience < 1) return "tolerance must be 0 or more, patience 1 or more";
-  if (!(code_prior >= 0)) return "the code's prior must be 0 or more";
+  if (!(code_prior >= 0) || !(start_prior >= 0)) return "priors must be 0 or more";
   return "";
 }
 
@@ -256,9 +277,11 @@ std::string FitResult::BriefReport() const {
 
 FitResult FitLatent(const PhotographSet& set, const SvbrdfMaps& start, const Autoencoder& network,
                     const FitOptions& options, const FitProgress& progress) {
+  FitOptions weighed = options;
+  weighed.start_prior /= std::max<double>(1, static_cast<double>(set.photographs.size()));
   return Fit(set, start, options, options.start_iterations > 0,
              [&](int width, int height) {
-               return std::make_unique<CodeParameters>(network, width, height, options);
+               return std::make_unique<CodeParameters>(network, width, height, weighed);
              },
              progress);
 }
