@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "datasets/procedural/material.h"
+#include "datasets/statistics/comparison_files.h"
 #include "datasets/synth/capture_writer.h"
 #include "datasets/synth/material_source.h"
 #include "datasets/synth/view_set.h"
@@ -173,6 +174,31 @@ int RunViews(int argc, char** argv, const ProgramInfo& info) {
   });
 }
 
+int RunStatistics(int argc, char** argv, const ProgramInfo& info) {
+  std::vector<std::string> materials;
+  std::string family;
+  fs::path out;
+  int seeds = 200, first = 0, size = 256;
+  OptionSet options;
+  options.AddPositional("materials", &materials,
+                        "real maps, or folders of folders of maps, to compare with", true);
+  options.Add("out", &out, "folder for statistics.json, .csv and .png");
+  options.Add("family", &family, "compare one procedural family; none: drawn from the seed");
+  options.AddRange("seeds", &seeds, 1, 100000, "procedural materials");
+  options.AddRange("first-seed", &first, 0, 2e9, "the first one's seed");
+  options.AddRange("size", &size, 8, 2048, "texels a side, a power of two");
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
+    if (out.empty()) throw UserError("out: found nothing; name a folder to write to");
+    const auto seed = static_cast<std::uint64_t>(first);
+    const Comparison comparison =
+        Compare(MeasureMaterials("real", FindMaterials(materials), size, common.threads),
+                MeasureMaterials("generated", ProceduralMaterials(family, seed, seeds), size,
+                                 common.threads));
+    WriteComparison(out, comparison);
+    return ProgramResult{comparison.BriefReport(), ComparisonJson(comparison)};
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -185,7 +211,11 @@ int main(int argc, char** argv) {
        "Then: glint run demo; glint-eval cameras demo/truth demo/glint/calib/manifest.json",
        RunCapture},
       {"views", "Renders rectified views from maps: a capture whose stage rectify is done.",
-       "Example: glint-synth views procedural:7 set --count 5 && glint-fit set", RunViews}};
+       "Example: glint-synth views procedural:7 set --count 5 && glint-fit set", RunViews},
+      {"statistics",
+       "Compares the statistics of procedural materials with those of real ones: histograms, power "
+       "spectra, correlations and spreads, each with a distance.",
+       "Example: glint-synth statistics data/materials/train --out statistics", RunStatistics}};
   return RunVerb(argc, argv,
                  {"glint-synth", "Makes synthetic materials, captures and views, with their truth.",
                   GLINT_VERSION, ""},

@@ -1,0 +1,66 @@
+#include "datasets/statistics/moments.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace glint {
+namespace {
+
+constexpr int kSide = 64;
+
+std::vector<float> Noise(unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal(2, 3);
+  std::vector<float> plane(kSide * kSide);
+  for (float& value : plane) value = normal(random);
+  return plane;
+}
+
+TEST(MomentsTest, ANormalDistributionHasItsMoments) {
+  const Moments m = MomentsOf(Noise(1));
+  EXPECT_NEAR(m.mean, 2, 0.15);
+  EXPECT_NEAR(m.spread, 3, 0.1);
+  EXPECT_NEAR(m.skewness, 0, 0.1);
+  EXPECT_NEAR(m.kurtosis, 3, 0.25);
+}
+
+TEST(MomentsTest, CorrelationIsOneForGainsAndMinusOneForNegatives) {
+  const std::vector<float> a = Noise(1);
+  std::vector<float> gain = a, negative = a;
+  for (float& value : gain) value = 0.3f * value + 1;
+  for (float& value : negative) value = -value;
+  EXPECT_NEAR(Correlation(a, gain), 1, 1e-6);
+  EXPECT_NEAR(Correlation(a, negative), -1, 1e-6);
+  EXPECT_NEAR(Correlation(a, Noise(2)), 0, 0.05);
+}
+
+TEST(MomentsTest, CorrelationWithAFlatPlaneIsUndefined) {
+  EXPECT_TRUE(std::isnan(Correlation(Noise(1), std::vector<float>(kSide * kSide, 0.4f))));
+}
+
+TEST(MomentsTest, FineCorrelationSeesDetailUnderASlowGradient) {
+  const std::vector<float> detail = Noise(1);
+  std::vector<float> a = detail, b = detail;
+  for (size_t i = 0; i < a.size(); ++i) {  // opposite gradients hide that the details agree
+    a[i] += 1.0f * static_cast<float>(i % kSide);
+    b[i] -= 1.0f * static_cast<float>(i % kSide);
+  }
+  EXPECT_LT(Correlation(a, b), -0.8);
+  EXPECT_NEAR(FineCorrelation(a, b, kSide), 1, 1e-4);
+}
+
+TEST(MomentsTest, StripesHaveADirectionAndNoiseHasNone) {
+  std::vector<float> stripes;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    stripes.push_back(std::sin(0.3f * static_cast<float>(i % kSide + i / kSide)));
+  }
+  EXPECT_NEAR(Directionality(stripes, kSide), 1, 1e-3);
+  EXPECT_LT(Directionality(Noise(1), kSide), 0.1);
+  EXPECT_EQ(Directionality(std::vector<float>(kSide * kSide, 0.5f), kSide), 0);
+}
+
+}  // namespace
+}  // namespace glint
