@@ -9,6 +9,7 @@
 #include "datasets/synth/capture_writer.h"
 #include "datasets/synth/material_source.h"
 #include "datasets/synth/view_set.h"
+#include "fitting/training/material_pack.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/svbrdf_file.h"
@@ -96,6 +97,46 @@ int RunMaterial(int argc, char** argv, const ProgramInfo& info) {
     return ProgramResult{fmt::format("{}: {}, {} x {}", file.string(), material.name,
                                      material.maps.width, material.maps.height),
                          {{"file", file.string()}, {"material", material.name}}};
+  });
+}
+
+// Folders of materials: themselves, or those inside, by name.
+std::vector<fs::path> MaterialFolders(const std::vector<std::string>& given) {
+  std::vector<fs::path> folders;
+  for (const fs::path path : given) {
+    std::vector<fs::path> inside;
+    if (fs::is_directory(path)) {
+      for (const auto& entry : fs::directory_iterator(path)) {
+        if (entry.is_directory()) inside.push_back(entry.path());
+      }
+    }
+    std::sort(inside.begin(), inside.end());
+    if (inside.empty()) inside.push_back(path);
+    folders.insert(folders.end(), inside.begin(), inside.end());
+  }
+  return folders;
+}
+
+int RunPack(int argc, char** argv, const ProgramInfo& info) {
+  std::vector<std::string> given;
+  fs::path out;
+  int size = 512;
+  OptionSet options;
+  options.AddPositional("materials", &given,
+                        "folders of maps, or folders that hold such folders", true);
+  options.Add("out", &out, "pack to write, ….safetensors (needed)");
+  options.AddRange("size", &size, 8, 8192, "texels a side");
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions&) {
+    if (out.empty()) throw UserError("out: found nothing; name a file to write");
+    MaterialPack pack;
+    for (const fs::path& folder : MaterialFolders(given)) {
+      const MaterialSource material = LoadMaterial(folder.string(), size);
+      pack.push_back(PackMaterial(material.name, material.maps));
+    }
+    WriteMaterialPack(out, pack);
+    return ProgramResult{fmt::format("{}: {} materials of {} x {}", out.string(), pack.size(), size,
+                                     size),
+                         {{"file", out.string()}, {"materials", pack.size()}, {"size", size}}};
   });
 }
 
@@ -210,6 +251,8 @@ int main(int argc, char** argv) {
        "Example: glint-synth capture demo --seed 3 --megapixels 3\n"
        "Then: glint run demo; glint-eval cameras demo/truth demo/glint/calib/manifest.json",
        RunCapture},
+      {"pack", "Packs folders of maps into one file that glint-train mixes into its data.",
+       "Example: glint-synth pack materials/train --out materials.safetensors", RunPack},
       {"views", "Renders rectified views from maps: a capture whose stage rectify is done.",
        "Example: glint-synth views procedural:7 set --count 5 && glint-fit set", RunViews},
       {"statistics",

@@ -5,23 +5,19 @@
 #include <string>
 
 #include "datasets/procedural/material.h"
-#include "fitting/autoencoder/trainer.h"
+#include "fitting/training/autoencoder_trainer.h"
+#include "fitting/training/training_materials.h"
 
 namespace {
 
 using glint::TrainFiles;
-using glint::TrainOptions;
+using glint::AutoencoderTrainOptions;
 using glint::TrainProgress;
 
 // Validation takes reserved seeds that no table of results uses.
 constexpr std::uint64_t kValidationOffset = 500'000'000;
 
-// Each training draws its materials from a stretch of its own below the reserved seeds.
-std::uint64_t TrainingSeed(std::uint64_t seed, std::uint64_t k) {
-  return (seed * 10'000'019 + k) % glint::kReservedSeedBase;
-}
-
-void AddOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
+void AddOptions(CLI::App* app, AutoencoderTrainOptions* o, TrainFiles* files) {
   app->add_option("--out", files->weights, "weights file to write (safetensors)")->required();
   app->add_option("--checkpoint", files->checkpoint, "checkpoint file (default: OUT.checkpoint)");
   app->add_option("--log", files->log_csv, "loss log, CSV (default: OUT.csv)");
@@ -35,6 +31,9 @@ void AddOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
       ->capture_default_str();
   app->add_option("--lr", o->learning_rate, "highest learning rate")->capture_default_str();
   app->add_option("--warmup", o->warmup_steps, "steps of rising rate")->capture_default_str();
+  app->add_option("--warmup-from", o->warmup_from,
+                  "step the rate rises from: a checkpoint's, when --resume lengthens a training")
+      ->capture_default_str();
   app->add_option("--smoothness", o->smoothness, "weight of the smoothness term (DIR: 2)")
       ->capture_default_str();
   app->add_option("--smoothness-share", o->smoothness_share, "share of the batch it is taken on")
@@ -77,20 +76,51 @@ void Report(const TrainProgress& p) {
   std::fputc('\n', stderr);
 }
 
-int TrainAutoencoder(TrainOptions options, const TrainFiles& files) {
-  const int size = options.pool.material_size;
-  options.data_name = "procedural";
-  const glint::MaterialSource materials = [&](std::uint64_t k) {
-    return glint::MakeMaterial(TrainingSeed(options.seed, k), size, size);
-  };
-  const glint::MaterialSource validation = [&](std::uint64_t k) {
-    return glint::MakeMaterial(glint::kReservedSeedBase + kValidationOffset + k, size, size);
-  };
-  const TrainProgress last = glint::Train(options, files, materials, validation, Report);
+// What all trainings draw their materials from.
+struct MaterialOptions {
+  std::string pack;
+  double pack_share = 0.5;
+
+  void AddTo(CLI::App* app) {
+    app->add_option("--materials", pack, "pack of real materials to mix in (glint-synth pack)");
+    app->add_option("--materials-share", pack_share, "of all materials that come from the pack")
+        ->capture_default_str();
+  }
+};
+
+// The sources of a training, and the name of its data.
+struct Sources {
+  glint::MaterialPack pack;
+  glint::MaterialSource training, validation;
+  std::string name = "procedural";
+
+  Sources(const MaterialOptions& options, std::uint64_t seed, int size) {
+    if (!options.pack.empty()) {
+      pack = glint::ReadMaterialPack(options.pack);
+      name += ", " + std::to_string(pack.size()) + " packed materials in " +
+              std::to_string(options.pack_share);
+    }
+    const glint::TrainingMaterialOptions chosen{seed, size, options.pack_share, 0.3};
+    training = [this, chosen](std::uint64_t k) { return TrainingMaterial(chosen, &pack, k); };
+    validation = [size](std::uint64_t k) {
+      return glint::MakeMaterial(glint::kReservedSeedBase + kValidationOffset + k, size, size);
+    };
+  }
+};
+
+int Say(const TrainFiles& files, const TrainProgress& last) {
   std::printf("%s: %lld steps, map loss %.4f, validation %.4f\n", files.weights.c_str(),
               static_cast<long long>(last.step), last.map_loss,
               last.validation_map_loss.value_or(0.0));
   return 0;
+}
+
+int RunAutoencoder(AutoencoderTrainOptions options, const TrainFiles& files,
+                   const MaterialOptions& materials) {
+  const Sources sources(materials, options.seed, options.pool.material_size);
+  options.data_name = sources.name;
+  return Say(files, glint::TrainAutoencoder(options, files, sources.training, sources.validation,
+                                            Report));
 }
 
 }  // namespace
@@ -99,17 +129,19 @@ int main(int argc, char** argv) {
   CLI::App app("Trains Glint's auto-encoder of SVBRDF maps on procedural materials.", "glint-train");
   app.set_version_flag("--version", GLINT_VERSION);
   app.require_subcommand(1);
-  TrainOptions options;
+  AutoencoderTrainOptions options;
   TrainFiles files;
   CLI::App* autoencoder = app.add_subcommand("autoencoder", "the learned space of `glint-fit`");
   AddOptions(autoencoder, &options, &files);
+  MaterialOptions materials;
+  materials.AddTo(autoencoder);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    return TrainAutoencoder(options, files);
+    return RunAutoencoder(options, files, materials);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "glint-train: error: %s\n", error.what());
     return 1;

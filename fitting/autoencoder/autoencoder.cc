@@ -1,11 +1,11 @@
 #include "fitting/autoencoder/autoencoder.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <stdexcept>
 
 #include "fitting/autoencoder/network.h"
-#include "fitting/autoencoder/train_state.h"
+#include "fitting/autoencoder/network_file.h"
+#include "fitting/layers/layers.h"
 
 namespace glint {
 namespace {
@@ -158,31 +158,6 @@ std::vector<float> Autoencoder::Tape::Backward(const EncodedMaps& gradient) {
   const Tensor g = torch::autograd::grad({state_->decoded}, {state_->z}, {full})[0].contiguous();
   state_->decoded.reset();
   return {g.data_ptr<float>(), g.data_ptr<float>() + g.numel()};
-}
-
-std::filesystem::path FindModel(const std::string& name, const std::filesystem::path& given) {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  if (!given.empty()) {
-    if (fs::exists(given, ignored)) return given;
-    throw std::runtime_error(given.string() + ": weights: found no such file; give the path of a " +
-                             name + " or leave the option out");
-  }
-  std::vector<fs::path> places;
-  if (const char* folder = std::getenv("GLINT_MODELS")) places.emplace_back(folder);
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  if (!program.empty()) {
-    places.push_back(program.parent_path().parent_path() / "share/glint/models");
-    places.push_back(program.parent_path().parent_path().parent_path() / "fitting/models");
-  }
-  places.emplace_back(GLINT_MODELS_SOURCE_DIR);
-  std::string looked;
-  for (const fs::path& place : places) {
-    if (fs::exists(place / name, ignored)) return place / name;
-    looked += (looked.empty() ? "" : ", ") + place.string();
-  }
-  throw std::runtime_error(name + ": weights: found in none of " + looked +
-                           "; set GLINT_MODELS to the folder that holds it");
 }
 
 }  // namespace glint

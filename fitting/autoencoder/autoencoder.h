@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/autoencoder/encoding.h"
+#include "fitting/encoding/encoding.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
@@ -64,11 +64,6 @@ class Autoencoder {
   explicit Autoencoder(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
-
-// Where a trained file of fitting/models lies at run time. Looked for in this order: `given` (when not
-// empty), $GLINT_MODELS/NAME, ../share/glint/models and ../../fitting/models beside the running
-// program, the source tree of the build. Throws std::runtime_error that lists the places.
-std::filesystem::path FindModel(const std::string& name, const std::filesystem::path& given = {});
 
 inline constexpr char kAutoencoderModel[] = "autoencoder.safetensors";
 

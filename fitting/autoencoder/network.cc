@@ -1,88 +1,16 @@
 #include "fitting/autoencoder/network.h"
 
 #include <cmath>
-#include <cstring>
 
-#include "fitting/autoencoder/encoding.h"
+#include "fitting/encoding/encoding.h"
+#include "fitting/layers/layers.h"
 
 namespace glint {
 namespace {
 
 using torch::Tensor;
 
-constexpr double kLeak = 0.2;
 constexpr double kNormEpsilon = 1e-5;
-
-// Copies between the layouts of Interleave: `wide` [n, h+1, w+1, 2, 2, c], `fine` [n, 2h, 2w, c], both
-// contiguous, elements of any type. Output row m reads wide row (m+1)/2, phase (m+1)%2.
-template <bool kToFine>
-void CopyPhases(char* wide, char* fine, int64_t n, int64_t h, int64_t w, int64_t run_bytes) {
-  at::parallel_for(0, n * 2 * h, 1, [&](int64_t begin, int64_t end) {
-    for (int64_t row = begin; row < end; ++row) {
-      const int64_t image = row / (2 * h), m = row % (2 * h) + 1;
-      char* wide_row = wide + ((image * (h + 1) + m / 2) * (w + 1) * 4 + (m % 2) * 2) * run_bytes;
-      char* fine_row = fine + row * 2 * w * run_bytes;
-      for (int64_t q = 1; q <= 2 * w; ++q) {
-        char* a = wide_row + ((q / 2) * 4 + q % 2) * run_bytes;
-        char* b = fine_row + (q - 1) * run_bytes;
-        if constexpr (kToFine) {
-          std::memcpy(b, a, run_bytes);
-        } else {
-          std::memcpy(a, b, run_bytes);
-        }
-      }
-    }
-  });
-}
-
-// Pixel shuffle of [n, 4·c, h+1, w+1] (channel = phase·c + k) and a crop by one on each side, to
-// [n, c, 2h, 2w]; channels-last in and out, one pass over memory.
-class Interleave : public torch::autograd::Function<Interleave> {
- public:
-  static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& input) {
-    const Tensor x = input.contiguous(torch::MemoryFormat::ChannelsLast);
-    const int64_t n = x.size(0), c = x.size(1) / 4, h = x.size(2) - 1, w = x.size(3) - 1;
-    Tensor out = torch::empty({n, c, 2 * h, 2 * w},
-                              x.options().memory_format(torch::MemoryFormat::ChannelsLast));
-    CopyPhases<true>(static_cast<char*>(x.data_ptr()), static_cast<char*>(out.data_ptr()), n, h, w,
-                     c * static_cast<int64_t>(x.element_size()));
-    context->saved_data["shape"] = x.sizes();
-    return out;
-  }
-
-  static torch::autograd::tensor_list backward(torch::autograd::AutogradContext* context,
-                                               torch::autograd::tensor_list gradients) {
-    const Tensor g = gradients[0].contiguous(torch::MemoryFormat::ChannelsLast);
-    Tensor out = torch::zeros(context->saved_data["shape"].toIntVector(), g.options())
-                     .contiguous(torch::MemoryFormat::ChannelsLast);
-    CopyPhases<false>(static_cast<char*>(out.data_ptr()), static_cast<char*>(g.data_ptr()),
-                      g.size(0), g.size(2) / 2, g.size(3) / 2,
-                      g.size(1) * static_cast<int64_t>(g.element_size()));
-    return {out};
-  }
-};
-
-Tensor AsType(const Tensor& t, torch::Dtype type) {
-  return t.to(type).contiguous(torch::MemoryFormat::ChannelsLast);
-}
-
-// A 3×3 kernel [out, in, 3, 3] after nearest upsampling, as the 2×2 kernels of the four phases. Output
-// 2i sees input i−1 with the first tap and i with the other two; output 2i+1 sees i with the first two
-// and i+1 with the last. Phase 1 of wide row i is output 2i, phase 0 of wide row i+1 is output 2i+1.
-Tensor PhaseKernels(const Tensor& k) {
-  std::vector<Tensor> phases;
-  for (int a = 0; a < 2; ++a) {
-    for (int b = 0; b < 2; ++b) {
-      const auto fold = [](const Tensor& t, int dim, int phase) {
-        const Tensor first = t.select(dim, 0), mid = t.select(dim, 1), last = t.select(dim, 2);
-        return phase == 1 ? torch::stack({first, mid + last}, dim)
-                          : torch::stack({first + mid, last}, dim);
-      };
-      phases.push_back(fold(fold(k, 2, a), 3, b));
-    }
-  }
-  return torch::cat(phases, 0);
-}
 
 }  // namespace
 
@@ -109,8 +37,8 @@ AutoencoderNetwork AutoencoderNetwork::Random(const NetworkChannels& channels,
   return net;
 }
 
-std::vector<std::pair<std::string, Tensor*>> AutoencoderNetwork::Parameters() {
-  std::vector<std::pair<std::string, Tensor*>> list;
+NamedTensors AutoencoderNetwork::Parameters() {
+  NamedTensors list;
   const auto add = [&](const char* part, std::vector<Tensor>* weights, std::vector<Tensor>* biases) {
     weights->resize(kLevels);
     biases->resize(kLevels);
@@ -125,7 +53,7 @@ std::vector<std::pair<std::string, Tensor*>> AutoencoderNetwork::Parameters() {
   return list;
 }
 
-std::vector<std::pair<std::string, Tensor*>> AutoencoderNetwork::State() {
+NamedTensors AutoencoderNetwork::State() {
   auto list = Parameters();
   list.emplace_back("code.mean", &code_mean);
   list.emplace_back("code.variance", &code_variance);
@@ -136,7 +64,7 @@ Tensor AutoencoderNetwork::EncodeRaw(const Tensor& encoded, torch::Dtype compute
   Tensor x = AsType(encoded, compute);
   for (int i = 0; i < kLevels; ++i) {
     if (i > 0) x = at::leaky_relu(x, kLeak);
-    x = at::conv2d(x, AsType(encoder_weights[i], compute), encoder_biases[i].to(compute), 2, 1);
+    x = DownConvolve(x, encoder_weights[i], encoder_biases[i], compute);
   }
   return x.to(encoded.scalar_type());
 }
@@ -165,17 +93,9 @@ Tensor AutoencoderNetwork::Decode(const Tensor& z, torch::Dtype compute) const {
   Tensor x = AsType(z, compute);
   for (int i = 0; i < kLevels; ++i) {
     if (i > 0) x = at::leaky_relu(x, kLeak);
-    x = at::conv2d(x, AsType(decoder_weights[i], compute), decoder_biases[i].to(compute), 1, 1);
-    x = Interleave::apply(x);
+    x = UpConvolve(x, decoder_weights[i], decoder_biases[i], compute);
   }
   return at::tanh(x.to(z.scalar_type()));
-}
-
-torch::Dtype FastComputeType() {
-  __builtin_cpu_init();
-  const bool native = __builtin_cpu_supports("avx512bf16") && __builtin_cpu_supports("avx512bw") &&
-                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
-  return native ? torch::kBFloat16 : torch::kFloat32;
 }
 
 }  // namespace glint

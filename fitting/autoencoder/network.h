@@ -1,19 +1,18 @@
 // The auto-encoder as torch modules. Include from .cc files only: this header pulls in torch.
 //
-// Source: Gao et al. 2019 (DIR), Fig. 3 and its published code; see method.md's summary in
-// docs. Differences: bf16 needs convolutions, so the 4×4 stride-2 up-convolution is computed as a 2×2
-// convolution to four times the channels whose results are interleaved (pixel shuffle) and cropped by
-// one; this is the same linear map with the same number of multiplications. And the code enters the
-// decoder's first convolution as it is, without a LeakyReLU, so that training can start from a linear
-// auto-encoder (principal_start.h).
+// Source: Gao et al. 2019 (DIR), Fig. 3 and its published code. Differences: the up-convolutions are
+// computed by ordinary ones (fitting/layers), and the code enters the decoder's first convolution as
+// it is, without a LeakyReLU, so that training can start from a linear auto-encoder
+// (fitting/training/principal_start.h).
 #pragma once
 
 #include <torch/torch.h>
 
 #include <array>
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "fitting/weights/tensor_records.h"
 
 namespace glint {
 
@@ -34,9 +33,9 @@ struct AutoencoderNetwork {
   static AutoencoderNetwork Random(const NetworkChannels& channels, std::uint64_t seed);
 
   // Learned tensors with their names in weights files, in a fixed order.
-  std::vector<std::pair<std::string, torch::Tensor*>> Parameters();
+  NamedTensors Parameters();
   // Parameters and the code's running statistics.
-  std::vector<std::pair<std::string, torch::Tensor*>> State();
+  NamedTensors State();
 
   // `encoded` [B, 9, H, W], H and W multiples of 32 → code [B, C, H/32, W/32] before normalisation.
   // Convolutions run in `compute`; result in the type of `encoded`.
@@ -51,8 +50,5 @@ struct AutoencoderNetwork {
   // z [B, C, h, w] → encoded maps [B, 9, 32·h, 32·w] in [−1, 1], in z's type.
   torch::Tensor Decode(const torch::Tensor& z, torch::Dtype compute) const;
 };
-
-// bfloat16 where the CPU multiplies it natively (AVX512_BF16 or AMX), float32 elsewhere.
-torch::Dtype FastComputeType();
 
 }  // namespace glint

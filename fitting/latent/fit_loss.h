@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fitting/autoencoder/encoding.h"
+#include "fitting/encoding/encoding.h"
 #include "fitting/bootstrap/photographs.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "fitting/bootstrap/bootstrap.h"
+#include "fitting/weights/find_model.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/rectified_set.h"

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "fitting/autoencoder/encoding.h"
+#include "fitting/encoding/encoding.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {

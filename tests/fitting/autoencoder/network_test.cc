@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "fitting/autoencoder/autoencoder.h"
-#include "fitting/autoencoder/encoding_torch.h"
-#include "fitting/autoencoder/principal_start.h"
+#include "fitting/training/encoding_torch.h"
+#include "fitting/training/principal_start.h"
 #include "fitting/render/render_reference.h"
-#include "tests/fitting/autoencoder/toy_materials.h"
+#include "tests/fitting/training/toy_materials.h"
 
 namespace glint {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "tests/fitting/autoencoder/toy_materials.h"
+#include "tests/fitting/training/toy_materials.h"
 #include "tests/fitting/bootstrap/synthetic_set.h"
 
 namespace glint {

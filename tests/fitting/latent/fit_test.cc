@@ -8,7 +8,7 @@
 #include "fitting/latent/descent.h"
 #include "fitting/latent/fit_loss.h"
 #include "fitting/latent/levels.h"
-#include "tests/fitting/autoencoder/toy_materials.h"
+#include "tests/fitting/training/toy_materials.h"
 #include "tests/fitting/bootstrap/synthetic_set.h"
 
 namespace glint {

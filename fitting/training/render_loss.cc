@@ -1,4 +1,4 @@
-#include "fitting/autoencoder/render_loss.h"
+#include "fitting/training/render_loss.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fitting/autoencoder/encoding.h"
+#include "fitting/encoding/encoding.h"
 
 #include <algorithm>
 #include <cmath>

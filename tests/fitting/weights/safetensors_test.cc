@@ -1,4 +1,4 @@
-#include "fitting/autoencoder/safetensors.h"
+#include "fitting/weights/safetensors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

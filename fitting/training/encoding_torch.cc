@@ -1,6 +1,6 @@
-#include "fitting/autoencoder/encoding_torch.h"
+#include "fitting/training/encoding_torch.h"
 
-#include "fitting/autoencoder/encoding.h"
+#include "fitting/encoding/encoding.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {

@@ -1,9 +1,9 @@
-#include "fitting/autoencoder/material_pool.h"
+#include "fitting/training/material_pool.h"
 
 #include <gtest/gtest.h>
 
-#include "fitting/autoencoder/encoding.h"
-#include "tests/fitting/autoencoder/toy_materials.h"
+#include "fitting/encoding/encoding.h"
+#include "tests/fitting/training/toy_materials.h"
 
 namespace glint {
 namespace {

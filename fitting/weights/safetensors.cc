@@ -1,4 +1,4 @@
-#include "fitting/autoencoder/safetensors.h"
+#include "fitting/weights/safetensors.h"
 
 #include <bit>
 #include <cstring>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fitting/autoencoder/random.h"
+#include "fitting/training/random.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {

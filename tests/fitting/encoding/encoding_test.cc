@@ -1,4 +1,4 @@
-#include "fitting/autoencoder/encoding.h"
+#include "fitting/encoding/encoding.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/fitting/autoencoder/toy_materials.h"
+#include "tests/fitting/training/toy_materials.h"
 
 namespace glint {
 namespace {

@@ -1,10 +1,10 @@
-#include "fitting/autoencoder/trainer.h"
+#include "fitting/training/autoencoder_trainer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "fitting/autoencoder/autoencoder.h"
-#include "tests/fitting/autoencoder/toy_materials.h"
+#include "tests/fitting/training/toy_materials.h"
 #include "tests/support/process.h"
 
 namespace glint {
@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TrainOptions Tiny(std::int64_t steps) {
-  TrainOptions options;
+AutoencoderTrainOptions Tiny(std::int64_t steps) {
+  AutoencoderTrainOptions options;
   options.channels = {8, 12, 16, 24, 32};
   options.steps = steps;
   options.batch = 4;
@@ -34,10 +34,10 @@ SvbrdfMaps Unseen(std::uint64_t k) { return ToyMaterial(k + 1'000'000, 64, 64); 
 
 TEST(Trainer, AShortTrainingTakesASeventhOffTheLossOnUnseenMaterials) {
   const test::TemporaryFolder folder;
-  TrainOptions options = Tiny(150);
+  AutoencoderTrainOptions options = Tiny(150);
   options.principal_start = false;
   double first = 0;
-  const TrainProgress last = Train(options, {folder.path() / "w.safetensors", {}, {}, false}, Toy,
+  const TrainProgress last = TrainAutoencoder(options, {folder.path() / "w.safetensors", {}, {}, false}, Toy,
                                    Unseen, [&](const TrainProgress& p) {
                                      if (p.step == 0) first = *p.validation_map_loss;
                                    });
@@ -49,14 +49,14 @@ TEST(Trainer, AShortTrainingTakesASeventhOffTheLossOnUnseenMaterials) {
 TEST(Trainer, AResumedTrainingEndsWithTheSameBits) {
   const test::TemporaryFolder folder;
   const auto train = [&](const char* name, std::int64_t stop, std::int64_t steps, bool resume) {
-    TrainOptions options = Tiny(steps);
+    AutoencoderTrainOptions options = Tiny(steps);
     TrainFiles files{folder.path() / name, {}, {}, resume};
     options.checkpoint_minutes = 1e-9;  // after every step
     const auto report = [&](const TrainProgress& p) {
       if (stop > 0 && p.step == stop) throw std::runtime_error("interrupted");
     };
     try {
-      Train(options, files, Toy, Unseen, report);
+      TrainAutoencoder(options, files, Toy, Unseen, report);
     } catch (const std::runtime_error& error) {
       EXPECT_STREQ(error.what(), "interrupted");
     }
@@ -72,7 +72,7 @@ class TrainedWeights : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test::TemporaryFolder;
-    Train(Tiny(1), {folder_->path() / "w.safetensors", {}, {}, false}, Toy, Unseen, {});
+    TrainAutoencoder(Tiny(1), {folder_->path() / "w.safetensors", {}, {}, false}, Toy, Unseen, {});
     bytes_ = test::ReadAll(folder_->path() / "w.safetensors");
   }
   static void TearDownTestSuite() { delete folder_; }
@@ -115,28 +115,12 @@ TEST_F(TrainedWeights, OfAnotherEncodingAreRefused) {
 TEST(Trainer, OptionsThatCannotBeAreRefused) {
   const test::TemporaryFolder folder;
   const TrainFiles files{folder.path() / "w.safetensors", {}, {}, false};
-  TrainOptions crop = Tiny(1), batch = Tiny(1), endless = Tiny(0);
+  AutoencoderTrainOptions crop = Tiny(1), batch = Tiny(1), endless = Tiny(0);
   crop.crop = 48;
   batch.batch = 0;
-  EXPECT_THROW(Train(crop, files, Toy, Unseen, {}), std::runtime_error);
-  EXPECT_THROW(Train(batch, files, Toy, Unseen, {}), std::runtime_error);
-  EXPECT_THROW(Train(endless, files, Toy, Unseen, {}), std::runtime_error);
-}
-
-TEST(Models, AreFoundByEnvironmentAndNamedWhenMissing) {
-  const test::TemporaryFolder folder;
-  test::WriteAll(folder.path() / "some.safetensors", "x");
-  setenv("GLINT_MODELS", folder.path().c_str(), 1);
-  EXPECT_EQ(FindModel("some.safetensors"), folder.path() / "some.safetensors");
-  try {
-    FindModel("other.safetensors");
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("other.safetensors"),
-                                             testing::HasSubstr(folder.path().string())));
-  }
-  unsetenv("GLINT_MODELS");
-  EXPECT_THROW(FindModel("some.safetensors", folder.path() / "none"), std::runtime_error);
+  EXPECT_THROW(TrainAutoencoder(crop, files, Toy, Unseen, {}), std::runtime_error);
+  EXPECT_THROW(TrainAutoencoder(batch, files, Toy, Unseen, {}), std::runtime_error);
+  EXPECT_THROW(TrainAutoencoder(endless, files, Toy, Unseen, {}), std::runtime_error);
 }
 
 }  // namespace

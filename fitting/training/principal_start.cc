@@ -1,9 +1,9 @@
-#include "fitting/autoencoder/principal_start.h"
+#include "fitting/training/principal_start.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "fitting/autoencoder/encoding.h"
+#include "fitting/encoding/encoding.h"
 
 namespace glint {
 namespace {

@@ -1,11 +1,11 @@
-#include "fitting/autoencoder/material_pool.h"
+#include "fitting/training/material_pool.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "fitting/autoencoder/encoding.h"
-#include "fitting/autoencoder/random.h"
+#include "fitting/encoding/encoding.h"
+#include "fitting/training/random.h"
 
 namespace glint {
 namespace {

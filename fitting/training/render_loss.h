@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fitting/autoencoder/random.h"
+#include "fitting/training/random.h"
 #include "fitting/reflectance/view.h"
 
 namespace glint {

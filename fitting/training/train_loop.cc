@@ -1,0 +1,235 @@
+#include "fitting/training/train_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <stdexcept>
+
+#include "fitting/autoencoder/adam.h"
+#include "fitting/training/checkpoint.h"
+
+namespace glint {
+namespace {
+
+using torch::Tensor;
+
+constexpr double kReportSeconds = 5.0;
+constexpr int kCropMultiple = 32;
+
+double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+void CheckTrainOptions(const TrainOptions& o) {
+  const auto require = [](bool good, const std::string& message) {
+    if (!good) throw std::runtime_error("training options: " + message);
+  };
+  require(o.steps > 0 || o.minutes > 0, "found neither steps nor minutes; give one of them");
+  require(o.batch >= 1 && o.batch <= 4096, "found batch " + std::to_string(o.batch) +
+                                               "; it must be 1 to 4096");
+  require(o.crop >= kCropMultiple && o.crop % kCropMultiple == 0 && o.crop <= o.pool.material_size,
+          "found crop " + std::to_string(o.crop) +
+              "; it must be a multiple of 32 that fits the materials");
+  require(o.render_weight >= 0, "found a negative weight; it must be 0 or more");
+  require(o.threads >= 1, "found threads below 1");
+}
+
+namespace {
+
+std::span<float> Span(const Tensor& t) {
+  return {t.data_ptr<float>(), static_cast<size_t>(t.numel())};
+}
+
+class Log {
+ public:
+  Log(const std::filesystem::path& path, bool append)
+      : out_(path, append ? std::ios::app : std::ios::trunc) {
+    if (!append || out_.tellp() == 0) {
+      out_ << "step,seconds,samples_per_second,learning_rate,loss,map,smoothness,render,validation\n";
+    }
+  }
+  void Write(const TrainProgress& p) {
+    out_ << p.step << ',' << std::fixed << std::setprecision(1) << p.seconds << ','
+         << p.samples_per_second << ',' << std::defaultfloat << std::setprecision(6)
+         << p.learning_rate << ',' << p.loss << ',' << p.map_loss << ',' << p.smoothness_loss << ','
+         << p.render_loss << ',';
+    if (p.validation_map_loss) out_ << *p.validation_map_loss;
+    out_ << std::endl;
+  }
+
+ private:
+  std::ofstream out_;
+};
+
+// Means of the losses since the last report.
+class Window {
+ public:
+  void Add(const StepLosses& losses, double total) {
+    sum_.loss += total;
+    sum_.map_loss += losses.map;
+    sum_.smoothness_loss += losses.smoothness;
+    sum_.render_loss += losses.render;
+    ++steps_;
+  }
+  int steps() const { return steps_; }
+  TrainProgress Take() {
+    TrainProgress mean = sum_;
+    for (double* x : {&mean.loss, &mean.map_loss, &mean.smoothness_loss, &mean.render_loss}) {
+      *x /= std::max(1, steps_);
+    }
+    sum_ = {};
+    steps_ = 0;
+    return mean;
+  }
+
+ private:
+  TrainProgress sum_;
+  int steps_ = 0;
+};
+
+class Loop {
+ public:
+  Loop(const TrainOptions& options, const TrainFiles& files, Trainable* trainable)
+      : options_(options),
+        files_(files),
+        trainable_(trainable),
+        state_(TrainState::From(trainable->State(), trainable->AverageState(),
+                                trainable->learned())) {
+    if (files.resume && std::filesystem::exists(files.CheckpointPath())) {
+      LoadCheckpoint(files.CheckpointPath(), trainable->Description(), &state_);
+    }
+  }
+
+  TrainProgress Run(const TrainReport& report) {
+    Log log(files_.LogPath(), files_.resume);
+    TrainProgress progress;
+    progress.step = state_.step;
+    progress.validation_map_loss = trainable_->Validate();
+    if (report) report(progress);  // where it starts
+    double tick = Now(), window_seconds = 0, since_checkpoint = 0;
+    while (Done() < 1.0) {
+      Step();
+      const double now = Now(), elapsed = now - tick;
+      tick = now;
+      state_.seconds += elapsed;
+      window_seconds += elapsed;
+      since_checkpoint += elapsed;
+      const bool checkpoint =
+          Done() >= 1.0 || since_checkpoint > 60.0 * options_.checkpoint_minutes;
+      if (window_seconds < kReportSeconds && !checkpoint) continue;
+      progress = Report(window_seconds);
+      if (checkpoint) {
+        progress.validation_map_loss = trainable_->Validate();
+        Save(*progress.validation_map_loss);
+        since_checkpoint = 0;
+      }
+      window_seconds = 0;
+      log.Write(progress);
+      if (report) report(progress);
+      tick = Now();  // validation and writing are not training time
+    }
+    return progress;
+  }
+
+ private:
+  // Fraction of the training that is over.
+  double Done() const {
+    const double by_steps =
+        options_.steps > 0 ? static_cast<double>(state_.step) / options_.steps : 0.0;
+    const double by_time = options_.minutes > 0 ? state_.seconds / (60.0 * options_.minutes) : 0.0;
+    return std::max(by_steps, by_time);
+  }
+
+  double LearningRate() const {
+    const double since = static_cast<double>(state_.step - options_.warmup_from);
+    const double warm = std::clamp((since + 1) / std::max(1, options_.warmup_steps), 0.01, 1.0);
+    const double cosine = 0.5 * (1.0 + std::cos(M_PI * std::min(1.0, Done())));
+    return options_.learning_rate * warm * std::max(0.01, cosine);
+  }
+
+  void Step() {
+    for (size_t i = 0; i < state_.moment1.size(); ++i) {
+      Tensor* tensor = state_.network[i].second;
+      tensor->set_requires_grad(true);
+      tensor->mutable_grad().reset();
+    }
+    const StepLosses losses = trainable_->Forward(state_.step);
+    const double total = losses.total.item<double>();
+    if (!std::isfinite(total)) {
+      throw std::runtime_error("training: the loss is not finite at step " +
+                               std::to_string(state_.step) + "; resume with a lower --lr");
+    }
+    losses.total.backward();
+    Update();
+    window_.Add(losses, total);
+  }
+
+  void Update() {
+    ++state_.step;
+    const AdamOptions adam{LearningRate()};
+    const double t = static_cast<double>(state_.step);
+    const double decay = std::min(options_.average_decay, (1.0 + t) / (10.0 + t));
+    for (size_t i = 0; i < state_.network.size(); ++i) {
+      Tensor weights = state_.network[i].second->detach();
+      if (i < state_.moment1.size()) {
+        const Tensor g = state_.network[i].second->grad().contiguous();
+        AdamStep(adam, state_.step, Span(g), Span(weights), Span(state_.moment1[i]),
+                 Span(state_.moment2[i]));
+      }
+      MoveAverage(decay, Span(weights), Span(*state_.average[i].second));
+    }
+  }
+
+  TrainProgress Report(double window_seconds) {
+    const int steps = window_.steps();
+    TrainProgress progress = window_.Take();
+    progress.step = state_.step;
+    progress.seconds = state_.seconds;
+    progress.samples_per_second = steps * options_.batch / std::max(window_seconds, 1e-9);
+    progress.learning_rate = LearningRate();
+    progress.eta_seconds = state_.seconds * (1.0 / std::max(Done(), 1e-9) - 1.0);
+    return progress;
+  }
+
+  void Save(double validation) {
+    SaveCheckpoint(files_.CheckpointPath(), state_, trainable_->Description());
+    trainable_->SaveWeights(files_.weights,
+                            {{"data", options_.data_name},
+                             {"seed", std::to_string(options_.seed)},
+                             {"steps", std::to_string(state_.step)},
+                             {"samples", std::to_string(state_.step * options_.batch)},
+                             {"validation_map_l1", std::to_string(validation)}});
+  }
+
+  const TrainOptions& options_;
+  const TrainFiles& files_;
+  Trainable* trainable_;
+  TrainState state_;
+  Window window_;
+};
+
+}  // namespace
+
+std::filesystem::path TrainFiles::CheckpointPath() const {
+  return checkpoint.empty() ? weights.string() + ".checkpoint" : checkpoint.string();
+}
+
+std::filesystem::path TrainFiles::LogPath() const {
+  return log_csv.empty() ? weights.string() + ".csv" : log_csv.string();
+}
+
+std::int64_t FirstStep(const TrainFiles& files) {
+  const std::filesystem::path path = files.CheckpointPath();
+  return files.resume && std::filesystem::exists(path) ? CheckpointStep(path) : 0;
+}
+
+TrainProgress RunTraining(const TrainOptions& options, const TrainFiles& files,
+                          Trainable* trainable, const TrainReport& report) {
+  return Loop(options, files, trainable).Run(report);
+}
+
+}  // namespace glint

@@ -1,0 +1,57 @@
+// Options and progress of trainings.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "fitting/training/material_pool.h"
+
+namespace glint {
+
+struct TrainOptions {
+  std::int64_t steps = 0;        // 0: until `minutes` are over
+  double minutes = 0;            // training time, counted over all resumes
+  int batch = 16;
+  int crop = 128;                // texels; a multiple of 32
+  double learning_rate = 5e-4;   // the highest; it rises over `warmup_steps`, then falls as a cosine
+  int warmup_steps = 200;
+  std::int64_t warmup_from = 0;  // the step it rises from: a checkpoint's, when a resume lengthens
+  double render_weight = 0.3;    // of the renderings' log-L1; 0: none
+  int render_views = 3;          // per sample; a third cosine-distributed, the others on highlights
+  double normal_weight = 1.0;    // of the normals' L1 among the maps
+  double average_decay = 0.999;  // of the moving average of weights, which is what is written
+  bool bf16 = true;              // where the CPU multiplies it natively
+  int threads = 1;
+  std::uint64_t seed = 1;
+  double checkpoint_minutes = 3; // also how often validation runs
+  PoolOptions pool;
+  std::string data_name;         // written into the weights' metadata
+};
+
+struct TrainFiles {
+  std::filesystem::path weights;     // the result, rewritten at each checkpoint
+  std::filesystem::path checkpoint;  // optimiser and all; empty: <weights>.checkpoint
+  std::filesystem::path log_csv;     // empty: <weights>.csv; appended to when resuming
+  bool resume = false;               // go on from the checkpoint when it exists
+
+  std::filesystem::path CheckpointPath() const;
+  std::filesystem::path LogPath() const;
+};
+
+// One line of the log.
+struct TrainProgress {
+  std::int64_t step = 0;
+  double seconds = 0;             // of training, resumes included
+  double samples_per_second = 0;
+  double eta_seconds = 0;
+  double learning_rate = 0;
+  double loss = 0, map_loss = 0, smoothness_loss = 0, render_loss = 0;  // means since the last line
+  std::optional<double> validation_map_loss;  // L1 of encoded maps, averaged weights
+};
+
+using TrainReport = std::function<void(const TrainProgress&)>;
+
+}  // namespace glint
