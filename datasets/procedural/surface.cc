@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "datasets/procedural/dispatch.h"
 #include "datasets/procedural/shaping.h"
 #include "datasets/procedural/weathering.h"
 
@@ -127,6 +128,7 @@ float Surface::ReliefScale() const {
 }
 
 // `residue`: part of a metal's colour that its oxide and dust scatter diffusely.
+GLINT_VECTOR_CLONES
 void WriteReflectance(const RowBuffers& rows, float residue, int first, int row, SvbrdfMaps& maps) {
   const size_t at = static_cast<size_t>(row) * maps.width;
   const float* base[3] = {rows.r + first, rows.g + first, rows.b + first};
@@ -151,6 +153,7 @@ void WriteReflectance(const RowBuffers& rows, float residue, int first, int row,
 }
 
 // Central differences of a height plane that has a border of one texel all around.
+GLINT_VECTOR_CLONES
 void WriteNormals(const std::vector<float>& heights, float scale, SvbrdfMaps& maps) {
   const size_t stride = static_cast<size_t>(maps.width) + 2;
   for (int row = 0; row < maps.height; ++row) {
