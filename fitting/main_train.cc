@@ -6,18 +6,22 @@
 
 #include "datasets/procedural/material.h"
 #include "fitting/training/autoencoder_trainer.h"
+#include "fitting/training/estimator_trainer.h"
 #include "fitting/training/training_materials.h"
 
 namespace {
 
+using glint::EstimatorTrainOptions;
 using glint::TrainFiles;
 using glint::AutoencoderTrainOptions;
+using glint::TrainOptions;
 using glint::TrainProgress;
 
 // Validation takes reserved seeds that no table of results uses.
 constexpr std::uint64_t kValidationOffset = 500'000'000;
 
-void AddOptions(CLI::App* app, AutoencoderTrainOptions* o, TrainFiles* files) {
+// Options that all trainings have.
+void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
   app->add_option("--out", files->weights, "weights file to write (safetensors)")->required();
   app->add_option("--checkpoint", files->checkpoint, "checkpoint file (default: OUT.checkpoint)");
   app->add_option("--log", files->log_csv, "loss log, CSV (default: OUT.csv)");
@@ -26,19 +30,10 @@ void AddOptions(CLI::App* app, AutoencoderTrainOptions* o, TrainFiles* files) {
   app->add_option("--minutes", o->minutes, "training time, counted over all resumes");
   app->add_option("--batch", o->batch, "crops per step")->capture_default_str();
   app->add_option("--crop", o->crop, "texels along a crop, multiple of 32")->capture_default_str();
-  app->add_option("--channels", o->channels, "channels of the five levels, the last the code's")
-      ->delimiter(',')
-      ->capture_default_str();
   app->add_option("--lr", o->learning_rate, "highest learning rate")->capture_default_str();
   app->add_option("--warmup", o->warmup_steps, "steps of rising rate")->capture_default_str();
   app->add_option("--warmup-from", o->warmup_from,
                   "step the rate rises from: a checkpoint's, when --resume lengthens a training")
-      ->capture_default_str();
-  app->add_option("--smoothness", o->smoothness, "weight of the smoothness term (DIR: 2)")
-      ->capture_default_str();
-  app->add_option("--smoothness-share", o->smoothness_share, "share of the batch it is taken on")
-      ->capture_default_str();
-  app->add_option("--noise-variance", o->noise_variance, "of the code's disturbance")
       ->capture_default_str();
   app->add_option("--render-weight", o->render_weight, "weight of the rendering term")
       ->capture_default_str();
@@ -47,8 +42,6 @@ void AddOptions(CLI::App* app, AutoencoderTrainOptions* o, TrainFiles* files) {
   app->add_option("--normal-weight", o->normal_weight, "of normals in the map term")
       ->capture_default_str();
   app->add_option("--average-decay", o->average_decay, "of the moving average of weights")
-      ->capture_default_str();
-  app->add_option("--principal-start", o->principal_start, "start from principal components")
       ->capture_default_str();
   app->add_option("--bf16", o->bf16, "multiply in bf16 where the CPU can")->capture_default_str();
   app->add_option("--pool-window", o->pool.window, "materials a step chooses from")
@@ -63,6 +56,27 @@ void AddOptions(CLI::App* app, AutoencoderTrainOptions* o, TrainFiles* files) {
       ->capture_default_str();
   app->add_option("--seed", o->seed, "of weights, materials and crops")->capture_default_str();
   app->add_option("--threads", o->threads, "torch threads; results repeat for a fixed number")
+      ->capture_default_str();
+}
+
+void AddAutoencoderOptions(CLI::App* app, AutoencoderTrainOptions* o) {
+  app->add_option("--channels", o->channels, "channels of the five levels, the last the code's")
+      ->delimiter(',')
+      ->capture_default_str();
+  app->add_option("--smoothness", o->smoothness, "weight of the smoothness term (DIR: 2)")
+      ->capture_default_str();
+  app->add_option("--smoothness-share", o->smoothness_share, "share of the batch it is taken on")
+      ->capture_default_str();
+  app->add_option("--noise-variance", o->noise_variance, "of the code's disturbance")
+      ->capture_default_str();
+  app->add_option("--principal-start", o->principal_start, "start from principal components")
+      ->capture_default_str();
+}
+
+void AddEstimatorOptions(CLI::App* app, EstimatorTrainOptions* o) {
+  app->add_option("--channels", o->channels,
+                  "channels of the five levels, of the full resolution, of the global track")
+      ->delimiter(',')
       ->capture_default_str();
 }
 
@@ -115,33 +129,43 @@ int Say(const TrainFiles& files, const TrainProgress& last) {
   return 0;
 }
 
-int RunAutoencoder(AutoencoderTrainOptions options, const TrainFiles& files,
-                   const MaterialOptions& materials) {
+// `train` is TrainAutoencoder or TrainEstimator.
+template <class Options, class Train>
+int Run(Options options, const TrainFiles& files, const MaterialOptions& materials, Train train) {
   const Sources sources(materials, options.seed, options.pool.material_size);
   options.data_name = sources.name;
-  return Say(files, glint::TrainAutoencoder(options, files, sources.training, sources.validation,
-                                            Report));
+  return Say(files, train(options, files, sources.training, sources.validation, Report));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Trains Glint's auto-encoder of SVBRDF maps on procedural materials.", "glint-train");
+  CLI::App app("Trains Glint's networks on procedural and packed materials.", "glint-train");
   app.set_version_flag("--version", GLINT_VERSION);
   app.require_subcommand(1);
-  AutoencoderTrainOptions options;
+  AutoencoderTrainOptions autoencoder_options;
+  EstimatorTrainOptions estimator_options;
   TrainFiles files;
-  CLI::App* autoencoder = app.add_subcommand("autoencoder", "the learned space of `glint-fit`");
-  AddOptions(autoencoder, &options, &files);
   MaterialOptions materials;
+  CLI::App* autoencoder = app.add_subcommand("autoencoder", "the learned space of `glint-fit`");
+  AddCommonOptions(autoencoder, &autoencoder_options, &files);
+  AddAutoencoderOptions(autoencoder, &autoencoder_options);
   materials.AddTo(autoencoder);
+  CLI::App* bootstrap =
+      app.add_subcommand("bootstrap", "the single-photo estimator, where `glint-fit` starts");
+  AddCommonOptions(bootstrap, &estimator_options, &files);
+  AddEstimatorOptions(bootstrap, &estimator_options);
+  materials.AddTo(bootstrap);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    return RunAutoencoder(options, files, materials);
+    if (autoencoder->parsed()) {
+      return Run(autoencoder_options, files, materials, glint::TrainAutoencoder);
+    }
+    return Run(estimator_options, files, materials, glint::TrainEstimator);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "glint-train: error: %s\n", error.what());
     return 1;

@@ -9,7 +9,7 @@
 #pragma once
 
 #include "fitting/bootstrap/lobes.h"
-#include "fitting/bootstrap/photographs.h"
+#include "fitting/photographs/photographs.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "fitting/bootstrap/photographs.h"
+#include "fitting/photographs/photographs.h"
 
 namespace glint {
 

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "fitting/autoencoder/autoencoder.h"
-#include "fitting/bootstrap/photographs.h"
+#include "fitting/photographs/photographs.h"
 
 namespace glint {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fitting/encoding/encoding.h"
-#include "fitting/bootstrap/photographs.h"
+#include "fitting/photographs/photographs.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/bootstrap/photographs.h"
+#include "fitting/photographs/photographs.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/render/renderer.h"
 

@@ -1,4 +1,4 @@
-#include "fitting/bootstrap/photographs.h"
+#include "fitting/photographs/photographs.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,0 +1,24 @@
+// The estimator's weights file. Include from .cc files only: this header pulls in torch.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "fitting/estimator/estimator_network.h"
+
+namespace glint {
+
+inline constexpr char kEstimatorArchitecture[] = "glint-estimator v1";
+
+// What a file of this network says of itself: architecture, encoding, channels (levels, full, global).
+std::map<std::string, std::string> EstimatorMetadata(const EstimatorNetwork& network);
+
+// Weights for users, in bf16.
+void SaveEstimator(const std::filesystem::path& path, EstimatorNetwork* network,
+                   std::map<std::string, std::string> metadata);
+
+// Throws std::runtime_error "FILE: PART: found …; MEND".
+EstimatorNetwork LoadEstimator(const std::filesystem::path& path);
+
+}  // namespace glint

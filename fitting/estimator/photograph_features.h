@@ -1,0 +1,36 @@
+// What the single-photo estimator is shown of a photograph: planes of features, one value a texel,
+// and a profile of the whole.
+//
+//   plane 0–2  √(π·I / (E·NoL)) of R, G, B, at most 2: the albedo's root of a matte, flat texel
+//         3    1 where a channel is clipped (LDR photographs only)
+//         4    the mask; where it is below 1/2 planes 0–3 are 0
+//         5–6  x and y of the direction to the light        7–8  of the direction to the camera
+//         9    angle between normal (the plane's) and half vector, in radians
+//        10    ln(E·NoL/π), clamped to ±3: how dark the photograph is there
+//
+// The profile says, for kProfileBins rings of that angle: mean ln of the squares of planes 0–2, the
+// spread of the green one, the clipped share, and whether the ring has texels at all. A highlight's
+// width and height, and so roughness and specular albedo, are read off it.
+#pragma once
+
+#include <vector>
+
+#include "fitting/photographs/photographs.h"
+
+namespace glint {
+
+inline constexpr int kFeaturePlanes = 11;
+inline constexpr int kProfileBins = 12;
+inline constexpr int kProfileValues = 6 * kProfileBins;
+
+struct PhotographFeatures {
+  int width = 0;
+  int height = 0;
+  std::vector<float> planes;   // kFeaturePlanes planes
+  std::vector<float> profile;  // kProfileValues, [bin][value]
+};
+
+PhotographFeatures FeaturesOf(const Photograph& photograph, const SamplePlane& plane,
+                              const ReflectanceConvention& convention);
+
+}  // namespace glint

@@ -1,0 +1,80 @@
+#include "fitting/estimator/estimator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "fitting/estimator/estimator_file.h"
+#include "tests/fitting/bootstrap/synthetic_set.h"
+#include "tests/fitting/training/toy_materials.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+using test::PhotographMaps;
+using test::UniformMaps;
+
+EstimatorNetwork Small() { return EstimatorNetwork::Random({{8, 12, 16, 16, 24}, 8, 16}, 3); }
+
+// A network of drawn weights, as a file.
+class EstimatorFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    EstimatorNetwork network = Small();
+    SaveEstimator(path_, &network, {});
+  }
+  SvbrdfMaps Estimate(const PhotographSet& set, int threads = 1) const {
+    return Estimator::Load(path_).Estimate(set.photographs[0], set.plane, set.convention, threads);
+  }
+  const test::TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_.path() / "e.safetensors";
+};
+
+TEST_F(EstimatorFile, BitsDoNotDependOnThreads) {
+  const PhotographSet set = PhotographMaps(ToyMaterial(2, 70, 45), 1);
+  EXPECT_EQ(Estimate(set, 1).planes, Estimate(set, 2).planes);
+}
+
+TEST_F(EstimatorFile, MapsAreOfThePhotographsSizeAndWithinTheirRanges) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {33, 20}, {64, 96}}) {
+    const PhotographSet set = PhotographMaps(ToyMaterial(2, width, height), 1);
+    const SvbrdfMaps maps = Estimate(set);
+    ASSERT_EQ(maps.width, width);
+    ASSERT_EQ(maps.height, height);
+    for (const float r : maps.plane(kRoughness)) EXPECT_TRUE(r > 0 && r <= 1);
+    for (const float z : maps.plane(kNormalZ)) EXPECT_GT(z, 0);
+  }
+}
+
+TEST_F(EstimatorFile, BeforeTrainingDiffuseIsAboutWhatAMatteTexelShows) {
+  const PhotographSet set = PhotographMaps(UniformMaps(64, 0.3f, 0.0f, 1.0f), 1);
+  const SvbrdfMaps maps = Estimate(set);
+  EXPECT_NEAR(maps.at(kDiffuseR, 20, 20), 0.3f, 0.15f);
+}
+
+TEST_F(EstimatorFile, DamagedFilesAreRefusedWithTheirName) {
+  const std::string bytes = test::ReadAll(path_);
+  for (const double share : {0.0, 0.01, 0.5, 0.99}) {
+    test::WriteAll(path_, bytes.substr(0, static_cast<size_t>(share * static_cast<double>(bytes.size()))));
+    try {
+      Estimator::Load(path_);
+      ADD_FAILURE() << share;
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("e.safetensors"));
+    }
+  }
+}
+
+TEST(StartingPhotograph, IsTheOneFromTheTop) {
+  PhotographSet set = PhotographMaps(UniformMaps(16, 0.3f, 0.04f, 0.5f), 4);
+  std::swap(set.photographs[0], set.photographs[2]);  // synthetic sets begin with the top view
+  EXPECT_EQ(BestStartingPhotograph(set), 2u);
+  for (float& m : set.photographs[2].mask) m = 0;
+  EXPECT_NE(BestStartingPhotograph(set), 2u);
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,72 @@
+#include "fitting/estimator/photograph_features.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/fitting/bootstrap/synthetic_set.h"
+
+namespace glint {
+namespace {
+
+using test::PhotographMaps;
+using test::UniformMaps;
+
+float Plane(const PhotographFeatures& f, int plane, int row, int column) {
+  const size_t texels = static_cast<size_t>(f.width) * f.height;
+  return f.planes[plane * texels + static_cast<size_t>(row) * f.width + column];
+}
+
+float OfRing(const PhotographFeatures& f, int bin, int value) {
+  return f.profile[static_cast<size_t>(6 * bin + value)];
+}
+
+TEST(PhotographFeatures, ShowTheRootOfAMatteAlbedoWhateverLightAndView) {
+  const SvbrdfMaps truth = UniformMaps(24, 0.36f, 0.0f, 1.0f);
+  for (const double power : {0.5, 2.0}) {
+    const PhotographSet set = PhotographMaps(truth, 3, false, power);
+    for (const Photograph& photo : set.photographs) {
+      const PhotographFeatures f = FeaturesOf(photo, set.plane, set.convention);
+      // F0 = 0 still reflects a little at grazing angles and r = 1: 2 % of the root.
+      EXPECT_NEAR(Plane(f, 0, 12, 3), 0.6f, 0.015f);
+      EXPECT_EQ(Plane(f, 3, 12, 3), 0.0f);
+      EXPECT_EQ(Plane(f, 4, 12, 3), 1.0f);
+    }
+  }
+}
+
+TEST(PhotographFeatures, ProfileRisesTowardAPolishedSamplesHighlight) {
+  const PhotographSet polished = PhotographMaps(UniformMaps(64, 0.1f, 0.05f, 0.2f), 1, false);
+  const PhotographSet matte = PhotographMaps(UniformMaps(64, 0.1f, 0.05f, 0.9f), 1, false);
+  const auto rise = [](const PhotographSet& set) {
+    const PhotographFeatures f = FeaturesOf(set.photographs[0], set.plane, set.convention);
+    return OfRing(f, 1, 1) - OfRing(f, 8, 1);
+  };
+  EXPECT_GT(rise(polished), 1.0f);
+  EXPECT_LT(rise(matte), 0.3f);
+}
+
+TEST(PhotographFeatures, MaskedTexelsSayNothing) {
+  PhotographSet set = PhotographMaps(UniformMaps(16, 0.3f, 0.04f, 0.5f), 1);
+  const PhotographFeatures before = FeaturesOf(set.photographs[0], set.plane, set.convention);
+  for (int i = 0; i < 40; ++i) {
+    set.photographs[0].mask[i] = 0;
+    for (int c = 0; c < 3; ++c) set.photographs[0].rgb[c * 256 + i] = std::nanf("");
+  }
+  const PhotographFeatures after = FeaturesOf(set.photographs[0], set.plane, set.convention);
+  EXPECT_EQ(Plane(after, 0, 0, 0), 0.0f);
+  EXPECT_EQ(Plane(after, 4, 0, 0), 0.0f);
+  for (const float x : after.planes) EXPECT_TRUE(std::isfinite(x));
+  for (const float x : after.profile) EXPECT_TRUE(std::isfinite(x));
+  EXPECT_EQ(Plane(before, 0, 15, 15), Plane(after, 0, 15, 15));
+}
+
+TEST(PhotographFeatures, ClippingIsForLdrPhotographsOnly) {
+  PhotographSet set = PhotographMaps(UniformMaps(32, 0.9f, 0.5f, 0.2f), 1);
+  EXPECT_EQ(Plane(FeaturesOf(set.photographs[0], set.plane, set.convention), 3, 16, 16), 1.0f);
+  set.photographs[0].ldr = false;
+  EXPECT_EQ(Plane(FeaturesOf(set.photographs[0], set.plane, set.convention), 3, 16, 16), 0.0f);
+}
+
+}  // namespace
+}  // namespace glint

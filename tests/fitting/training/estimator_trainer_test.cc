@@ -1,0 +1,83 @@
+#include "fitting/training/estimator_trainer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "tests/fitting/training/toy_materials.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+EstimatorTrainOptions Tiny(std::int64_t steps) {
+  EstimatorTrainOptions options;
+  options.channels = {8, 12, 16, 16, 24, 8, 16};
+  options.steps = steps;
+  options.batch = 4;
+  options.crop = 32;
+  options.learning_rate = 3e-3;
+  options.warmup_steps = 10;
+  options.render_views = 1;
+  options.pool.material_size = 64;
+  options.pool.window = 32;
+  options.pool.first = 8;
+  options.pool.per_step = 0.2;
+  options.bf16 = false;
+  return options;
+}
+
+SvbrdfMaps Toy(std::uint64_t k) { return ToyMaterial(k, 64, 64); }
+SvbrdfMaps Unseen(std::uint64_t k) { return ToyMaterial(k + 1'000'000, 64, 64); }
+
+TEST(EstimatorTrainer, AShortTrainingTakesAThirdOffTheErrorOnUnseenMaterials) {
+  const test::TemporaryFolder folder;
+  double first = 0;
+  const TrainProgress last =
+      TrainEstimator(Tiny(150), {folder.path() / "e.safetensors", {}, {}, false}, Toy, Unseen,
+                     [&](const TrainProgress& p) {
+                       if (p.step == 0) first = *p.validation_map_loss;
+                     });
+  ASSERT_TRUE(last.validation_map_loss.has_value());
+  EXPECT_LT(*last.validation_map_loss, 0.67 * first);
+}
+
+TEST(EstimatorTrainer, AResumedTrainingEndsWithTheSameBits) {
+  const test::TemporaryFolder folder;
+  const auto train = [&](const char* name, std::int64_t stop, bool resume) {
+    EstimatorTrainOptions options = Tiny(6);
+    options.checkpoint_minutes = 1e-9;  // after every step
+    const auto report = [&](const TrainProgress& p) {
+      if (stop > 0 && p.step == stop) throw std::runtime_error("interrupted");
+    };
+    try {
+      TrainEstimator(options, {folder.path() / name, {}, {}, resume}, Toy, Unseen, report);
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "interrupted");
+    }
+  };
+  train("whole.safetensors", 0, false);
+  train("parts.safetensors", 3, false);
+  train("parts.safetensors", 0, true);
+  EXPECT_EQ(test::ReadAll(folder.path() / "whole.safetensors"),
+            test::ReadAll(folder.path() / "parts.safetensors"));
+}
+
+TEST(EstimatorTrainer, ACheckpointOfOtherChannelsIsRefused) {
+  const test::TemporaryFolder folder;
+  const TrainFiles files{folder.path() / "e.safetensors", {}, {}, true};
+  TrainEstimator(Tiny(1), files, Toy, Unseen, {});
+  EstimatorTrainOptions other = Tiny(2);
+  other.channels[0] = 10;
+  try {
+    TrainEstimator(other, files, Toy, Unseen, {});
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("channels"),
+                                             testing::HasSubstr("8,12,16,16,24,8,16")));
+  }
+}
+
+}  // namespace
+}  // namespace glint
