@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "datasets/procedural/random.h"
 #include "datasets/synth/capture_plan.h"
@@ -21,6 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr int kStageVersion = 1;  // of stage "rectify" as written here
 constexpr double kDirSide = 2.0;  // DIR's plane spans [-1, 1]²
+constexpr double kRadians = std::numbers::pi / 180;
 
 Vec3d ToVec3d(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -31,6 +34,20 @@ std::vector<View> DirViews(int count, std::uint64_t seed) {
     const double x = kDirJitter * (2.0 * rng.Unit() - 1.0);
     const double y = kDirJitter * (2.0 * rng.Unit() - 1.0);
     views.push_back(DirView(x, y));
+  }
+  return views;
+}
+
+// Without a view from the top.
+std::vector<View> TiltedDirViews(const ViewSetOptions& options, std::uint64_t seed) {
+  constexpr double kTiltRange_deg = 10;
+  procedural::Rng rng(procedural::Mix64(seed) ^ 0x71f7ull);
+  std::vector<View> views;
+  for (int i = 0; i < options.count; ++i) {
+    const double tilt = (options.least_tilt_deg + kTiltRange_deg * rng.Unit()) * kRadians;
+    const double azimuth = 2 * std::numbers::pi * rng.Unit();
+    const double aside = kDirHeight * std::tan(tilt);
+    views.push_back(DirView(aside * std::cos(azimuth), aside * std::sin(azimuth)));
   }
   return views;
 }
@@ -94,27 +111,20 @@ RectifiedSet SetOf(const PlannedViews& planned, bool is_float) {
   return set;
 }
 
-}  // namespace
-
-void AddViewSetOptions(ViewSetOptions* options, OptionSet* set) {
-  set->AddRange("count", &options->count, 1, 10000, "views");
-  set->AddChoice(
-      "rule", &options->rule, {"dir", "photo"},
-      "dir: camera = light, DIR 2019's synthetic geometry; photo: a phone's poses, flash "
-      "beside the lens, inverse square");
-  set->AddChoice("bits", &options->bits, {"8", "float"}, "8: clipped and rounded; float: exact");
-  set->AddChoice("encoding", &options->encoding, {"gamma2.2", "srgb", "linear"},
-                 "what the 8 bits are spaced evenly in (linear: as in DIR 2019)");
-}
-
-PlannedViews PlanViews(const ViewSetOptions& options, std::uint64_t seed, int width, int height) {
+PlannedViews UndisturbedViews(const ViewSetOptions& options, std::uint64_t seed, int width,
+                              int height) {
   PlannedViews planned;
   if (options.rule == "dir") {
     planned.convention = ReflectanceConvention::Dir2019();
     planned.plane = {width, height, kDirSide, kDirSide * height / width,
                      planned.convention.sampling};
-    planned.views = DirViews(options.count, seed);
+    planned.views =
+        options.least_tilt_deg > 0 ? TiltedDirViews(options, seed) : DirViews(options.count, seed);
     return planned;
+  }
+  if (options.least_tilt_deg > 0) {
+    throw UserError(fmt::format("least-tilt-deg: found {} with rule {}; use rule dir",
+                                options.least_tilt_deg, options.rule));
   }
   // Exposure and poses of the longest capture, so that sets of one seed are nested.
   constexpr int kPlannedPhotos = 64;
@@ -129,13 +139,65 @@ PlannedViews PlanViews(const ViewSetOptions& options, std::uint64_t seed, int wi
   return planned;
 }
 
+}  // namespace
+
+void AddViewSetOptions(ViewSetOptions* options, OptionSet* set) {
+  set->AddRange("count", &options->count, 1, 10000, "views");
+  set->AddChoice(
+      "rule", &options->rule, {"dir", "photo"},
+      "dir: camera = light, DIR 2019's synthetic geometry; photo: a phone's poses, flash "
+      "beside the lens, inverse square");
+  set->AddChoice("bits", &options->bits, {"8", "float"}, "8: clipped and rounded; float: exact");
+  set->AddChoice("encoding", &options->encoding, {"gamma2.2", "srgb", "linear"},
+                 "what the 8 bits are spaced evenly in (linear: as in DIR 2019)");
+  set->AddRange("exposure-stops", &options->exposure_stops, -20, 20,
+                "all photographs exposed longer by 2^stops, known to the manifest");
+  set->AddRange("least-tilt-deg", &options->least_tilt_deg, 0, 65,
+                "no top view: all cameras this much to 10° more off the normal (rule dir)");
+  Disturbance* disturbance = &options->disturbance;
+  set->AddRange("light-off-deg", &disturbance->light_off_deg, 0, 60,
+                "turns every light by this, unknown to the manifest");
+  set->AddRange("registration-texel", &disturbance->registration_texel, 0, 100,
+                "moves the corners of every view by this (RMS), unknown to the manifest");
+  set->AddRange("environment-percent", &disturbance->environment_percent, 0, 1000,
+                "light of the surroundings relative to the flash's on a white plane, likewise");
+  set->Add("environment", &disturbance->environment,
+           "equirectangular radiance map, .hdr or .exr (default: a white surround)");
+}
+
+PlannedViews PlanViews(const ViewSetOptions& options, std::uint64_t seed, int width, int height) {
+  PlannedViews planned = UndisturbedViews(options, seed, width, height);
+  const Disturbance& disturbance = options.disturbance;
+  if (disturbance.environment_percent > 0) {
+    const View first = options.rule == "dir" ? DirView(0, 0) : planned.views[0];
+    planned.environment = ScaledEnvironment(disturbance, first, planned.plane, planned.convention);
+  }
+  for (size_t i = 0; i < planned.views.size(); ++i) {
+    planned.views[i].exposure *= std::exp2(options.exposure_stops);
+    const ViewDisturbance drawn = DrawDisturbance(disturbance, seed, static_cast<int>(i));
+    View taken = planned.views[i];
+    taken.light_in_sample_mm =
+        TurnLight(taken.light_in_sample_mm, disturbance.light_off_deg, drawn.light_azimuth_rad);
+    planned.taken.push_back(taken);
+    planned.shifts.push_back(drawn.shifts);
+  }
+  return planned;
+}
+
 RectifiedImage RenderPlannedView(const SvbrdfMaps& maps, const PlannedViews& planned, int index,
                                  const ViewSetOptions& options, int threads) {
   RectifiedImage image{maps.width, maps.height, {}, {}};
   image.rgb.resize(3 * maps.texels());
   image.mask.assign(maps.texels(), 1.0f);
-  RenderView(maps, planned.plane, planned.views[index], planned.convention, image.rgb.data(),
-             threads);
+  const View& view = planned.taken[index];
+  RenderView(maps, planned.plane, view, planned.convention, image.rgb.data(), threads);
+  if (!planned.environment.lights.empty()) {
+    AddEnvironment(planned.environment, maps, planned.plane, view, planned.convention,
+                   image.rgb.data(), threads);
+  }
+  if (options.disturbance.registration_texel > 0) {
+    ShiftPicture(planned.shifts[index], maps.width, maps.height, &image.rgb);
+  }
   if (options.bits == "float") return image;
   const Encoding encoding = ParseEncoding(options.encoding);
   const EightBitEncoder encoder(encoding);
@@ -161,6 +223,9 @@ void WriteViewSet(const fs::path& folder, const MaterialSource& material,
         RenderPlannedView(material.maps, planned, static_cast<int>(i), options, common.threads));
     WriteViewPhoto(folder / set.views[i].photo, images.back(), options);
     inputs.push_back(folder / set.views[i].photo);
+  }
+  if (options.disturbance.environment_percent > 0 && !options.disturbance.environment.empty()) {
+    inputs.push_back(options.disturbance.environment);
   }
   ViewSetOptions echoed = options;
   OptionSet echo;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/synth/disturbance.h"
 #include "datasets/synth/material_source.h"
 #include "datasets/synth/sensor.h"
 #include "fitting/reflectance/view.h"
@@ -32,9 +33,15 @@ struct ViewSetOptions {
   // Encoding that the 8 bits are spaced evenly in. DIR's paper speaks of "8-bit linear images",
   // which is `linear`; photographs are gamma2.2.
   std::string encoding = "gamma2.2";
+  // Every photograph is exposed longer by 2^stops; the manifest says so.
+  double exposure_stops = 0;
+  // Above 0 (rule dir only) there is no top view: every camera stands this much to 10° more off the
+  // normal, at DIR's height.
+  double least_tilt_deg = 0;
+  Disturbance disturbance;
 };
 
-// Adds count, rule, bits and encoding to a program's options.
+// Adds all of them to a program's options.
 void AddViewSetOptions(ViewSetOptions* options, OptionSet* set);
 
 // The geometry alone. Sets of one seed are nested: the first views of a longer set are the shorter
@@ -42,8 +49,13 @@ void AddViewSetOptions(ViewSetOptions* options, OptionSet* set);
 struct PlannedViews {
   SamplePlane plane;
   ReflectanceConvention convention;
-  std::vector<View> views;
+  std::vector<View> views;  // as the manifest has them
+  // How the photographs really are taken: as `views`, but for the disturbance.
+  std::vector<View> taken;
+  std::vector<CornerShifts> shifts;
+  EnvironmentLight environment;
 };
+// Throws UserError.
 PlannedViews PlanViews(const ViewSetOptions& options, std::uint64_t seed, int width, int height);
 
 // One view as its photograph shows it; every texel is usable, clipped ones too (a clipped value

@@ -1,0 +1,139 @@
+#include "datasets/synth/disturbance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "datasets/procedural/random.h"
+#include "fitting/render/renderer.h"
+
+namespace glint {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+Vec3d Cross(const Vec3d& a, const Vec3d& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double Length(const Vec3d& v) { return std::hypot(v[0], v[1], v[2]); }
+
+// Box and Muller's.
+double Normal(procedural::Rng* rng) {
+  const double radius = std::sqrt(-2 * std::log(1.0 - rng->Unit()));
+  return radius * std::cos(2 * kPi * rng->Unit());
+}
+
+double MeanOf(const Vec3d& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
+
+// Mean radiance of a white Lambertian plane under the flash.
+double WhitePlaneRadiance(const View& view, const SamplePlane& plane,
+                          const ReflectanceConvention& convention) {
+  SvbrdfMaps white(plane.width, plane.height);
+  for (const int p : {kNormalZ, kDiffuseR, kDiffuseG, kDiffuseB, kRoughness}) {
+    std::fill(white.plane(p).begin(), white.plane(p).end(), 1.0f);
+  }
+  // A specular albedo of 0 still reflects at grazing angles (Fresnel): negligible from the top.
+  std::vector<float> rgb(3 * white.texels());
+  RenderView(white, plane, view, convention, rgb.data());
+  double sum = 0;
+  for (const float value : rgb) sum += value;
+  return sum / static_cast<double>(rgb.size());
+}
+
+// Weights of Catmull and Rom's cubic for the samples at −1, 0, 1, 2.
+void CubicWeights(double t, double weights[4]) {
+  weights[0] = 0.5 * t * (-1 + t * (2 - t));
+  weights[1] = 0.5 * (2 + t * t * (-5 + 3 * t));
+  weights[2] = 0.5 * t * (1 + t * (4 - 3 * t));
+  weights[3] = 0.5 * t * t * (t - 1);
+}
+
+float LookUp(const float* plane, int width, int height, double column, double row) {
+  const double c0 = std::floor(column), r0 = std::floor(row);
+  double across[4], down[4];
+  CubicWeights(column - c0, across);
+  CubicWeights(row - r0, down);
+  double sum = 0;
+  for (int j = 0; j < 4; ++j) {
+    const int r = std::clamp(static_cast<int>(r0) + j - 1, 0, height - 1);
+    double line = 0;
+    for (int i = 0; i < 4; ++i) {
+      const int c = std::clamp(static_cast<int>(c0) + i - 1, 0, width - 1);
+      line += across[i] * plane[static_cast<ptrdiff_t>(r) * width + c];
+    }
+    sum += down[j] * line;
+  }
+  return static_cast<float>(std::max(sum, 0.0));
+}
+
+double Bilinear(const double corners[4], double u, double v) {
+  return (1 - v) * ((1 - u) * corners[0] + u * corners[1]) +
+         v * ((1 - u) * corners[2] + u * corners[3]);
+}
+
+}  // namespace
+
+Vec3d TurnLight(const Vec3d& light_mm, double angle_deg, double azimuth_rad) {
+  const double distance = Length(light_mm);
+  if (angle_deg == 0 || !(distance > 0)) return light_mm;
+  const Vec3d axis{light_mm[0] / distance, light_mm[1] / distance, light_mm[2] / distance};
+  const Vec3d helper = std::abs(axis[0]) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  Vec3d u = Cross(axis, helper);
+  const double length = Length(u);
+  for (double& value : u) value /= length;
+  const Vec3d v = Cross(axis, u);
+  const double angle = angle_deg * kPi / 180;
+  Vec3d turned;
+  for (size_t i = 0; i < 3; ++i) {
+    const double aside = std::cos(azimuth_rad) * u[i] + std::sin(azimuth_rad) * v[i];
+    turned[i] = distance * (std::cos(angle) * axis[i] + std::sin(angle) * aside);
+  }
+  return turned;
+}
+
+ViewDisturbance DrawDisturbance(const Disturbance& disturbance, std::uint64_t seed, int index) {
+  procedural::Rng rng(procedural::Mix64(seed) ^
+                      procedural::Mix64(0xd157u + static_cast<std::uint64_t>(index)));
+  ViewDisturbance drawn;
+  drawn.light_azimuth_rad = 2 * kPi * rng.Unit();
+  const double deviation = disturbance.registration_texel / std::numbers::sqrt2;
+  for (int corner = 0; corner < 4; ++corner) {
+    drawn.shifts.column[corner] = deviation * Normal(&rng);
+    drawn.shifts.row[corner] = deviation * Normal(&rng);
+  }
+  return drawn;
+}
+
+EnvironmentLight ScaledEnvironment(const Disturbance& disturbance, const View& first,
+                                   const SamplePlane& plane,
+                                   const ReflectanceConvention& convention) {
+  EnvironmentLight environment = disturbance.environment.empty()
+                                     ? ConstantEnvironment()
+                                     : ReadEnvironment(disturbance.environment);
+  const double reflected = MeanOf(environment.PlaneIrradiance()) / kPi;
+  View unexposed = first;
+  unexposed.exposure = 1;
+  environment.Scale(disturbance.environment_percent / 100 *
+                    WhitePlaneRadiance(unexposed, plane, convention) / reflected);
+  return environment;
+}
+
+void ShiftPicture(const CornerShifts& shifts, int width, int height,
+                  std::vector<float>* rgb_planar) {
+  const std::vector<float> source = *rgb_planar;
+  const size_t texels = static_cast<size_t>(width) * height;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double u = (x + 0.5) / width, v = (y + 0.5) / height;
+      const double column = x + Bilinear(shifts.column, u, v);
+      const double row = y + Bilinear(shifts.row, u, v);
+      for (size_t c = 0; c < 3; ++c) {
+        (*rgb_planar)[c * texels + static_cast<size_t>(y) * width + x] =
+            LookUp(source.data() + c * texels, width, height, column, row);
+      }
+    }
+  }
+}
+
+}  // namespace glint
