@@ -189,13 +189,13 @@ EncodedMaps FitOneLevel(const PhotographSet& level_set, Parameters* parameters,
     const FitLossValue value = loss.Evaluate(parameters->ToMaps(values), light->value(), true);
     std::vector<float> gradient = parameters->Pull(value.gradient);
     const double prior = parameters->Prior(values, gradient);
+    level->loss.push_back(value.loss);
     descent.Step(value.loss + prior, gradient, values);
     light->Slow(descent.rate() / rate);
     rate = descent.rate();
     light->Step(value.log_light_scale_gradient);
     if (*run->progress) (*run->progress)(++run->done, run->total, value.loss);
   }
-  level->loss = descent.losses();
   level->converged = descent.converged();
   return parameters->Final(descent.losses().empty() ? values : descent.best());
 }

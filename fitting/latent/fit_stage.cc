@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "fitting/bootstrap/bootstrap.h"
+#include "fitting/estimator/estimator.h"
 #include "fitting/weights/find_model.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/progress.h"
@@ -32,6 +33,9 @@ FitOptions Resolved(const FitStageOptions& options, size_t photographs, int thre
   if (options.iterations > 0) fit.coarse_iterations = options.iterations;
   if (options.fine_iterations > 0) fit.fine_iterations = options.fine_iterations;
   if (options.learning_rate > 0) fit.learning_rate = options.learning_rate;
+  if (options.start_prior >= 0) fit.start_prior = options.start_prior;
+  if (options.code_prior >= 0) fit.code_prior = options.code_prior;
+  if (options.detail != "auto") fit.keep_detail = options.detail == "keep";
   fit.threads = threads;
   return fit;
 }
@@ -66,9 +70,27 @@ PhotographSet Load(const RectifiedSet& set, const std::vector<RectifiedView>& vi
   return photographs;
 }
 
+SvbrdfMaps EstimatedStart(const FitStageOptions& options, const PhotographSet& photographs,
+                          int threads) {
+  const Estimator estimator = AsUserError(
+      [&] { return Estimator::Load(FindModel(kEstimatorModel, options.estimator)); });
+  SvbrdfMaps maps = estimator.Estimate(
+      photographs.photographs[BestStartingPhotograph(photographs)], photographs.plane,
+      photographs.convention, threads);
+  if (photographs.convention.diffuse_weight == DiffuseWeight::kOne) return maps;
+  for (int c = 0; c < 3; ++c) {  // the same look with diffuse weight 1 − k_s
+    for (size_t i = 0; i < maps.texels(); ++i) {
+      float& diffuse = maps.plane(kDiffuseR + c)[i];
+      diffuse = std::min(1.0f, diffuse / std::max(0.05f, 1 - maps.plane(kSpecularR + c)[i]));
+    }
+  }
+  return maps;
+}
+
 SvbrdfMaps Start(const FitStageOptions& options, const PhotographSet& photographs, int threads) {
-  if (options.start.empty()) return EstimateMaps(photographs, threads);
-  return ReadSvbrdf(options.start);
+  if (!options.start.empty()) return ReadSvbrdf(options.start);
+  if (options.bootstrap == "estimator") return EstimatedStart(options, photographs, threads);
+  return EstimateMaps(photographs, threads);
 }
 
 Json Metrics(const FitResult& fit, const std::vector<RectifiedView>& views) {
@@ -104,17 +126,28 @@ Json Data(const FitResult& fit, const RectifiedSet& set, const FitStageOptions& 
 }  // namespace
 
 void AddFitOptions(OptionSet* set, FitStageOptions* options) {
-  set->AddChoice("method", &options->method, {"latent", "classic"},
-                 "latent: in the learned space; classic: the maps themselves, texel by texel");
+  set->AddChoice("method", &options->method, {"latent", "classic", "start"},
+                 "latent: in the learned space; classic: the maps themselves, texel by texel; start: "
+                 "no fitting, the start as it is");
+  set->AddChoice("bootstrap", &options->bootstrap, {"estimator", "heuristic"},
+                 "what the start is estimated by: a trained network from the photograph nearest the "
+                 "top, or lobes fitted to the whole sample");
   set->AddRange("iterations", &options->iterations, 0, 1e6,
                 "most steps at the first, coarse level; 0: the method's own");
   set->AddRange("fine-iterations", &options->fine_iterations, 0, 1e6,
                 "most steps at each later level; 0: the method's own");
   set->AddRange("learning-rate", &options->learning_rate, 0, 1,
                 "Adam's rate at the start of a level; 0: the method's own");
+  set->AddRange("start-prior", &options->start_prior, -1, 1e6,
+                "latent: weight of the code's distance from the start's; below 0: the method's own");
+  set->AddRange("code-prior", &options->code_prior, -1, 1e6,
+                "latent: weight of the code's size; below 0: the method's own");
+  set->AddChoice("detail", &options->detail, {"auto", "keep", "drop"},
+                 "latent: keep what the learned space cannot show of the start, or drop it");
   set->Add("start", &options->start,
            "maps to start from, an svbrdf.exr (default: estimated from the photographs)");
   set->Add("weights", &options->weights, "the auto-encoder's weights (default: those shipped)");
+  set->Add("estimator", &options->estimator, "the estimator's weights (default: those shipped)");
   set->Add("views", &options->views, "views to use, by name or photo (default: all)");
   set->Add("exclude", &options->exclude, "views to keep back, by name or photo");
 }
@@ -124,7 +157,11 @@ std::vector<fs::path> FitInputs(const FitStageOptions& options) {
   if (IsLatent(options)) {
     inputs.push_back(AsUserError([&] { return FindModel(kAutoencoderModel, options.weights); }));
   }
-  if (!options.start.empty()) inputs.push_back(options.start);
+  if (!options.start.empty()) {
+    inputs.push_back(options.start);
+  } else if (options.bootstrap == "estimator") {
+    inputs.push_back(AsUserError([&] { return FindModel(kEstimatorModel, options.estimator); }));
+  }
   return inputs;
 }
 
@@ -146,7 +183,11 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
       if (bar == nullptr) bar = std::make_unique<Progress>("fit", total);
       bar->Set(done, "log-L1 " + std::to_string(loss));
     };
-    if (IsLatent(options)) {
+    if (options.method == "start") {
+      FitOptions none = fit_options;
+      none.coarse_iterations = none.fine_iterations = 0;
+      result.fit = FitClassic(photographs, start, none, progress);
+    } else if (IsLatent(options)) {
       const Autoencoder network = AsUserError(
           [&] { return Autoencoder::Load(FindModel(kAutoencoderModel, options.weights)); });
       result.fit = FitLatent(photographs, start, network, fit_options, progress);

@@ -14,14 +14,20 @@ namespace glint {
 inline constexpr int kFitVersion = 1;
 
 struct FitStageOptions {
-  std::string method = "latent";  // latent: in the learned space; classic: texel by texel
+  // latent: in the learned space; classic: texel by texel; start: no fitting, the start as it is
+  std::string method = "latent";
+  std::string bootstrap = "heuristic";  // estimator: the trained network; heuristic: bootstrap.h
   FitOptions latent = FitOptions::Latent();
   FitOptions classic = FitOptions::Classic();
   int iterations = 0;                // at the first level; 0: the method's own (few from one photo)
   int fine_iterations = 0;           // at each later level; 0: the method's own
   double learning_rate = 0;          // 0: the method's own
+  double start_prior = -1;           // below 0: the method's own
+  double code_prior = -1;            // below 0: the method's own
+  std::string detail = "auto";       // keep, drop; auto: the method's own
   std::filesystem::path start;       // maps to start from (svbrdf.exr); empty: from the photographs
   std::filesystem::path weights;     // of the auto-encoder; empty: the shipped ones
+  std::filesystem::path estimator;   // weights of the estimator; empty: the shipped ones
   std::vector<std::string> views;    // names of those to use; empty: all
   std::vector<std::string> exclude;  // names of those kept back
 };

@@ -29,7 +29,7 @@ struct ManifestOutput {
 
 struct Manifest {
   std::string stage;
-  int stage_version = 0;
+  int stage_version = 1;
   std::vector<ManifestInput> inputs;
   Json options = Json::object();
   std::vector<ManifestOutput> outputs;

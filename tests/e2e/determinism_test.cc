@@ -47,6 +47,25 @@ TEST_F(DeterminismTest, OneAndTwoThreadsInTwoFoldersGiveTheSameBytes) {
   EXPECT_EQ(Differences(results, Results(finished())), "");
 }
 
+TEST_F(DeterminismTest, EveryManifestKeepsTheSchema) {
+  const std::string root = GLINT_SOURCE_DIR;
+  const std::vector<std::string> check{"/usr/bin/python3",
+                                       root + "/tests/pipeline/contract/check_manifests.py",
+                                       root + "/pipeline/contract/manifest.schema.json"};
+  const auto run = [&](const fs::path& what) {
+    std::vector<std::string> words = check;
+    words.push_back(what.string());
+    return RunProgram(words);
+  };
+  const Outcome good = run(finished());
+  EXPECT_EQ(good.code, 0) << good.out << good.err;
+  const fs::path manifest = capture() / "glint" / "fit" / "manifest.json";
+  Json json = Json::parse(ReadAll(manifest));
+  json.erase("stage");
+  WriteAll(manifest, json.dump());
+  EXPECT_EQ(run(capture()).code, 1);
+}
+
 TEST_F(DeterminismTest, ASecondRunStartsNoStage) { EXPECT_THAT(RunJson().started, IsEmpty()); }
 
 TEST_F(DeterminismTest, AChangedRefineOptionComputesRefineAndLaterStagesOnly) {

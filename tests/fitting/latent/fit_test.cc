@@ -76,6 +76,7 @@ TEST(FitLatent, LowersTheLossEvenWithoutTraining) {
   const PhotographSet set = PhotographMaps(UniformMaps(48, 0.5f, 0.1f, 0.3f), 3);
   FitOptions options = Short({}, 150);
   options.learning_rate = 0.1;
+  options.code_prior = options.start_prior = 0;
   const FitResult result =
       FitLatent(set, UniformMaps(48, 0.1f, 0.04f, 0.6f), SmallNetwork(), options);
   ASSERT_EQ(result.levels.size(), 1u);
@@ -83,6 +84,30 @@ TEST(FitLatent, LowersTheLossEvenWithoutTraining) {
   EXPECT_LT(*std::min_element(curve.begin(), curve.end()), 0.7 * curve.front());
   EXPECT_NEAR(result.final_loss, *std::min_element(curve.begin(), curve.end()), 1e-3);
   EXPECT_EQ(result.code.channels, 24);
+}
+
+TEST(FitLatent, BeginsAtTheStartsOwnLossWhenItKeepsDetail) {
+  const PhotographSet set = PhotographMaps(ToyMaterial(3, 48, 40), 2);
+  const SvbrdfMaps start = EstimateMaps(set, 1);
+  FitOptions options = Short({}, 1);
+  const FitResult kept = FitLatent(set, start, SmallNetwork(), options);
+  EXPECT_NEAR(kept.levels[0].loss[0], kept.start_loss, 0.02 * kept.start_loss);
+  EXPECT_LT(Difference(kept.maps, start), 0.02);
+  options.keep_detail = false;  // an untrained network shows little of the start
+  const FitResult plain = FitLatent(set, start, SmallNetwork(), options);
+  EXPECT_GT(plain.levels[0].loss[0], 1.5 * plain.start_loss);
+}
+
+TEST(FitLatent, AStrongPriorHoldsTheStart) {
+  const PhotographSet set = PhotographMaps(UniformMaps(32, 0.5f, 0.1f, 0.3f), 2);
+  const SvbrdfMaps start = UniformMaps(32, 0.3f, 0.04f, 0.5f);
+  FitOptions options = Short({}, 40);
+  options.start_prior = 0;
+  const FitResult free = FitLatent(set, start, SmallNetwork(), options);
+  options.start_prior = 1e3;
+  const FitResult held = FitLatent(set, start, SmallNetwork(), options);
+  EXPECT_LT(Difference(held.maps, start), 0.3 * Difference(free.maps, start));
+  EXPECT_LT(free.final_loss, held.final_loss);
 }
 
 TEST(FitLatent, BitsDoNotDependOnThreads) {
