@@ -35,6 +35,9 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
   app->add_option("--warmup-from", o->warmup_from,
                   "step the rate rises from: a checkpoint's, when --resume lengthens a training")
       ->capture_default_str();
+  app->add_option("--accumulate", o->accumulate, "batches whose gradients make one step")
+      ->capture_default_str();
+  app->add_option("--map-weight", o->map_weight, "weight of the map term")->capture_default_str();
   app->add_option("--render-weight", o->render_weight, "weight of the rendering term")
       ->capture_default_str();
   app->add_option("--render-views", o->render_views, "renderings per crop (DIR: 9)")
@@ -68,6 +71,10 @@ void AddAutoencoderOptions(CLI::App* app, AutoencoderTrainOptions* o) {
   app->add_option("--smoothness-share", o->smoothness_share, "share of the batch it is taken on")
       ->capture_default_str();
   app->add_option("--noise-variance", o->noise_variance, "of the code's disturbance")
+      ->capture_default_str();
+  app->add_option("--normalisation", o->normalisation,
+                  "batch normalisation: none, on the code, or on all convolutions")
+      ->check(CLI::IsMember({"none", "code", "all"}))
       ->capture_default_str();
   app->add_option("--principal-start", o->principal_start, "start from principal components")
       ->capture_default_str();

@@ -5,31 +5,11 @@
 #include "fitting/encoding/encoding.h"
 
 namespace glint {
-namespace {
-
-// Shapes that `channels` prescribe, without drawing the weights first.
-std::vector<std::vector<std::int64_t>> ParameterShapes(const NetworkChannels& channels) {
-  std::vector<std::vector<std::int64_t>> shapes;
-  for (int i = 0; i < kLevels; ++i) {
-    shapes.push_back({channels[i], i == 0 ? kEncodedChannels : channels[i - 1], 4, 4});
-    shapes.push_back({channels[i]});
-  }
-  for (int i = 0; i < kLevels; ++i) {
-    const std::int64_t out = 4 * (i == kLevels - 1 ? kEncodedChannels : channels[kLevels - 2 - i]);
-    shapes.push_back({out, channels[kLevels - 1 - i], 2, 2});
-    shapes.push_back({out});
-  }
-  shapes.push_back({channels[kLevels - 1]});
-  shapes.push_back({channels[kLevels - 1]});
-  return shapes;
-}
-
-}  // namespace
-
 std::map<std::string, std::string> NetworkMetadata(const AutoencoderNetwork& network) {
   return {{"architecture", kAutoencoderArchitecture},
           {"encoding", kEncodingName},
-          {"channels", ChannelText({network.channels.begin(), network.channels.end()})}};
+          {"channels", ChannelText({network.channels.begin(), network.channels.end()})},
+          {"normalisation", std::string(NormalisationName(network.normalisation))}};
 }
 
 AutoencoderNetwork ReadNetwork(const std::filesystem::path& path, const TensorFile& file,
@@ -38,12 +18,14 @@ AutoencoderNetwork ReadNetwork(const std::filesystem::path& path, const TensorFi
   CheckMetadata(path, file, "encoding", kEncodingName);
   const std::vector<int> channels =
       ParseChannels(path, RequireMetadata(path, file, "channels"), kLevels);
-  AutoencoderNetwork network;
-  std::copy(channels.begin(), channels.end(), network.channels.begin());
-  const auto shapes = ParameterShapes(network.channels);
-  auto state = network.State();
-  for (size_t i = 0; i < state.size(); ++i) {
-    *state[i].second = ReadTensor(path, file, prefix + state[i].first, shapes[i]);
+  NetworkChannels list;
+  std::copy(channels.begin(), channels.end(), list.begin());
+  // Files from before there was a choice have it on the code.
+  const auto entry = file.metadata.find("normalisation");
+  AutoencoderNetwork network = AutoencoderNetwork::Random(
+      list, 0, entry == file.metadata.end() ? Normalisation::kCode : ParseNormalisation(entry->second));
+  for (auto& [name, tensor] : network.State()) {
+    *tensor = ReadTensor(path, file, prefix + name, tensor->sizes().vec());
   }
   return network;
 }
@@ -54,7 +36,7 @@ void SaveNetwork(const std::filesystem::path& path, AutoencoderNetwork* network,
   file.metadata = std::move(metadata);
   file.metadata.merge(NetworkMetadata(*network));
   for (auto& [name, t] : network->State()) {
-    file.tensors.push_back(ToRecord(name, *t, name.rfind("code.", 0) != 0));
+    file.tensors.push_back(ToRecord(name, *t, name.rfind("code.", 0) != 0 && name.rfind("level.", 0) != 0));
   }
   WriteTensorFile(path, std::move(file));
 }

@@ -20,24 +20,27 @@ constexpr double kBatchStatisticsMomentum = 0.005;
 constexpr std::uint64_t kNoiseStream = 0x5EED0001;
 constexpr int kPrincipalSamples = 192;
 
+AutoencoderNetwork FirstWeights(const AutoencoderTrainOptions& options, std::int64_t first_batch,
+                                MapBatches* pool) {
+  const Normalisation normalisation = ParseNormalisation(options.normalisation);
+  // The components stand on a code that is normalised and on levels that are not.
+  if (first_batch > 0 || !options.principal_start || normalisation != Normalisation::kCode) {
+    return AutoencoderNetwork::Random(options.channels, options.seed, normalisation);
+  }
+  return StartFromPrincipalComponents(options.channels, pool->SampleFirst(kPrincipalSamples));
+}
+
 class AutoencoderTraining : public Trainable {
  public:
-  AutoencoderTraining(const AutoencoderTrainOptions& options, std::int64_t first_step,
+  AutoencoderTraining(const AutoencoderTrainOptions& options, std::int64_t first_batch,
                       const MaterialSource& materials, const MaterialSource& validation)
       : options_(options),
         compute_(options.bf16 ? FastComputeType() : torch::kFloat32),
         map_weights_(MapWeights(options)),
-        pool_(options, materials, first_step),
+        pool_(options, materials, first_batch),
         validation_maps_(ValidationMaps(validation, options.pool.material_size)),
-        network_(first_step == 0 && options.principal_start
-                     ? StartFromPrincipalComponents(options.channels,
-                                                    pool_.SampleFirst(kPrincipalSamples))
-                     : AutoencoderNetwork::Random(options.channels, options.seed)) {
-    average_.channels = options.channels;
-    auto to = average_.State();
-    auto from = network_.State();
-    for (size_t i = 0; i < to.size(); ++i) *to[i].second = from[i].second->detach().clone();
-  }
+        network_(FirstWeights(options, first_batch, &pool_)),
+        average_(Clone(&network_)) {}
 
   NamedTensors State() override { return network_.State(); }
   NamedTensors AverageState() override { return average_.State(); }
@@ -68,8 +71,7 @@ class AutoencoderTraining : public Trainable {
     const int64_t twice = options_.smoothness > 0
                               ? std::lround(options_.smoothness_share * static_cast<double>(count))
                               : 0;
-    const Tensor z = network_.NormaliseForTraining(
-        network_.EncodeRaw(batch, compute_), kBatchStatisticsMomentum);
+    const Tensor z = network_.EncodeForTraining(batch, compute_, kBatchStatisticsMomentum);
     Tensor codes = z;
     if (twice > 0) {
       auto generator = torch::make_generator<torch::CPUGeneratorImpl>(
@@ -78,11 +80,11 @@ class AutoencoderTraining : public Trainable {
       const Tensor noise = torch::randn(part.sizes(), generator) * std::sqrt(options_.noise_variance);
       codes = torch::cat({z, part + noise}, 0);
     }
-    const Tensor decoded = network_.Decode(codes, compute_);
+    const Tensor decoded = network_.DecodeForTraining(codes, compute_, kBatchStatisticsMomentum);
     const Tensor plain = decoded.slice(0, 0, count);
     const Tensor map = ((plain - batch).abs() * map_weights_).mean();
     losses.map = map.item<double>();
-    losses.total = map;
+    losses.total = options_.map_weight * map;
     if (twice > 0) {
       const Tensor moved = decoded.slice(0, count, count + twice) - decoded.slice(0, 0, twice);
       const Tensor smoothness = (moved.abs() * map_weights_).mean();
@@ -121,7 +123,7 @@ TrainProgress TrainAutoencoder(const AutoencoderTrainOptions& options, const Tra
                                const TrainReport& report) {
   Check(options);
   torch::set_num_threads(options.threads);
-  AutoencoderTraining training(options, FirstStep(files), materials, validation);
+  AutoencoderTraining training(options, FirstStep(files) * options.accumulate, materials, validation);
   return RunTraining(options, files, &training, report);
 }
 

@@ -30,12 +30,12 @@ EstimatorChannels ChannelsOf(const EstimatorTrainOptions& options) {
 
 class EstimatorTraining : public Trainable {
  public:
-  EstimatorTraining(const EstimatorTrainOptions& options, std::int64_t first_step,
+  EstimatorTraining(const EstimatorTrainOptions& options, std::int64_t first_batch,
                     const MaterialSource& materials, const MaterialSource& validation)
       : options_(options),
         compute_(options.bf16 ? FastComputeType() : torch::kFloat32),
         map_weights_(MapWeights(options)),
-        pool_(options, materials, first_step),
+        pool_(options, materials, first_batch),
         validation_maps_(ValidationMaps(validation, options.pool.material_size)),
         network_(EstimatorNetwork::Random(ChannelsOf(options), options.seed)),
         average_(Clone(&network_)) {}
@@ -72,7 +72,7 @@ class EstimatorTraining : public Trainable {
     StepLosses losses;
     const Tensor map = ((maps - truth).abs() * map_weights_).mean();
     losses.map = map.item<double>();
-    losses.total = map;
+    losses.total = options_.map_weight * map;
     if (options_.render_weight > 0 && options_.render_views > 0) {
       const Tensor render = RenderLossOf(maps, truth, options_, step);
       losses.render = render.item<double>();
@@ -97,7 +97,7 @@ TrainProgress TrainEstimator(const EstimatorTrainOptions& options, const TrainFi
                              const TrainReport& report) {
   CheckTrainOptions(options);
   torch::set_num_threads(options.threads);
-  EstimatorTraining training(options, FirstStep(files), materials, validation);
+  EstimatorTraining training(options, FirstStep(files) * options.accumulate, materials, validation);
   return RunTraining(options, files, &training, report);
 }
 

@@ -9,6 +9,7 @@
 
 #include "fitting/autoencoder/adam.h"
 #include "fitting/training/checkpoint.h"
+#include "fitting/training/loss_plot.h"
 
 namespace glint {
 namespace {
@@ -34,7 +35,10 @@ void CheckTrainOptions(const TrainOptions& o) {
   require(o.crop >= kCropMultiple && o.crop % kCropMultiple == 0 && o.crop <= o.pool.material_size,
           "found crop " + std::to_string(o.crop) +
               "; it must be a multiple of 32 that fits the materials");
-  require(o.render_weight >= 0, "found a negative weight; it must be 0 or more");
+  require(o.render_weight >= 0 && o.map_weight >= 0 && o.render_weight + o.map_weight > 0,
+          "found weights of maps and renderings below 0, or both 0; give one of them");
+  require(o.accumulate >= 1 && o.accumulate <= 1024,
+          "found accumulate " + std::to_string(o.accumulate) + "; it must be 1 to 1024");
   require(o.threads >= 1, "found threads below 1");
 }
 
@@ -73,22 +77,22 @@ class Window {
     sum_.map_loss += losses.map;
     sum_.smoothness_loss += losses.smoothness;
     sum_.render_loss += losses.render;
-    ++steps_;
+    ++batches_;
   }
-  int steps() const { return steps_; }
+  int batches() const { return batches_; }
   TrainProgress Take() {
     TrainProgress mean = sum_;
     for (double* x : {&mean.loss, &mean.map_loss, &mean.smoothness_loss, &mean.render_loss}) {
-      *x /= std::max(1, steps_);
+      *x /= std::max(1, batches_);
     }
     sum_ = {};
-    steps_ = 0;
+    batches_ = 0;
     return mean;
   }
 
  private:
   TrainProgress sum_;
-  int steps_ = 0;
+  int batches_ = 0;
 };
 
 class Loop {
@@ -129,6 +133,7 @@ class Loop {
       }
       window_seconds = 0;
       log.Write(progress);
+      if (checkpoint) WriteLossPlot(files_.LogPath(), files_.PlotPath());
       if (report) report(progress);
       tick = Now();  // validation and writing are not training time
     }
@@ -157,15 +162,17 @@ class Loop {
       tensor->set_requires_grad(true);
       tensor->mutable_grad().reset();
     }
-    const StepLosses losses = trainable_->Forward(state_.step);
-    const double total = losses.total.item<double>();
-    if (!std::isfinite(total)) {
-      throw std::runtime_error("training: the loss is not finite at step " +
-                               std::to_string(state_.step) + "; resume with a lower --lr");
+    for (int k = 0; k < options_.accumulate; ++k) {
+      const StepLosses losses = trainable_->Forward(state_.step * options_.accumulate + k);
+      const double total = losses.total.item<double>();
+      if (!std::isfinite(total)) {
+        throw std::runtime_error("training: the loss is not finite at step " +
+                                 std::to_string(state_.step) + "; resume with a lower --lr");
+      }
+      (losses.total / options_.accumulate).backward();
+      window_.Add(losses, total);
     }
-    losses.total.backward();
     Update();
-    window_.Add(losses, total);
   }
 
   void Update() {
@@ -185,11 +192,11 @@ class Loop {
   }
 
   TrainProgress Report(double window_seconds) {
-    const int steps = window_.steps();
+    const int batches = window_.batches();
     TrainProgress progress = window_.Take();
     progress.step = state_.step;
     progress.seconds = state_.seconds;
-    progress.samples_per_second = steps * options_.batch / std::max(window_seconds, 1e-9);
+    progress.samples_per_second = batches * options_.batch / std::max(window_seconds, 1e-9);
     progress.learning_rate = LearningRate();
     progress.eta_seconds = state_.seconds * (1.0 / std::max(Done(), 1e-9) - 1.0);
     return progress;
@@ -201,7 +208,7 @@ class Loop {
                             {{"data", options_.data_name},
                              {"seed", std::to_string(options_.seed)},
                              {"steps", std::to_string(state_.step)},
-                             {"samples", std::to_string(state_.step * options_.batch)},
+                             {"samples", std::to_string(state_.step * options_.accumulate * options_.batch)},
                              {"validation_map_l1", std::to_string(validation)}});
   }
 
@@ -220,6 +227,10 @@ std::filesystem::path TrainFiles::CheckpointPath() const {
 
 std::filesystem::path TrainFiles::LogPath() const {
   return log_csv.empty() ? weights.string() + ".csv" : log_csv.string();
+}
+
+std::filesystem::path TrainFiles::PlotPath() const {
+  return std::filesystem::path(LogPath()).replace_extension(".svg");
 }
 
 std::int64_t FirstStep(const TrainFiles& files) {

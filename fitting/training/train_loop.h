@@ -28,8 +28,8 @@ class Trainable {
   virtual NamedTensors State() = 0;
   virtual NamedTensors AverageState() = 0;
   virtual size_t learned() const = 0;
-  // Losses of the batch of `step`, which depends on the options and `step` alone. Steps rise.
-  virtual StepLosses Forward(std::int64_t step) = 0;
+  // Losses of batch number `batch`, which depends on the options and `batch` alone. Numbers rise.
+  virtual StepLosses Forward(std::int64_t batch) = 0;
   // L1 of encoded maps on materials that are never trained on, by the averaged weights.
   virtual double Validate() = 0;
   // What kind of network this is; a checkpoint of another is refused.

@@ -19,6 +19,8 @@ struct TrainOptions {
   double learning_rate = 5e-4;   // the highest; it rises over `warmup_steps`, then falls as a cosine
   int warmup_steps = 200;
   std::int64_t warmup_from = 0;  // the step it rises from: a checkpoint's, when a resume lengthens
+  int accumulate = 1;            // batches whose gradients make one step
+  double map_weight = 1.0;       // of the maps' L1; 0: none
   double render_weight = 0.3;    // of the renderings' log-L1; 0: none
   int render_views = 3;          // per sample; a third cosine-distributed, the others on highlights
   double normal_weight = 1.0;    // of the normals' L1 among the maps
@@ -39,6 +41,7 @@ struct TrainFiles {
 
   std::filesystem::path CheckpointPath() const;
   std::filesystem::path LogPath() const;
+  std::filesystem::path PlotPath() const;  // the log as a picture, beside it
 };
 
 // One line of the log.

@@ -68,6 +68,55 @@ TEST(Trainer, AResumedTrainingEndsWithTheSameBits) {
             test::ReadAll(folder.path() / "parts.safetensors"));
 }
 
+TEST(Trainer, EveryNormalisationTrainsAndItsWeightsSayWhichItIs) {
+  for (const char* normalisation : {"none", "code", "all"}) {
+    const test::TemporaryFolder folder;
+    AutoencoderTrainOptions options = Tiny(60);
+    options.principal_start = false;
+    options.normalisation = normalisation;
+    double first = 0;
+    const TrainProgress last =
+        TrainAutoencoder(options, {folder.path() / "w.safetensors", {}, {}, false}, Toy, Unseen,
+                         [&](const TrainProgress& p) {
+                           if (p.step == 0) first = *p.validation_map_loss;
+                         });
+    EXPECT_LT(*last.validation_map_loss, 0.95 * first) << normalisation;
+    EXPECT_THAT(test::ReadAll(folder.path() / "w.safetensors"),
+                testing::HasSubstr("\"normalisation\":\"" + std::string(normalisation) + "\""));
+    EXPECT_EQ(Autoencoder::Load(folder.path() / "w.safetensors").latent_channels(), 32);
+  }
+}
+
+TEST(Trainer, EitherLossAloneLowersItself) {
+  for (const bool maps : {true, false}) {
+    const test::TemporaryFolder folder;
+    AutoencoderTrainOptions options = Tiny(80);
+    options.principal_start = false;
+    (maps ? options.render_weight : options.map_weight) = 0;
+    options.checkpoint_minutes = 1e-9;
+    double first = 0, last = 0;
+    TrainAutoencoder(options, {folder.path() / "w.safetensors", {}, {}, false}, Toy, Unseen,
+                     [&](const TrainProgress& p) {
+                       const double loss = maps ? p.map_loss : p.render_loss;
+                       if (p.step >= 1 && p.step <= 10) first += loss / 10;
+                       if (p.step > 70) last += loss / 10;
+                     });
+    EXPECT_LT(last, 0.9 * first) << (maps ? "maps" : "renderings");
+  }
+}
+
+TEST(Trainer, AccumulatedBatchesGiveTheStepOfTheirMeanGradient) {
+  // Adam's first step depends on the gradient's signs alone: the two trainings see the same two
+  // batches only if batches are numbered through.
+  const test::TemporaryFolder folder;
+  AutoencoderTrainOptions options = Tiny(3);
+  options.accumulate = 2;
+  const TrainFiles files{folder.path() / "w.safetensors", {}, {}, false};
+  const TrainProgress last = TrainAutoencoder(options, files, Toy, Unseen, {});
+  EXPECT_EQ(last.step, 3);
+  EXPECT_THAT(test::ReadAll(files.weights), testing::HasSubstr("\"samples\":\"24\""));
+}
+
 class TrainedWeights : public testing::Test {
  protected:
   static void SetUpTestSuite() {
