@@ -1,13 +1,13 @@
 // glint-eval: how good results are.
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
 #include "datasets/evaluation/calibration_error.h"
+#include "datasets/evaluation/experiment_verbs.h"
 #include "datasets/evaluation/map_error.h"
-#include "datasets/evaluation/table1.h"
 #include "datasets/evaluation/view_error.h"
+#include "datasets/synth/material_source.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
@@ -20,7 +20,6 @@ namespace {
 using namespace glint;
 namespace fs = std::filesystem;
 
-constexpr int kTable1Materials = 8;
 constexpr int kPaperSize = 256;  // texels a side of the paper's materials
 
 // Maps of any layout with diffuse weight 1; of a result also by its manifest; procedural ones at
@@ -168,49 +167,20 @@ int RunCameras(int argc, char** argv, const ProgramInfo& info) {
   });
 }
 
-int RunTable1Verb(int argc, char** argv, const ProgramInfo& info) {
-  Table1Options table;
-  std::vector<double> counts(table.counts.begin(), table.counts.end());
-  OptionSet options;
-  options.AddPositional("materials", &table.materials,
-                        "maps or procedural:SEED; none: eight reserved seeds", false);
-  options.Add("counts", &counts, "numbers of views");
-  options.Add("methods", &table.methods, "classic, latent, refined");
-  options.Add("work", &table.work, "folder that keeps views and results (needed)");
-  options.AddRange("size", &table.size, 8, 4096, "texels a side");
-  options.AddChoice("rule", &table.views.rule, {"dir", "photo"}, "as in glint-synth views");
-  options.AddChoice("bits", &table.views.bits, {"8", "float"}, "likewise");
-  options.AddChoice("encoding", &table.views.encoding, {"gamma2.2", "srgb", "linear"}, "likewise");
-  options.Add("fit-args", &table.fit_arguments, "more arguments for glint-fit, comma-separated");
-  options.Add("refine-args", &table.refine_arguments, "likewise for glint-refine");
-  return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
-    if (table.work.empty()) throw UserError("work: found nothing; name a folder for the results");
-    table.counts.assign(counts.begin(), counts.end());
-    if (table.materials.empty()) table.materials = ReservedMaterials(kTable1Materials);
-    const Table1 result =
-        RunTable1(table, common, [](const std::string& text) { spdlog::info("{}", text); });
-    WriteFileAtomically(table.work / "table1.csv", result.Csv());
-    WriteFileAtomically(table.work / "table1.json", result.ToJson().dump(2) + "\n");
-    return ProgramResult{result.Text(), result.ToJson()};
-  });
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::vector<Verb> verbs = {
+  std::vector<Verb> verbs = {
       {"maps", "Compares maps with true ones: the six figures of Gao et al. 2019, table 1.",
        "Example: glint-eval maps demo/glint/refine/svbrdf.exr demo/truth/svbrdf.exr", RunMaps},
       {"views", "Renders views from a fit and compares them with the photographs.",
        "Example: glint-eval views cards/glint/refine cards/glint/rectify --views photo_07.jpg",
        RunViews},
       {"cameras", "Compares a calibration with the truth of a synthetic capture.",
-       "Example: glint-eval cameras demo/truth demo/glint/calib/manifest.json", RunCameras},
-      {"table1",
-       "Runs classic, latent and refined fits on synthetic views and tabulates the errors.",
-       "Example: glint-eval table1 --counts 1,5 --work /tmp/table1", RunTable1Verb}};
+       "Example: glint-eval cameras demo/truth demo/glint/calib/manifest.json", RunCameras}};
+  for (const Verb& verb : ExperimentVerbs()) verbs.push_back(verb);
   return RunVerb(argc, argv,
-                 {"glint-eval", "Measures results: maps, renderings, cameras, the paper's table 1.",
+                 {"glint-eval", "Measures results: maps, renderings, cameras, the paper's tables.",
                   GLINT_VERSION, ""},
                  verbs);
 }

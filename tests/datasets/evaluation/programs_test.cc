@@ -88,6 +88,9 @@ TEST_F(ProgramsTest, WrongUsageEndsWithTwoAndSaysWhy) {
   expect(Eval({"maps", Path("a.exr"), Path("b.exr")}), "a.exr");
   expect(Eval({"cameras", Path("t"), Path("m")}), "truth.json");
   expect(Eval({"table1"}), "work");
+  expect(Eval({"count", "--counts", "1.5", "--work", Path("w")}), "whole numbers");
+  expect(Eval({"table1", "--methods", "luck", "--work", Path("w")}), "luck");
+  expect(Eval({"ablation", "--work", Path("w")}), "NAME=FILE");
   EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
@@ -99,40 +102,107 @@ TEST_F(ProgramsTest, HelpAndVersionEndWithZero) {
   }
 }
 
-// The table's bookkeeping, with programs that copy the truth in place of fitting, and say how they
+// Experiments' bookkeeping, with programs that copy the truth in place of fitting, and say how they
 // were called.
-TEST_F(ProgramsTest, Table1RunsTheProgramsBesideItAndKeepsResults) {
-  const fs::path bin = folder_.path() / "bin";
-  fs::create_directories(bin);
-  fs::copy_file(kBin / "glint-eval", bin / "glint-eval");
-  for (const std::string stage : {"fit", "refine"}) {
-    const fs::path program = bin / ("glint-" + stage);
-    test::WriteAll(
-        program, "#!/bin/sh\necho \"$0 $*\" >> " + Path("calls") + "\nmkdir -p $1/glint/" + stage +
-                     "\ncp $1/truth/svbrdf.exr $1/glint/" + stage +
-                     "/\necho '{\"glint_manifest\":1,\"stage\":\"" + stage +
-                     "\",\"stage_version\":1,\"inputs\":[],\"options\":{},\"outputs\":[],"
-                     "\"data\":{},\"metrics\":{}}' > $1/glint/" +
-                     stage + "/manifest.json\n");
-    fs::permissions(program, fs::perms::owner_all);
+class ExperimentTest : public ProgramsTest {
+ protected:
+  ExperimentTest() : bin_(folder_.path() / "bin") {
+    fs::create_directories(bin_);
+    fs::copy_file(kBin / "glint-eval", bin_ / "glint-eval");
+    for (const std::string stage : {"fit", "refine"}) {
+      const fs::path program = bin_ / ("glint-" + stage);
+      test::WriteAll(program,
+                     "#!/bin/sh\necho \"$0 $*\" >> " + Path("calls") + "\nmkdir -p $1/glint/" +
+                         stage + "\ncp $1/truth/svbrdf.exr $1/glint/" + stage +
+                         "/\necho '{\"glint_manifest\":1,\"stage\":\"" + stage +
+                         "\",\"stage_version\":1,\"inputs\":[],\"options\":{},\"outputs\":[],"
+                         "\"data\":{},\"metrics\":{}}' > $1/glint/" +
+                         stage + "/manifest.json\n");
+      fs::permissions(program, fs::perms::owner_all);
+    }
   }
+  std::string Calls() const { return test::ReadAll(Path("calls")); }
+
+  fs::path bin_;
+};
+
+TEST_F(ExperimentTest, Table1RunsTheProgramsBesideItAndKeepsResults) {
   const std::vector<std::string> arguments = {"table1",     "procedural:1000000001",
                                               "--counts",   "1,3",
                                               "--size",     "16",
                                               "--work",     Path("work"),
                                               "--fit-args", "--levels=2"};
-  const Outcome first = Eval(arguments, bin);
+  const Outcome first = Eval(arguments, bin_);
   ASSERT_EQ(first.code, 0) << first.err;
   EXPECT_THAT(first.out, HasSubstr("|  3 | refined | 0.000000 |"));
-  const std::string calls = test::ReadAll(Path("calls"));
+  const std::string calls = Calls();
   EXPECT_THAT(calls, HasSubstr("n03/classic --method classic"));
   EXPECT_THAT(calls, HasSubstr("glint-refine " + Path("work/procedural_1000000001/n01/latent")));
   EXPECT_THAT(calls, HasSubstr("--levels=2"));
   EXPECT_THAT(test::ReadAll(Path("work/table1.csv")), HasSubstr("mean,3,latent,0,0,0,0,0,0"));
 
-  const Outcome again = Eval(arguments, bin);
+  const Outcome again = Eval(arguments, bin_);
   EXPECT_EQ(again.out, first.out);
-  EXPECT_EQ(test::ReadAll(Path("calls")), calls);  // nothing ran
+  EXPECT_EQ(Calls(), calls);  // nothing ran
+}
+
+TEST_F(ExperimentTest, ADeletedResultIsTheOnlyOneComputedAgain) {
+  const std::vector<std::string> arguments = {
+      "count", "procedural:1..2", "--counts", "1,2", "--size", "16", "--work", Path("work")};
+  const Outcome first = Eval(arguments, bin_);
+  ASSERT_EQ(first.code, 0) << first.err;
+  const std::string before = Calls();
+  ASSERT_TRUE(fs::remove(Path("work/procedural_2/n01/classic.json")));
+  const Outcome again = Eval(arguments, bin_);
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(again.out, first.out);
+  const std::string more = Calls().substr(before.size());
+  EXPECT_EQ(std::count(more.begin(), more.end(), '\n'), 1);
+  EXPECT_THAT(more, HasSubstr("procedural_2/n01/classic --method classic"));
+}
+
+TEST_F(ExperimentTest, EveryVerbWritesTableFiguresPlotAndPictures) {
+  test::WriteAll(Path("w.safetensors"), "weights");
+  const std::vector<std::vector<std::string>> verbs = {
+      {"table1", "--disturb", "--counts", "1"},
+      {"table2", "--counts", "2"},
+      {"exposure", "--stops=-6,0", "--counts", "2"},
+      {"hdr", "--counts", "2"},
+      {"start", "--counts", "1"},
+      {"topview", "--counts", "2", "--tilts", "30"},
+      {"count", "--counts", "1,2"},
+      {"ablation", "--counts", "1", "--weights", "all=" + Path("w.safetensors")}};
+  for (std::vector<std::string> arguments : verbs) {
+    const std::string verb = arguments.front();
+    arguments.insert(arguments.begin() + 1, "procedural:1000000001");
+    arguments.insert(arguments.end(), {"--size", "16", "--work", Path("work")});
+    const Outcome outcome = Eval(arguments, bin_);
+    ASSERT_EQ(outcome.code, 0) << verb << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("| 0.000000 |")) << verb;
+    EXPECT_THAT(test::ReadAll(Path("work/" + verb + ".csv")), HasSubstr("mean,")) << verb;
+    EXPECT_TRUE(Json::parse(test::ReadAll(Path("work/" + verb + ".json"))).contains("means"));
+    EXPECT_THAT(test::ReadAll(Path("work/" + verb + ".svg")), HasSubstr("</svg>")) << verb;
+    EXPECT_GT(fs::file_size(Path("work/" + verb + ".png")), 1000u) << verb;
+  }
+  const std::string calls = Calls();
+  EXPECT_THAT(calls, HasSubstr("all-latent --method latent"));
+  EXPECT_THAT(calls, HasSubstr("--start " + Path("work/procedural_1000000001/n01/rough-latent")));
+  EXPECT_THAT(calls, HasSubstr("--bootstrap heuristic"));
+}
+
+// With the programs themselves: small, but whole.
+TEST_F(ProgramsTest, ATinyTableEndToEnd) {
+  const Outcome outcome =
+      Eval({"table1", "procedural:1000000101", "--counts", "2", "--methods",
+            "start,classic,latent,refined", "--size", "32", "--threads", "1",
+            "--fit-args=--bootstrap,heuristic,--iterations,5", "--work", Path("work"), "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json means = Json::parse(outcome.out)["means"];
+  ASSERT_EQ(means.size(), 4u);
+  for (const Json& mean : means) {
+    EXPECT_GT(mean["errors"]["map_average"].get<double>(), 0) << mean;
+    EXPECT_LT(mean["errors"]["map_average"].get<double>(), 0.3) << mean;
+  }
 }
 
 }  // namespace

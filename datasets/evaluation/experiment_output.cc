@@ -1,0 +1,103 @@
+#include <algorithm>
+
+#include "datasets/evaluation/paper_experiments.h"
+#include "datasets/evaluation/picture_sheet.h"
+#include "pipeline/contract/files.h"
+
+namespace glint {
+namespace {
+
+struct Place {
+  std::string series;
+  double x = 0;
+};
+
+// Where a mean belongs in a plot.
+class Layout {
+ public:
+  explicit Layout(const std::vector<ExperimentEntry>& means) {
+    for (const ExperimentEntry& mean : means) {
+      Append(mean.condition, &conditions_);
+      Append(std::to_string(mean.count), &counts_);
+    }
+  }
+  bool over_conditions() const { return conditions_.size() > 1 && counts_.size() == 1; }
+  const std::vector<std::string>& conditions() const { return conditions_; }
+
+  Place Of(const ExperimentEntry& mean) const {
+    if (over_conditions()) {
+      const auto at = std::find(conditions_.begin(), conditions_.end(), mean.condition);
+      return {mean.method, static_cast<double>(at - conditions_.begin())};
+    }
+    const std::string condition = mean.condition.empty() ? "" : ", " + mean.condition;
+    return {mean.method + condition, static_cast<double>(mean.count)};
+  }
+
+ private:
+  static void Append(const std::string& text, std::vector<std::string>* list) {
+    if (std::find(list->begin(), list->end(), text) == list->end()) list->push_back(text);
+  }
+  std::vector<std::string> conditions_, counts_;
+};
+
+// Appends to the series `name`; a new one is dashed like the series `like`, if that is given.
+void AddPoint(const std::string& name, const std::string& like, double x, double y,
+              PlotPanel* panel) {
+  const auto index = [&](const std::string& wanted) {
+    const auto found =
+        std::find_if(panel->series.begin(), panel->series.end(),
+                     [&](const PlotSeries& series) { return series.name == wanted; });
+    return found - panel->series.begin();
+  };
+  if (index(name) == std::ssize(panel->series)) {
+    panel->series.push_back({name, {}, like.empty() ? -1 : static_cast<int>(index(like))});
+  }
+  panel->series[static_cast<size_t>(index(name))].points.emplace_back(x, y);
+}
+
+void AddPoints(const std::string& name, const std::string& like, double x,
+               const PaperFigures& errors, Plot* plot) {
+  AddPoint(name, like, x, errors.map_average, &plot->panels[0]);
+  AddPoint(name, like, x, errors.render, &plot->panels[1]);
+}
+
+}  // namespace
+
+Plot PlotOf(const ExperimentResult& result, const ExperimentResult::Paper& paper) {
+  const std::vector<ExperimentEntry> means = result.Means();
+  const Layout layout(means);
+  Plot plot;
+  plot.title = result.name;
+  plot.log_y = true;
+  if (layout.over_conditions()) {
+    plot.categories = layout.conditions();
+  } else {
+    plot.log_x = true;
+    plot.x_label = "number of views";
+  }
+  plot.panels = {{"map average (mean squared error)", {}}, {"render (mean squared error)", {}}};
+  for (const ExperimentEntry& mean : means) {
+    const Place place = layout.Of(mean);
+    AddPoints(place.series, "", place.x, {mean.errors.maps.average(), mean.errors.render}, &plot);
+  }
+  if (!paper) return plot;
+  for (const ExperimentEntry& mean : means) {
+    const Place place = layout.Of(mean);
+    const auto theirs = paper(mean);
+    if (theirs) AddPoints("paper: " + place.series, place.series, place.x, *theirs, &plot);
+  }
+  return plot;
+}
+
+void WriteExperiment(const Experiment& experiment, const ExperimentResult& result,
+                     const ExperimentResult::Paper& paper, const Json& json, int threads) {
+  const auto file = [&](const char* extension) {
+    return experiment.work / (experiment.name + extension);
+  };
+  WriteFileAtomically(file(".csv"), result.Csv());
+  WriteFileAtomically(file(".json"), json.dump(2) + "\n");
+  WriteFileAtomically(file(".svg"), PlotSvg(PlotOf(result, paper)));
+  WritePng(file(".png"), DrawSheet(experiment, threads));
+}
+
+}  // namespace glint

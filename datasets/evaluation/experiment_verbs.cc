@@ -1,0 +1,99 @@
+#include "datasets/evaluation/experiment_verbs.h"
+
+#include <spdlog/spdlog.h>
+
+#include "datasets/evaluation/paper_experiments.h"
+
+namespace glint {
+namespace {
+
+constexpr int kOwnMaterials = 8;
+
+void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment,
+                std::vector<double>* counts, OptionSet* options) {
+  options->AddPositional("materials", &experiment->materials,
+                         "maps, folders of materials, procedural:SEED or procedural:FIRST..LAST; "
+                         "none: eight reserved seeds",
+                         false);
+  options->Add("counts", counts, "numbers of views");
+  options->Add("methods", &experiment->methods, "of start, classic, latent, refined");
+  options->Add("work", &experiment->work, "folder that keeps views and results (needed)");
+  options->AddRange("size", &experiment->size, 8, 4096, "texels a side");
+  ViewSetOptions* views = &experiment->views;
+  options->AddChoice("rule", &views->rule, {"dir", "photo"}, "as in glint-synth views");
+  if (paper.name != "hdr") {
+    options->AddChoice("bits", &views->bits, {"8", "float"}, "likewise");
+  }
+  options->AddChoice("encoding", &views->encoding, {"gamma2.2", "srgb", "linear"}, "likewise");
+  options->Add("fit-args", &experiment->fit_arguments,
+               "more arguments for glint-fit, comma-separated");
+  options->Add("refine-args", &experiment->refine_arguments, "likewise for glint-refine");
+  if (paper.name == "table1") {
+    options->Add("disturb", &experiment->disturb,
+                 "also with views disturbed: registration .5 texel, light 5°, environment 5 %");
+  }
+  if (paper.name == "table1" || paper.name == "table2") {
+    options->Add("environment", &views->disturbance.environment,
+                 "equirectangular radiance map, .hdr or .exr (default: a white surround)");
+  }
+  if (paper.name == "exposure") {
+    options->Add("stops", &experiment->stops, "exposures, as in --stops=-6,0,2");
+  }
+  if (paper.name == "topview") {
+    options->Add("tilts", &experiment->tilts, "least angles off the normal, degrees");
+  }
+  if (paper.name == "start") {
+    options->Add("starts", &experiment->starts, "of random, heuristic, network, truth, rough");
+  }
+  if (paper.name == "ablation") {
+    options->Add("weights", &experiment->weights, "NAME=FILE of each auto-encoder (needed)");
+  }
+}
+
+std::vector<int> Whole(const std::vector<double>& numbers) {
+  std::vector<int> whole;
+  for (const double number : numbers) {
+    if (number != static_cast<int>(number)) {
+      throw UserError("counts: found " + std::to_string(number) + "; use whole numbers");
+    }
+    whole.push_back(static_cast<int>(number));
+  }
+  return whole;
+}
+
+int RunVerb(const PaperExperiment& paper, int argc, char** argv, const ProgramInfo& info) {
+  PaperExperimentOptions given;
+  std::vector<double> counts(paper.counts.begin(), paper.counts.end());
+  given.methods = paper.methods;
+  OptionSet options;
+  AddOptions(paper, &given, &counts, &options);
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
+    if (given.work.empty()) throw UserError("work: found nothing; name a folder for the results");
+    given.counts = Whole(counts);
+    Experiment experiment = paper.make(Completed(paper, given));
+    experiment.materials = experiment.materials.empty() ? ReservedMaterials(kOwnMaterials)
+                                                        : ExpandMaterials(experiment.materials);
+    const ExperimentResult result = RunExperiment(
+        experiment, common, [](const std::string& text) { spdlog::info("{}", text); });
+    Json json = result.ToJson();
+    std::string text = result.Text(paper.paper);
+    if (paper.summary) text += paper.summary(result, &json["summary"]);
+    WriteExperiment(experiment, result, paper.paper, json, common.threads);
+    return ProgramResult{text, json};
+  });
+}
+
+}  // namespace
+
+std::vector<Verb> ExperimentVerbs() {
+  std::vector<Verb> verbs;
+  for (const PaperExperiment& paper : PaperExperiments()) {
+    verbs.push_back({paper.name, paper.description, "Example: " + paper.example,
+                     [&paper](int argc, char** argv, const ProgramInfo& info) {
+                       return RunVerb(paper, argc, argv, info);
+                     }});
+  }
+  return verbs;
+}
+
+}  // namespace glint

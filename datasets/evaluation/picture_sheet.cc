@@ -1,0 +1,158 @@
+#include "datasets/evaluation/picture_sheet.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "datasets/evaluation/view_error.h"
+#include "fitting/render/renderer.h"
+#include "pipeline/contract/svbrdf_file.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kThumb = 96;  // pixels a side
+constexpr int kColumns = 5;
+constexpr int kTextWidth = 120, kTextHeight = 38, kGap = 6;
+constexpr const char* kColumnNames[kColumns] = {"normal", "diffuse", "specular", "roughness",
+                                                "rendering"};
+constexpr int kBlockWidth = kTextWidth + kColumns * (kThumb + 2) + kGap;
+
+unsigned char Display(float value) {
+  return static_cast<unsigned char>(
+      std::lround(255 * std::pow(std::clamp(value, 0.0f, 1.0f), 1 / 2.2f)));
+}
+
+unsigned char Plain(float value) {
+  return static_cast<unsigned char>(std::lround(255 * std::clamp(value, 0.0f, 1.0f)));
+}
+
+std::vector<float> Rendered(const SvbrdfMaps& maps, int threads) {
+  const ReflectanceConvention convention = ReflectanceConvention::Dir2019();
+  const SamplePlane plane{maps.width, maps.height, 2, 2, convention.sampling};
+  View view = DirView(0, 0);
+  view.light_in_sample_mm = {-0.8, 0.8, kDirHeight};
+  std::vector<float> rgb(3 * maps.texels());
+  RenderView(maps, plane, view, convention, rgb.data(), threads);
+  return rgb;
+}
+
+// The five pictures of one material, reduced to thumbs.
+std::array<cv::Mat, kColumns> Thumbs(const SvbrdfMaps& maps, int threads) {
+  std::array<cv::Mat, kColumns> thumbs;
+  const std::vector<float> rendered = Rendered(maps, threads);
+  for (cv::Mat& thumb : thumbs) thumb = cv::Mat(maps.height, maps.width, CV_8UC3);
+  for (int y = 0; y < maps.height; ++y) {
+    for (int x = 0; x < maps.width; ++x) {
+      const size_t i = static_cast<size_t>(y) * maps.width + static_cast<size_t>(x);
+      for (int c = 0; c < 3; ++c) {
+        thumbs[0].at<cv::Vec3b>(y, x)[c] = Plain(0.5f * maps.plane(kNormalX + c)[i] + 0.5f);
+        thumbs[1].at<cv::Vec3b>(y, x)[c] = Display(maps.plane(kDiffuseR + c)[i]);
+        thumbs[2].at<cv::Vec3b>(y, x)[c] = Display(maps.plane(kSpecularR + c)[i]);
+        thumbs[3].at<cv::Vec3b>(y, x)[c] = Plain(maps.plane(kRoughness)[i]);
+        thumbs[4].at<cv::Vec3b>(y, x)[c] =
+            Display(rendered[static_cast<size_t>(c) * maps.texels() + i]);
+      }
+    }
+  }
+  const int way = maps.width > kThumb ? cv::INTER_AREA : cv::INTER_NEAREST;
+  for (cv::Mat& thumb : thumbs) cv::resize(thumb, thumb, {kThumb, kThumb}, 0, 0, way);
+  return thumbs;
+}
+
+// OpenCV's font has plain ASCII only.
+std::string Ascii(const std::string& text) {
+  std::string plain;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text.compare(i, 2, "°") == 0) plain += " deg";
+    if ((text[i] & 0x80) == 0) plain += text[i];
+  }
+  return plain;
+}
+
+class Sheet {
+ public:
+  Sheet(int columns, int rows, int lines)
+      : lines_(lines),
+        canvas_(rows * BlockHeight(), columns * kBlockWidth, CV_8UC3, cv::Scalar(255, 255, 255)) {}
+
+  void Title(int column, int row, const std::string& text) {
+    const int left = column * kBlockWidth, top = row * BlockHeight();
+    Write(text, {left + kGap, top + 15}, 0.5);
+    for (int i = 0; i < kColumns; ++i) {
+      Write(kColumnNames[i], {left + kTextWidth + i * (kThumb + 2), top + kTextHeight - 6}, 0.4);
+    }
+  }
+
+  void Line(int column, int row, int line, const std::string& name, const SvbrdfMaps* maps,
+            int threads) {
+    const int left = column * kBlockWidth;
+    const int top = row * BlockHeight() + kTextHeight + line * (kThumb + 2);
+    Write(name, {left + kGap, top + kThumb / 2}, 0.42);
+    if (maps == nullptr) return;
+    const auto thumbs = Thumbs(*maps, threads);
+    for (int i = 0; i < kColumns; ++i) {
+      thumbs[static_cast<size_t>(i)].copyTo(
+          canvas_(cv::Rect(left + kTextWidth + i * (kThumb + 2), top, kThumb, kThumb)));
+    }
+  }
+
+  Image ToImage() const {
+    Image image(canvas_.cols, canvas_.rows, {"R", "G", "B"});
+    for (int y = 0; y < canvas_.rows; ++y) {
+      for (int x = 0; x < canvas_.cols; ++x) {
+        const cv::Vec3b pixel = canvas_.at<cv::Vec3b>(y, x);
+        for (int c = 0; c < 3; ++c) {
+          image.channel(c)[static_cast<size_t>(y) * image.width + static_cast<size_t>(x)] =
+              static_cast<float>(pixel[c]) / 255.0f;
+        }
+      }
+    }
+    return image;
+  }
+
+ private:
+  int BlockHeight() const { return kTextHeight + lines_ * (kThumb + 2) + kGap; }
+  void Write(const std::string& text, cv::Point at, double scale) {
+    cv::putText(canvas_, Ascii(text), at, cv::FONT_HERSHEY_SIMPLEX, scale, cv::Scalar(30, 30, 30),
+                1, cv::LINE_AA);
+  }
+
+  int lines_;
+  cv::Mat canvas_;
+};
+
+}  // namespace
+
+Image DrawSheet(const Experiment& experiment, int threads) {
+  const int columns = static_cast<int>(experiment.conditions.size());
+  const int rows = std::min(kSheetMaterials, static_cast<int>(experiment.materials.size()));
+  Sheet sheet(columns, rows, 1 + static_cast<int>(experiment.methods.size()));
+  for (int row = 0; row < rows; ++row) {
+    const MaterialSource material =
+        LoadMaterial(experiment.materials[static_cast<size_t>(row)], experiment.size);
+    for (int column = 0; column < columns; ++column) {
+      const Condition& condition = experiment.conditions[static_cast<size_t>(column)];
+      sheet.Title(column, row,
+                  material.name + ", N = " + std::to_string(condition.views.count) +
+                      (condition.name.empty() ? "" : ", " + condition.name));
+      sheet.Line(column, row, 0, "truth", &material.maps, threads);
+      int line = 1;
+      for (const Method& method : experiment.methods) {
+        const fs::path file = ResultManifest(experiment, material.name, condition, method);
+        SvbrdfMaps maps;
+        if (fs::exists(file)) {
+          const FitResult result = ReadFitResult(file);
+          maps = ToUnitWeight(result.maps, result.convention);
+        }
+        sheet.Line(column, row, line++, method.name, maps.texels() > 0 ? &maps : nullptr, threads);
+      }
+    }
+  }
+  return sheet.ToImage();
+}
+
+}  // namespace glint

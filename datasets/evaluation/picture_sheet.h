@@ -1,0 +1,17 @@
+// What the figures of an experiment look like: truth and the methods' maps side by side.
+#pragma once
+
+#include "datasets/evaluation/experiment.h"
+#include "pipeline/contract/image.h"
+
+namespace glint {
+
+inline constexpr int kSheetMaterials = 4;
+
+// One block for each of the first kSheetMaterials materials (downwards) and each condition (to the
+// right). A block's lines are the truth and the methods, its columns normal, diffuse, specular,
+// roughness and a rendering lit from the upper left, seen from the top; colours in gamma 2.2.
+// Results that are not on disk leave their place empty.
+Image DrawSheet(const Experiment& experiment, int threads);
+
+}  // namespace glint

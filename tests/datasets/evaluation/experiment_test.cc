@@ -1,0 +1,143 @@
+#include "datasets/evaluation/experiment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "datasets/evaluation/capture_store.h"
+#include "datasets/evaluation/starts.h"
+#include "datasets/procedural/material.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/svbrdf_file.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const auto kSilent = [](const std::string&) {};
+
+Experiment Example(const fs::path& work, const std::string& method) {
+  Experiment experiment;
+  experiment.name = "example";
+  experiment.materials = {"procedural:1000000000"};
+  experiment.work = work;
+  experiment.size = 16;
+  Condition condition;
+  condition.folder = "n02";
+  condition.views.count = 2;
+  experiment.conditions = {condition};
+  experiment.methods = {NamedMethod(method, {}, {})};
+  return experiment;
+}
+
+CommonOptions OneThread() {
+  CommonOptions common;
+  common.threads = 1;
+  return common;
+}
+
+TEST(RunExperiment, AFinishedResultIsKept) {
+  const test::TemporaryFolder folder;
+  Experiment experiment = Example(folder.path(), "classic");
+  // The settings a run with these options writes.
+  const Json settings = {{"method", "classic"},
+                         {"size", 16},
+                         {"rule", "dir"},
+                         {"bits", "8"},
+                         {"encoding", "gamma2.2"},
+                         {"seed", 0},
+                         {"fit_arguments", Json::array()}};
+  const Json errors = {{"diffuse", 0.25}, {"specular", 0},         {"roughness", 0},
+                       {"normal", 0},     {"map_average", 0.0625}, {"render", 0.5}};
+  test::WriteAll(folder.path() / "procedural_1000000000" / "n02" / "classic.json",
+                 Json{{"settings", settings}, {"errors", errors}}.dump());
+  std::string said;
+  const auto result =
+      RunExperiment(experiment, OneThread(), [&](const std::string& text) { said += text; });
+  ASSERT_EQ(result.entries.size(), 1u);
+  EXPECT_EQ(result.entries[0].errors.render, 0.5);
+  EXPECT_THAT(said, HasSubstr("(kept)"));
+  // Other settings: it has to run again, and beside a test there is no glint-fit with this option.
+  experiment.methods[0].fit_arguments = {"--no-such-option"};
+  EXPECT_THROW(RunExperiment(experiment, OneThread(), kSilent), Error);
+  experiment.methods[0].fit_arguments.clear();
+  experiment.conditions[0].views.disturbance.light_off_deg = 1;
+  experiment.methods[0].fit_arguments = {"--no-such-option"};
+  EXPECT_THROW(RunExperiment(experiment, OneThread(), kSilent), Error);
+}
+
+TEST(RunExperiment, WrongOptionsAreUserErrors) {
+  EXPECT_THROW(NamedMethod("guess", {}, {}), UserError);
+  EXPECT_THROW(WithStart(NamedMethod("latent", {}, {}), "luck"), UserError);
+  Experiment experiment = Example("/nonexistent", "latent");
+  experiment.conditions[0].views.count = 0;
+  EXPECT_THROW(RunExperiment(experiment, OneThread(), kSilent), UserError);
+  experiment.conditions.clear();
+  EXPECT_THROW(RunExperiment(experiment, OneThread(), kSilent), UserError);
+}
+
+TEST(ExpandMaterials, FoldersAndRangesAreAllTheirMaterialsSorted) {
+  const test::TemporaryFolder folder;
+  for (const std::string name : {"wood", "brass"}) {
+    fs::create_directories(folder.path() / "all" / name);
+    WriteSvbrdf(folder.path() / "all" / name / "svbrdf.exr", MakeMaterial(1, 8, 8),
+                ReflectanceConvention::Photograph());
+  }
+  const std::string all = (folder.path() / "all").string();
+  EXPECT_THAT(ExpandMaterials({all, "procedural:9..11", "procedural:wood:3"}),
+              ElementsAre(all + "/brass", all + "/wood", "procedural:9", "procedural:10",
+                          "procedural:11", "procedural:wood:3"));
+  EXPECT_THAT(ExpandMaterials({all + "/wood"}), ElementsAre(all + "/wood"));
+  EXPECT_THROW(ExpandMaterials({all, all + "/wood"}), UserError);  // two of one name
+  EXPECT_THROW(ExpandMaterials({"procedural:5..3"}), UserError);
+  EXPECT_THROW(ExpandMaterials({"procedural:5..x"}), UserError);
+  EXPECT_THROW(ExpandMaterials({all + "/none"}), UserError);
+}
+
+TEST(CaptureStore, RendersOnceAndGivesEachMethodTheSameFiles) {
+  const test::TemporaryFolder folder;
+  const MaterialSource material{"m", MakeMaterial(1, 16, 16)};
+  ViewSetOptions views;
+  views.count = 2;
+  const CommonOptions common = OneThread();
+  const fs::path first = folder.path() / "latent", second = folder.path() / "classic";
+  CaptureStore store(material, views, common);
+  store.Provide(first);
+  test::WriteAll(second / "glint/fit/manifest.json", "stays");
+  store.Provide(second);
+  store.Provide(second);
+  for (const std::string file : {"photos/view_001.png", "truth/svbrdf.exr", "capture.toml",
+                                 "glint/rectify/manifest.json", "glint/rectify/view_001.exr"}) {
+    EXPECT_TRUE(fs::equivalent(first / file, second / file)) << file;
+  }
+  EXPECT_EQ(test::ReadAll(second / "glint/fit/manifest.json"), "stays");
+  // Other views in one folder leave the other's files alone.
+  const std::string before = test::ReadAll(second / "photos/view_001.png");
+  views.exposure_stops = -2;
+  CaptureStore(material, views, common).Provide(first);
+  EXPECT_EQ(test::ReadAll(second / "photos/view_001.png"), before);
+  EXPECT_NE(test::ReadAll(first / "photos/view_001.png"), before);
+}
+
+TEST(WithStart, StartsAreWhatTheyAreCalled) {
+  const SvbrdfMaps truth = MakeMaterial(4, 64, 64);
+  const auto maps = [&](const std::string& start) {
+    return WithStart(NamedMethod("refined", {}, {}), start).start(truth);
+  };
+  EXPECT_EQ(maps("truth").planes, truth.planes);
+  const MapErrors rough = CompareMaps(maps("rough"), truth);
+  EXPECT_GT(rough.roughness, 0.01);
+  EXPECT_EQ(rough.diffuse, 0);
+  EXPECT_GT(CompareMaps(maps("random"), truth).average(), 0.02);
+  const Method network = WithStart(NamedMethod("latent", {"--a"}, {}), "network");
+  EXPECT_EQ(network.name, "network-latent");
+  EXPECT_EQ(network.capture, "network-latent");
+  EXPECT_THAT(network.fit_arguments, ElementsAre("--a", "--bootstrap", "estimator"));
+  EXPECT_EQ(WithStart(NamedMethod("refined", {}, {}), "truth").capture, "truth-latent");
+}
+
+}  // namespace
+}  // namespace glint
