@@ -19,25 +19,31 @@ class Layout {
     for (const ExperimentEntry& mean : means) {
       Append(mean.condition, &conditions_);
       Append(std::to_string(mean.count), &counts_);
+      Append(mean.method, &methods_);
     }
   }
-  bool over_conditions() const { return conditions_.size() > 1 && counts_.size() == 1; }
-  const std::vector<std::string>& conditions() const { return conditions_; }
+  // What the x axis counts; empty: it is the number of views.
+  const std::vector<std::string>& categories() const {
+    static const std::vector<std::string> none;
+    if (counts_.size() > 1) return none;
+    return conditions_.size() > 1 ? conditions_ : methods_;
+  }
 
   Place Of(const ExperimentEntry& mean) const {
-    if (over_conditions()) {
-      const auto at = std::find(conditions_.begin(), conditions_.end(), mean.condition);
-      return {mean.method, static_cast<double>(at - conditions_.begin())};
-    }
     const std::string condition = mean.condition.empty() ? "" : ", " + mean.condition;
-    return {mean.method + condition, static_cast<double>(mean.count)};
+    if (counts_.size() > 1) return {mean.method + condition, static_cast<double>(mean.count)};
+    if (conditions_.size() > 1) return {mean.method, Index(mean.condition, conditions_)};
+    return {"N = " + std::to_string(mean.count) + condition, Index(mean.method, methods_)};
   }
 
  private:
   static void Append(const std::string& text, std::vector<std::string>* list) {
     if (std::find(list->begin(), list->end(), text) == list->end()) list->push_back(text);
   }
-  std::vector<std::string> conditions_, counts_;
+  static double Index(const std::string& text, const std::vector<std::string>& list) {
+    return static_cast<double>(std::find(list.begin(), list.end(), text) - list.begin());
+  }
+  std::vector<std::string> conditions_, counts_, methods_;
 };
 
 // Appends to the series `name`; a new one is dashed like the series `like`, if that is given.
@@ -69,9 +75,8 @@ Plot PlotOf(const ExperimentResult& result, const ExperimentResult::Paper& paper
   Plot plot;
   plot.title = result.name;
   plot.log_y = true;
-  if (layout.over_conditions()) {
-    plot.categories = layout.conditions();
-  } else {
+  plot.categories = layout.categories();
+  if (plot.categories.empty()) {
     plot.log_x = true;
     plot.x_label = "number of views";
   }

@@ -50,8 +50,8 @@ inline constexpr char kDisturbed[] = "disturbed";
 // Options completed by the experiment's own counts and methods.
 PaperExperimentOptions Completed(const PaperExperiment& paper, PaperExperimentOptions options);
 
-// Map average and render error over the number of views, or over the conditions where they differ;
-// a line a method, and dashed the paper's.
+// Map average and render error over the number of views; with one such number over the conditions,
+// with one of both over the methods. A line a method, and dashed the paper's.
 Plot PlotOf(const ExperimentResult& result, const ExperimentResult::Paper& paper);
 
 // Writes NAME.csv, NAME.json, NAME.svg and NAME.png into the experiment's work folder; `json` is

@@ -68,6 +68,7 @@ std::string Ascii(const std::string& text) {
   std::string plain;
   for (size_t i = 0; i < text.size(); ++i) {
     if (text.compare(i, 2, "°") == 0) plain += " deg";
+    if (text.compare(i, 3, "≥") == 0) plain += ">=";
     if ((text[i] & 0x80) == 0) plain += text[i];
   }
   return plain;

@@ -74,26 +74,33 @@ class Axis {
   bool Shows(double value) const { return std::isfinite(value) && (!log_ || value > 0); }
   double At(double value) const { return (To(value) - low_) / (high_ - low_); }
 
-  std::vector<double> Ticks() const { return log_ ? LogTicks() : LinearTicks(); }
+  std::vector<double> Ticks() const { return log_ ? LogTicks() : EvenTicks(low_, high_); }
 
  private:
   double To(double value) const { return log_ ? std::log10(value) : value; }
 
+  // Powers of ten; where these are few also 2 and 5 of them, and else even steps.
   std::vector<double> LogTicks() const {
-    const bool wide = high_ - low_ > 3;
+    constexpr size_t kFew = 3;
+    std::vector<double> ticks = PowerTicks({1});
+    if (ticks.size() <= kFew) ticks = PowerTicks({1, 2, 5});
+    if (ticks.size() < kFew) ticks = EvenTicks(std::pow(10.0, low_), std::pow(10.0, high_));
+    return ticks;
+  }
+
+  std::vector<double> PowerTicks(const std::vector<double>& factors) const {
     std::vector<double> ticks;
     for (int power = static_cast<int>(std::floor(low_)); power <= std::ceil(high_); ++power) {
-      for (const double factor : {1.0, 2.0, 5.0}) {
+      for (const double factor : factors) {
         const double tick = factor * std::pow(10.0, power);
-        if ((wide && factor != 1) || To(tick) < low_ || To(tick) > high_) continue;
-        ticks.push_back(tick);
+        if (To(tick) >= low_ && To(tick) <= high_) ticks.push_back(tick);
       }
     }
     return ticks;
   }
 
-  std::vector<double> LinearTicks() const {
-    const double raw = (high_ - low_) / 6, power = std::pow(10.0, std::floor(std::log10(raw)));
+  static std::vector<double> EvenTicks(double low, double high) {
+    const double raw = (high - low) / 6, power = std::pow(10.0, std::floor(std::log10(raw)));
     double step = 10 * power;
     for (const double factor : {1.0, 2.0, 5.0}) {
       if (factor * power >= raw) {
@@ -102,7 +109,7 @@ class Axis {
       }
     }
     std::vector<double> ticks;
-    for (double k = std::ceil(low_ / step); k * step <= high_; k += 1) ticks.push_back(k * step);
+    for (double k = std::ceil(low / step); k * step <= high; k += 1) ticks.push_back(k * step);
     return ticks;
   }
 

@@ -5,7 +5,7 @@
 // columns run round from +x over +y. What lies below the horizon is behind the sample and left out.
 //
 // Quadrature: the hemisphere is cut into rings of equal polar width and these into cells about as
-// wide as high (10 rings: 254 cells of 9°). A cell's light comes from its centre of brightness with
+// wide as high (10 rings: 255 cells of 9°). A cell's light comes from its centre of brightness with
 // all its irradiance, so that the irradiance of a plane is exact for any map, and lamps stand where
 // they are. A highlight narrower than a cell would be missed or doubled: roughness is widened to
 // the cells' (see WidenRoughness). Against 40 rings the reflected radiance of a procedural material

@@ -142,6 +142,10 @@ TEST(PlotOf, IsOverViewsOrOverConditions) {
   const Plot conditions = PlotOf(result, {});
   EXPECT_EQ(conditions.categories, (std::vector<std::string>{"dark", "bright"}));
   EXPECT_EQ(conditions.panels[0].series[0].points[1].first, 1);
+  result.entries = {Entry(5, "", "latent", 0.4, 0.2), Entry(5, "", "refined", 0.1, 0.1)};
+  const Plot methods = PlotOf(result, {});
+  EXPECT_EQ(methods.categories, (std::vector<std::string>{"latent", "refined"}));
+  EXPECT_EQ(methods.panels[0].series.size(), 1u);
 }
 
 }  // namespace

@@ -62,6 +62,15 @@ TEST(PlotSvg, LeavesOutWhatCannotBeDrawn) {
   EXPECT_THAT(PlotSvg({}), HasSubstr("</svg>"));
 }
 
+TEST(PlotSvg, NarrowRangesHaveTicksToo) {
+  Plot plot;
+  plot.log_y = true;
+  plot.panels = {{"p", {{"s", {{1, 0.1842}, {2, 0.1852}}, -1}}}};
+  const std::string svg = PlotSvg(plot);
+  static const std::regex tick(">0\\.18[0-9]+</text>");
+  EXPECT_GE(std::distance(std::sregex_iterator(svg.begin(), svg.end(), tick), {}), 3);
+}
+
 TEST(PlotSvg, CategoriesAreTicks) {
   Plot plot;
   plot.categories = {"plain", "off by 5°"};
