@@ -1,30 +1,34 @@
 #include "datasets/procedural/blend.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "datasets/procedural/dispatch.h"
 #include "datasets/procedural/families/common.h"
 
 namespace glint::procedural {
 namespace {
 
-enum class MaskKind { kConstant, kClouds, kIslands, kTiling };
+enum class MaskKind { kConstant, kClouds, kIslands, kTiling, kTone };
 
 struct Mask {
   MaskKind kind;
   NoiseOptions noise;
   Warp warp;
   TilingOptions tiling;
-  float level, soft, constant, share, cosine, sine;
+  float level, soft, constant, share, cosine, sine, tone;
 };
 
 Mask DrawMask(uint64_t seed) {
   Rng rng(seed);
   Mask m;
   const float kind = rng.Unit();
-  m.kind = kind < 0.2f    ? MaskKind::kConstant
+  m.kind = kind < 0.25f   ? MaskKind::kConstant
            : kind < 0.45f ? MaskKind::kClouds
-           : kind < 0.8f  ? MaskKind::kIslands
-                          : MaskKind::kTiling;
+           : kind < 0.65f ? MaskKind::kIslands
+           : kind < 0.8f  ? MaskKind::kTiling
+                          : MaskKind::kTone;
   m.noise = DrawNoise(rng, NoiseKind::kSmooth, 0.8f, 6.0f, 4);
   m.warp = DrawWarp(rng, 2.0f, 8.0f, rng.Uniform(0.0f, 0.4f));
   static constexpr Tiling kForms[] = {Tiling::kGrid, Tiling::kRunningBond, Tiling::kHexagon,
@@ -34,9 +38,11 @@ Mask DrawMask(uint64_t seed) {
   m.tiling.aspect = rng.Int(1, 4);
   m.tiling.seed = rng.Seed();
   m.level = rng.Uniform(-0.25f, 0.25f);
-  m.soft = m.kind == MaskKind::kClouds ? rng.Uniform(0.25f, 0.8f) : rng.LogUniform(0.01f, 0.15f);
+  m.soft = m.kind == MaskKind::kClouds || m.kind == MaskKind::kTone ? rng.Uniform(0.25f, 0.8f)
+                                                                    : rng.LogUniform(0.01f, 0.15f);
   m.constant = rng.Uniform(0.15f, 0.85f);
   m.share = rng.Uniform(0.25f, 0.75f);
+  m.tone = rng.Uniform(0.5f, 2.0f) * (rng.Chance(0.5f) ? 1.0f : -1.0f);
   const float turn = rng.Unit();
   m.cosine = CosTurn(turn);
   m.sine = SinTurn(turn);
@@ -61,12 +67,62 @@ void MaskRow(const Mask& m, const RowDomain& d, Scratch& scratch, float* out) {
   }
 }
 
+float MeanOf(std::span<const float> plane) {
+  double sum = 0.0;
+  for (const float value : plane) sum += value;
+  return static_cast<float>(sum / static_cast<double>(plane.size()));
+}
+
+// Green diffuse and specular together, less its mean and over its spread.
+Plane ToneOf(const SvbrdfMaps& maps) {
+  const auto diffuse = maps.plane(kDiffuseG), specular = maps.plane(kSpecularG);
+  Plane tone(diffuse.size());
+  for (size_t i = 0; i < tone.size(); ++i) tone[i] = diffuse[i] + specular[i];
+  const float mean = MeanOf(tone);
+  double square = 0.0;
+  for (float& value : tone) {
+    value -= mean;
+    square += static_cast<double>(value) * value;
+  }
+  const float spread = static_cast<float>(std::sqrt(square / static_cast<double>(tone.size())));
+  for (float& value : tone) value /= std::max(spread, 1e-3f);
+  return tone;
+}
+
+// Lets the noise of a mask follow the first material's tone.
+void FollowTone(const Mask& m, const Plane& tone, Plane* mask) {
+  for (size_t i = 0; i < tone.size(); ++i) {
+    (*mask)[i] = SmoothStep(-0.5f, 0.5f, 2.0f * ((*mask)[i] - 0.5f) + 0.4f * m.tone * tone[i]);
+  }
+}
+
+GLINT_VECTOR_CLONES
+void MixPlanes(const float* from, const float* mask, size_t n, float* __restrict to) {
+  for (size_t i = 0; i < n; ++i) {
+    const float mixed = Mix(to[i], from[i], mask[i]);  // rounding may pass either end
+    to[i] = std::min(std::max(mixed, std::min(to[i], from[i])), std::max(to[i], from[i]));
+  }
+}
+
+GLINT_VECTOR_CLONES
+void MixNormals(const float* from_x, const float* from_y, const float* from_z, const float* mask,
+                size_t n, float* __restrict x, float* __restrict y, float* __restrict z) {
+  for (size_t i = 0; i < n; ++i) {
+    const float sx = Mix(x[i] / z[i], from_x[i] / from_z[i], mask[i]);
+    const float sy = Mix(y[i] / z[i], from_y[i] / from_z[i], mask[i]);
+    z[i] = 1.0f / std::sqrt(1.0f + sx * sx + sy * sy);
+    x[i] = sx * z[i];
+    y[i] = sy * z[i];
+  }
+}
+
 }  // namespace
 
-std::vector<float> DrawBlendMask(uint64_t seed, int width, int height) {
+Plane DrawBlendMask(uint64_t seed, const SvbrdfMaps& first) {
+  const int width = first.width, height = first.height;
   const Mask m = DrawMask(seed);
   const float pixel = 1.0f / static_cast<float>(std::max(width, height));
-  std::vector<float> mask(static_cast<size_t>(width) * height);
+  Plane mask(static_cast<size_t>(width) * height);
   std::vector<float> x(width), y(width);
   Scratch scratch(width);
   for (int row = 0; row < height; ++row) {
@@ -80,34 +136,36 @@ std::vector<float> DrawBlendMask(uint64_t seed, int width, int height) {
     MaskRow(m, {x.data(), y.data(), width, pixel}, scratch,
             mask.data() + static_cast<size_t>(row) * width);
   }
+  if (m.kind == MaskKind::kTone) FollowTone(m, ToneOf(first), &mask);
   return mask;
 }
 
-SvbrdfMaps BlendMaterials(const SvbrdfMaps& first, const SvbrdfMaps& second,
-                          const std::vector<float>& mask) {
-  SvbrdfMaps out(first.width, first.height);
-  const size_t n = mask.size();
-  for (int p = kDiffuseR; p < kSvbrdfPlanes; ++p) {
-    const float* a = first.plane(p).data();
-    const float* b = second.plane(p).data();
-    float* to = out.plane(p).data();
-    for (size_t i = 0; i < n; ++i) {
-      const float mixed = Mix(a[i], b[i], mask[i]);  // rounding may pass either end
-      to[i] = std::min(std::max(mixed, std::min(a[i], b[i])), std::max(a[i], b[i]));
+void Reconcile(uint64_t seed, const SvbrdfMaps& first, SvbrdfMaps* second) {
+  Rng rng(seed);
+  const float colors = rng.Chance(0.8f) ? rng.Unit() : 0.0f;
+  const float roughness = rng.Chance(0.8f) ? rng.Uniform(0.3f, 1.0f) : 0.0f;
+  for (int p = kDiffuseR; p <= kDiffuseB; ++p) {
+    const float from = MeanOf(second->plane(p)), to = MeanOf(first.plane(p));
+    if (from < 0.01f || to < 0.01f) continue;  // a metal has no colour to give or take
+    const float gain = std::pow(to / from, colors);
+    const auto diffuse = second->plane(p), specular = second->plane(p - kDiffuseR + kSpecularR);
+    for (size_t i = 0; i < diffuse.size(); ++i) {
+      diffuse[i] = std::min(gain * diffuse[i], 1.0f - specular[i]);
     }
   }
-  const float* a[3] = {first.plane(0).data(), first.plane(1).data(), first.plane(2).data()};
-  const float* b[3] = {second.plane(0).data(), second.plane(1).data(), second.plane(2).data()};
-  float* to[3] = {out.plane(0).data(), out.plane(1).data(), out.plane(2).data()};
-  for (size_t i = 0; i < n; ++i) {
-    const float sx = Mix(a[0][i] / a[2][i], b[0][i] / b[2][i], mask[i]);
-    const float sy = Mix(a[1][i] / a[2][i], b[1][i] / b[2][i], mask[i]);
-    const float z = 1.0f / std::sqrt(1.0f + sx * sx + sy * sy);
-    to[0][i] = sx * z;
-    to[1][i] = sy * z;
-    to[2][i] = z;
+  const float change =
+      roughness * (MeanOf(first.plane(kRoughness)) - MeanOf(second->plane(kRoughness)));
+  for (float& r : second->plane(kRoughness)) r = std::clamp(r + change, 0.05f, 1.0f);
+}
+
+SvbrdfMaps BlendMaterials(SvbrdfMaps first, const SvbrdfMaps& second, const Plane& mask) {
+  for (int p = kDiffuseR; p < kSvbrdfPlanes; ++p) {
+    MixPlanes(second.plane(p).data(), mask.data(), mask.size(), first.plane(p).data());
   }
-  return out;
+  const float* from[3] = {second.plane(0).data(), second.plane(1).data(), second.plane(2).data()};
+  MixNormals(from[0], from[1], from[2], mask.data(), mask.size(), first.plane(0).data(),
+             first.plane(1).data(), first.plane(2).data());
+  return first;
 }
 
 }  // namespace glint::procedural

@@ -1,5 +1,6 @@
 #include "datasets/procedural/material.h"
 
+#include <optional>
 #include <stdexcept>
 
 #include "datasets/procedural/blend.h"
@@ -17,11 +18,14 @@ using procedural::Rng;
 
 constexpr int kLargestSide = 8192;
 constexpr float kBlendShare = 0.3f;
+constexpr float kFinishedShare = 0.95f;
 // Streams of one seed that must not repeat each other's draws.
 constexpr uint64_t kRecipeStream = 0x7265636970650001ull;
 constexpr uint64_t kFirstStream = 0x6669727374000002ull;
 constexpr uint64_t kSecondStream = 0x7365636f6e640003ull;
 constexpr uint64_t kMaskStream = 0x6d61736b00000004ull;
+constexpr uint64_t kFinishStream = 0x66696e6973680005ull;
+constexpr uint64_t kReconcileStream = 0x7265636f6e630006ull;
 
 const Family& DrawFamily(Rng& rng) {
   float total = 0.0f;
@@ -50,9 +54,13 @@ uint64_t FamilySeed(const Family& family, uint64_t seed, uint64_t stream) {
   return hash;
 }
 
-SvbrdfMaps MakeOne(const std::string& name, uint64_t seed, uint64_t stream, int width, int height) {
+SvbrdfMaps MakeOne(const MaterialRecipe& recipe, const std::string& name, uint64_t stream,
+                   int width, int height) {
   const Family& family = FindFamily(name);
-  return procedural::MakeSurface(family, FamilySeed(family, seed, stream), width, height);
+  const uint64_t seed = FamilySeed(family, recipe.seed, stream);
+  std::optional<uint64_t> finish;
+  if (recipe.finished) finish = Mix64(seed ^ kFinishStream);
+  return procedural::MakeSurface(family, seed, finish, width, height);
 }
 
 void CheckSize(int width, int height) {
@@ -76,17 +84,18 @@ MaterialRecipe DrawRecipe(uint64_t seed) {
   recipe.seed = seed;
   recipe.family = DrawFamily(rng).name;
   if (rng.Chance(kBlendShare)) recipe.second = DrawFamily(rng).name;
+  recipe.finished = rng.Chance(kFinishedShare);
   return recipe;
 }
 
 SvbrdfMaps MakeMaterial(const MaterialRecipe& recipe, int width, int height) {
   CheckSize(width, height);
-  SvbrdfMaps first = MakeOne(recipe.family, recipe.seed, kFirstStream, width, height);
+  SvbrdfMaps first = MakeOne(recipe, recipe.family, kFirstStream, width, height);
   if (recipe.second.empty()) return first;
-  const SvbrdfMaps second = MakeOne(recipe.second, recipe.seed, kSecondStream, width, height);
-  const std::vector<float> mask =
-      procedural::DrawBlendMask(Mix64(recipe.seed ^ kMaskStream), width, height);
-  return procedural::BlendMaterials(first, second, mask);
+  SvbrdfMaps second = MakeOne(recipe, recipe.second, kSecondStream, width, height);
+  procedural::Reconcile(Mix64(recipe.seed ^ kReconcileStream), first, &second);
+  const procedural::Plane mask = procedural::DrawBlendMask(Mix64(recipe.seed ^ kMaskStream), first);
+  return procedural::BlendMaterials(std::move(first), second, mask);
 }
 
 SvbrdfMaps MakeMaterial(uint64_t seed, int width, int height) {
@@ -94,7 +103,7 @@ SvbrdfMaps MakeMaterial(uint64_t seed, int width, int height) {
 }
 
 SvbrdfMaps MakeMaterial(const std::string& family, uint64_t seed, int width, int height) {
-  return MakeMaterial(MaterialRecipe{seed, family, ""}, width, height);
+  return MakeMaterial(MaterialRecipe{seed, family, "", false}, width, height);
 }
 
 }  // namespace glint

@@ -21,6 +21,8 @@ struct MaterialRecipe {
   uint64_t seed = 0;
   std::string family;  // one of MaterialFamilies()
   std::string second;  // the family blended into it, or empty
+  // Finished as things in use are (finish.h): detail down to the texels, dirt, wear, less contrast.
+  bool finished = false;
 };
 
 // Names of the families, in a fixed order.
@@ -32,11 +34,13 @@ MaterialRecipe DrawRecipe(uint64_t seed);
 // Maps of the material `seed`: family, parameters and possibly a second material blended in by a
 // mask (convex mixtures as in Deschaintre et al. 2018, sec. 4.2) are all drawn from the seed.
 // Every plane is within its range of SvbrdfMaps: unit normals with z > 0, tilted at most 77°;
-// diffuse + specular ≤ 1 per channel; dielectric F0 .02 to .08; roughness .05 to 1.
+// diffuse + specular ≤ 1 per channel; dielectric F0 .02 to .08, in the tail of finished ones .2;
+// roughness .05 to 1.
 // Throws std::invalid_argument for a width or height outside 1 … 8192.
 SvbrdfMaps MakeMaterial(uint64_t seed, int width, int height);
 
-// Maps of one family, never blended. Also throws std::invalid_argument for an unknown family.
+// Maps of one family, never blended or finished. Also throws std::invalid_argument for an unknown
+// family.
 SvbrdfMaps MakeMaterial(const std::string& family, uint64_t seed, int width, int height);
 
 // Maps of a recipe: what MakeMaterial(recipe.seed, …) returns when the recipe was drawn from it.

@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "datasets/procedural/dispatch.h"
+#include "datasets/procedural/finish.h"
 #include "datasets/procedural/shaping.h"
 #include "datasets/procedural/weathering.h"
 
 namespace glint::procedural {
 namespace {
 
-constexpr float kSteepest = 4.2f;         // slopes approach this tangent (76.6°) and never pass it
+constexpr float kSteepest = 4.2f;  // slopes approach this tangent (76.6°) and never pass it
+constexpr float kMostF0 = 0.08f, kMostFinishedF0 = 0.2f;
 constexpr float kProbeStep = 1.0f / 256;  // where relief is measured, whatever the picture's size
 constexpr int kProbeRows = 16;
 constexpr int kProbePoints = 64;
@@ -21,6 +23,14 @@ struct Placement {
   float xx, xy, yx, yy;  // picture to pattern, with zoom
   float x0, y0;
   float zoom;
+
+  void Zoom(const PatternScale& scale) {
+    xx *= scale.x;
+    xy *= scale.x;
+    yx *= scale.y;
+    yy *= scale.y;
+    zoom *= std::max(scale.x, scale.y);
+  }
 };
 
 Placement DrawPlacement(Rng& rng, bool directional) {
@@ -43,13 +53,15 @@ Placement DrawPlacement(Rng& rng, bool directional) {
 
 class Surface {
  public:
-  Surface(const Family& family, uint64_t seed) {
+  Surface(const Family& family, uint64_t seed, const PatternScale& scale) {
     Rng rng(seed);
     placement_ = DrawPlacement(rng, family.directional);
+    placement_.Zoom(scale);
     slope_ = rng.LogUniform(family.slope_low, family.slope_high);
     const float kind = rng.Unit();
     if (kind < 0.12f) slope_ *= 0.1f;                     // polished, pressed, worn flat
     if (kind > 0.90f) slope_ *= rng.Uniform(1.5f, 3.0f);  // rugged: the tail of steep normals
+    slope_ *= scale.relief;
     metal_residue_ = rng.Chance(0.5f) ? rng.Uniform(0.0f, 0.06f) : 0.0f;
     rows_ = family.draw(rng);
     weathering_ = DrawWeathering(rng);
@@ -69,6 +81,7 @@ class Surface {
     weathering_(d, scratch, out);
   }
 
+  float slope() const { return slope_; }
   float metal_residue() const { return metal_residue_; }
 
   // The factor that brings the relief to the drawn slope.
@@ -127,65 +140,80 @@ float Surface::ReliefScale() const {
   return slope_ / std::max(rms, 0.1f);
 }
 
+// A row of values without their border, into the planes.
+void StoreRow(const RowBuffers& rows, int row, LayerPlanes* planes) {
+  const size_t n = static_cast<size_t>(planes->width), at = static_cast<size_t>(row) * n;
+  const auto store = [&](const float* from, Plane* to) {
+    std::copy_n(from + 1, n, to->data() + at);
+  };
+  store(rows.r, &planes->r);
+  store(rows.g, &planes->g);
+  store(rows.b, &planes->b);
+  store(rows.metal, &planes->metal);
+  store(rows.f0, &planes->f0);
+  store(rows.roughness, &planes->roughness);
+}
+
 // `residue`: part of a metal's colour that its oxide and dust scatter diffusely.
 GLINT_VECTOR_CLONES
-void WriteReflectance(const RowBuffers& rows, float residue, int first, int row, SvbrdfMaps& maps) {
-  const size_t at = static_cast<size_t>(row) * maps.width;
-  const float* base[3] = {rows.r + first, rows.g + first, rows.b + first};
-  const float* metal = rows.metal + first;
-  const float* f0_row = rows.f0 + first;
-  for (int c = 0; c < 3; ++c) {
-    float* diffuse = maps.plane(kDiffuseR + c).data() + at;
-    float* specular = maps.plane(kSpecularR + c).data() + at;
-    for (int i = 0; i < maps.width; ++i) {
-      const float f0 = std::min(std::max(f0_row[i], 0.02f), 0.08f);
-      const float m = Clamp01(metal[i]);
-      const float color = Clamp01(base[c][i]);
-      const float mirror = Mix(f0, (1.0f - residue) * color, m);
-      specular[i] = mirror;
-      diffuse[i] = std::min(Mix(1.0f, residue, m) * color, 1.0f - mirror);
-    }
-  }
-  float* roughness = maps.plane(kRoughness).data() + at;
-  for (int i = 0; i < maps.width; ++i) {
-    roughness[i] = std::min(std::max(rows.roughness[first + i], 0.05f), 1.0f);
+void WriteAlbedo(const float* base, const float* metal, const float* f0_plane, float residue,
+                 float most_f0, size_t n, float* __restrict diffuse, float* __restrict specular) {
+  for (size_t i = 0; i < n; ++i) {
+    const float f0 = std::min(std::max(f0_plane[i], 0.02f), most_f0);
+    const float m = Clamp01(metal[i]);
+    const float color = Clamp01(base[i]);
+    const float mirror = Mix(f0, (1.0f - residue) * color, m);
+    specular[i] = mirror;
+    diffuse[i] = std::min(Mix(1.0f, residue, m) * color, 1.0f - mirror);
   }
 }
 
-// Central differences of a height plane that has a border of one texel all around.
+void WriteReflectance(const LayerPlanes& planes, float residue, float most_f0, SvbrdfMaps& maps) {
+  const Plane* base[3] = {&planes.r, &planes.g, &planes.b};
+  for (int c = 0; c < 3; ++c) {
+    WriteAlbedo(base[c]->data(), planes.metal.data(), planes.f0.data(), residue, most_f0,
+                maps.texels(), maps.plane(kDiffuseR + c).data(), maps.plane(kSpecularR + c).data());
+  }
+  float* roughness = maps.plane(kRoughness).data();
+  for (size_t i = 0; i < maps.texels(); ++i) {
+    roughness[i] = std::min(std::max(planes.roughness[i], 0.05f), 1.0f);
+  }
+}
+
+// Central differences of the heights of three rows, with a border either side.
 GLINT_VECTOR_CLONES
-void WriteNormals(const std::vector<float>& heights, float scale, SvbrdfMaps& maps) {
-  const size_t stride = static_cast<size_t>(maps.width) + 2;
+void NormalRow(const float* above, const float* here, const float* below, float scale, int n,
+               float* __restrict nx, float* __restrict ny, float* __restrict nz) {
+  for (int i = 0; i < n; ++i) {
+    const float sx = scale * (here[i + 1] - here[i - 1]);
+    const float sy = scale * (above[i] - below[i]);
+    const float square = sx * sx + sy * sy;
+    const float limit = 1.0f / std::sqrt(1.0f + square / (kSteepest * kSteepest));
+    const float z = 1.0f / std::sqrt(1.0f + square * limit * limit);
+    nx[i] = -sx * limit * z;
+    ny[i] = -sy * limit * z;
+    nz[i] = z;
+  }
+}
+
+void WriteNormals(LayerPlanes* planes, float scale, SvbrdfMaps& maps) {
   for (int row = 0; row < maps.height; ++row) {
-    const float* here = heights.data() + (static_cast<size_t>(row) + 1) * stride + 1;
-    const float* above = here - stride;
-    const float* below = here + stride;
     const size_t at = static_cast<size_t>(row) * maps.width;
-    float* nx = maps.plane(kNormalX).data() + at;
-    float* ny = maps.plane(kNormalY).data() + at;
-    float* nz = maps.plane(kNormalZ).data() + at;
-    for (int i = 0; i < maps.width; ++i) {
-      const float sx = scale * (here[i + 1] - here[i - 1]);
-      const float sy = scale * (above[i] - below[i]);
-      const float square = sx * sx + sy * sy;
-      const float limit = 1.0f / std::sqrt(1.0f + square / (kSteepest * kSteepest));
-      const float z = 1.0f / std::sqrt(1.0f + square * limit * limit);
-      nx[i] = -sx * limit * z;
-      ny[i] = -sy * limit * z;
-      nz[i] = z;
-    }
+    NormalRow(planes->HeightRow(row - 1), planes->HeightRow(row), planes->HeightRow(row + 1), scale,
+              maps.width, maps.plane(kNormalX).data() + at, maps.plane(kNormalY).data() + at,
+              maps.plane(kNormalZ).data() + at);
   }
 }
 
 }  // namespace
 
-SvbrdfMaps MakeSurface(const Family& family, uint64_t seed, int width, int height) {
-  const Surface surface(family, seed);
+SvbrdfMaps MakeSurface(const Family& family, uint64_t seed, std::optional<uint64_t> finish,
+                       int width, int height) {
+  const Surface surface(family, seed, finish ? FinishScale(*finish) : PatternScale());
   const float longer = static_cast<float>(std::max(width, height));
   const float pixel = 1.0f / longer;
   const int n = width + 2;
-  SvbrdfMaps maps(width, height);
-  std::vector<float> heights(static_cast<size_t>(n) * (height + 2));
+  LayerPlanes planes(width, height);
   RowBuffers rows(n);
   Scratch scratch(n);
   for (int row = -1; row <= height; ++row) {
@@ -195,10 +223,18 @@ SvbrdfMaps MakeSurface(const Family& family, uint64_t seed, int width, int heigh
       rows.y[i] = y;
     }
     surface.Evaluate(rows.x, rows.y, n, pixel, rows.px, rows.py, scratch,
-                     rows.Layers(heights.data() + static_cast<size_t>(row + 1) * n));
-    if (row >= 0 && row < height) WriteReflectance(rows, surface.metal_residue(), 1, row, maps);
+                     rows.Layers(planes.HeightRow(row) - 1));
+    if (row >= 0 && row < height) StoreRow(rows, row, &planes);
   }
-  WriteNormals(heights, surface.ReliefScale() * 0.5f * longer, maps);
+  float scale = surface.ReliefScale();
+  if (finish) {
+    for (float& h : planes.heights) h *= scale;
+    scale = 1.0f;
+    FinishSurface(*finish, surface.slope(), &planes);
+  }
+  SvbrdfMaps maps(width, height);
+  WriteReflectance(planes, surface.metal_residue(), finish ? kMostFinishedF0 : kMostF0, maps);
+  WriteNormals(&planes, scale * 0.5f * longer, maps);
   return maps;
 }
 

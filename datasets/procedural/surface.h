@@ -3,12 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "datasets/procedural/families/families.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint::procedural {
 
-SvbrdfMaps MakeSurface(const Family& family, uint64_t seed, int width, int height);
+// `finish`: seed of finish.h's changes; none: the family's own look.
+SvbrdfMaps MakeSurface(const Family& family, uint64_t seed, std::optional<uint64_t> finish,
+                       int width, int height);
 
 }  // namespace glint::procedural

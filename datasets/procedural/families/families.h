@@ -58,5 +58,24 @@ RowFunction DrawSmooth(Rng& rng);
 RowFunction DrawRust(Rng& rng);
 RowFunction DrawPeelingPaint(Rng& rng);
 RowFunction DrawStains(Rng& rng);
+// growth.cc
+RowFunction DrawGrass(Rng& rng);
+RowFunction DrawLitter(Rng& rng);
+RowFunction DrawChipboard(Rng& rng);
+RowFunction DrawImpasto(Rng& rng);
+RowFunction DrawMoss(Rng& rng);
+// ground.cc
+RowFunction DrawSoil(Rng& rng);
+RowFunction DrawAsphalt(Rng& rng);
+RowFunction DrawSand(Rng& rng);
+RowFunction DrawFormwork(Rng& rng);
+RowFunction DrawIce(Rng& rng);
+// formed.cc
+RowFunction DrawCorrugated(Rng& rng);
+RowFunction DrawTread(Rng& rng);
+RowFunction DrawHammered(Rng& rng);
+RowFunction DrawPerforated(Rng& rng);
+RowFunction DrawQuilted(Rng& rng);
+RowFunction DrawPile(Rng& rng);
 
 }  // namespace glint::procedural

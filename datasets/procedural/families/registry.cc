@@ -35,6 +35,22 @@ constexpr Family kFamilies[] = {
     {"rust", DrawRust, 0.03f, 0.6f, 1.0f, true},
     {"peeling_paint", DrawPeelingPaint, 0.04f, 0.6f, 1.0f, true},
     {"stains", DrawStains, 0.02f, 0.4f, 1.0f, false},
+    {"grass", DrawGrass, 0.1f, 0.7f, 1.0f, false},
+    {"litter", DrawLitter, 0.1f, 0.9f, 0.8f, false},
+    {"chipboard", DrawChipboard, 0.01f, 0.3f, 0.8f, false},
+    {"impasto", DrawImpasto, 0.04f, 0.6f, 0.7f, false},
+    {"moss", DrawMoss, 0.1f, 0.9f, 1.0f, false},
+    {"soil", DrawSoil, 0.1f, 0.9f, 1.2f, false},
+    {"asphalt", DrawAsphalt, 0.06f, 0.8f, 1.0f, false},
+    {"sand", DrawSand, 0.03f, 0.6f, 0.8f, false},
+    {"formwork", DrawFormwork, 0.02f, 0.4f, 1.0f, true},
+    {"ice", DrawIce, 0.01f, 0.4f, 0.6f, false},
+    {"corrugated", DrawCorrugated, 0.05f, 0.9f, 0.8f, true},
+    {"tread", DrawTread, 0.04f, 0.5f, 0.6f, true},
+    {"hammered", DrawHammered, 0.04f, 0.5f, 0.7f, false},
+    {"perforated", DrawPerforated, 0.05f, 0.6f, 0.6f, true},
+    {"quilted", DrawQuilted, 0.06f, 0.7f, 0.7f, true},
+    {"pile", DrawPile, 0.1f, 0.9f, 0.9f, false},
 };
 
 }  // namespace

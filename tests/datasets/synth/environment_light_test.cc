@@ -68,7 +68,7 @@ TEST(ConstantEnvironment, IsReflectedByAlbedo) {
 }
 
 TEST(AddEnvironment, IsPreciseAgainstAFinerQuadrature) {
-  const SvbrdfMaps maps = MakeMaterial(12, 48, 48);
+  const SvbrdfMaps maps = MakeMaterial("leather", 12, 48, 48);
   const auto coarse = Reflected(ConstantEnvironment(), maps);
   const auto fine = Reflected(ConstantEnvironment(40), maps);
   EXPECT_LT(Difference(coarse, fine), 0.01);
@@ -106,7 +106,7 @@ TEST(ReadEnvironment, RealMapsAreReadAndPrecise) {
   const fs::path data =
       given != nullptr ? fs::path(given) : fs::path(GLINT_SOURCE_DIR).parent_path() / "shared/data";
   if (!fs::exists(data / "env")) GTEST_SKIP() << "no environment maps";
-  const SvbrdfMaps maps = MakeMaterial(12, 32, 32);
+  const SvbrdfMaps maps = MakeMaterial("leather", 12, 32, 32);
   for (const std::string name : {"city.hdr", "lobby.hdr", "photo_studio_loft_hall_1k.exr"}) {
     const auto coarse = Reflected(ReadEnvironment(data / "env" / name), maps);
     const auto fine = Reflected(ReadEnvironment(data / "env" / name, 40), maps);
