@@ -9,6 +9,7 @@
 #include <set>
 
 #include "datasets/evaluation/capture_store.h"
+#include "datasets/evaluation/shipped_models.h"
 #include "datasets/evaluation/subprocess.h"
 #include "datasets/evaluation/view_error.h"
 #include "datasets/statistics/population.h"
@@ -72,13 +73,14 @@ double SaturatedShare(const SvbrdfMaps& maps, const ViewSetOptions& views,
 class Runs {
  public:
   Runs(const Experiment& experiment, const CommonOptions& common, const MaterialSource& material,
-       const Condition& condition)
+       const Condition& condition, ShippedModels* models)
       : experiment_(experiment),
         common_(common),
         material_(material),
         condition_(condition),
         folder_(experiment.work / material.name / condition.folder),
-        store_(material, condition.views, common) {}
+        store_(material, condition.views, common),
+        models_(models) {}
 
   // The errors of `method`, from the kept result when there is one.
   Table1Row Evaluate(const Method& method, bool* kept) {
@@ -90,11 +92,13 @@ class Runs {
     }
     *kept = false;
     Run(method);
-    const FitResult result =
-        ReadFitResult(ResultManifest(experiment_, material_.name, condition_, method));
+    const fs::path manifest = ResultManifest(experiment_, material_.name, condition_, method);
+    const FitResult result = ReadFitResult(manifest);
     const Table1Row row =
         EvaluateMaps(ToUnitWeight(result.maps, result.convention), material_.maps, common_.threads);
-    const Json json = {{"settings", settings}, {"errors", ErrorsJson(row)}};
+    Json models = models_->UsedBy(manifest.parent_path().parent_path() / "fit" / "manifest.json");
+    models.update(models_->UsedBy(manifest));
+    const Json json = {{"settings", settings}, {"models", models}, {"errors", ErrorsJson(row)}};
     WriteFileAtomically(file, json.dump(2) + "\n");
     return row;
   }
@@ -104,6 +108,7 @@ class Runs {
     if (common_.force || !fs::exists(file)) return std::nullopt;
     const Json json = Json::parse(ReadTextFile(file), nullptr, false);
     if (!json.is_object() || json.value("settings", Json()) != settings) return std::nullopt;
+    if (json.contains("models") && !models_->AreStill(json["models"])) return std::nullopt;
     return RowOf(file, RequireField(file, json, "", "errors"));
   }
 
@@ -155,6 +160,7 @@ class Runs {
   const Condition& condition_;
   fs::path folder_;
   CaptureStore store_;
+  ShippedModels* models_;
 };
 
 void CheckExperiment(const Experiment& experiment) {
@@ -243,10 +249,11 @@ ExperimentResult RunExperiment(const Experiment& experiment, const CommonOptions
   ::setenv("OMP_WAIT_POLICY", "passive", 0);
   ExperimentResult result;
   result.name = experiment.name;
+  ShippedModels models;
   for (const std::string& name : experiment.materials) {
     const MaterialSource material = LoadMaterial(name, experiment.size);
     for (const Condition& condition : experiment.conditions) {
-      Runs runs(experiment, common, material, condition);
+      Runs runs(experiment, common, material, condition, &models);
       ExperimentEntry entry;
       entry.material = material.name;
       entry.count = condition.views.count;

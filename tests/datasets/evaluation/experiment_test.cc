@@ -3,10 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "datasets/evaluation/capture_store.h"
+#include "datasets/evaluation/shipped_models.h"
 #include "datasets/evaluation/starts.h"
 #include "datasets/procedural/material.h"
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/hash.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "tests/support/process.h"
 
@@ -67,6 +71,34 @@ TEST(RunExperiment, AFinishedResultIsKept) {
   experiment.conditions[0].views.disturbance.light_off_deg = 1;
   experiment.methods[0].fit_arguments = {"--no-such-option"};
   EXPECT_THROW(RunExperiment(experiment, OneThread(), kSilent), Error);
+}
+
+TEST(ShippedModels, ResultsAreNotKeptBeyondTheirWeights) {
+  const test::TemporaryFolder folder;
+  test::WriteAll(folder.path() / "models/a.safetensors", "first");
+  ::setenv("GLINT_MODELS", (folder.path() / "models").c_str(), 1);
+  const auto manifest = [&](const std::string& hash) {
+    const Json inputs = {{{"path", "../rectify/manifest.json"}, {"hash", "xxh3:0"}},
+                         {{"path", "outside:a.safetensors"}, {"hash", hash}},
+                         {{"path", "outside:start.exr"}, {"hash", "xxh3:1"}}};
+    const Json json = {{"glint_manifest", 1},       {"stage", "fit"},
+                       {"stage_version", 1},        {"inputs", inputs},
+                       {"options", Json::object()}, {"outputs", Json::array()},
+                       {"data", Json::object()},    {"metrics", Json::object()}};
+    test::WriteAll(folder.path() / "manifest.json", json.dump());
+    return folder.path() / "manifest.json";
+  };
+  const std::string hash = HashFile(folder.path() / "models/a.safetensors");
+  const Json used = ShippedModels().UsedBy(manifest(hash));
+  EXPECT_EQ(used, (Json{{"a.safetensors", hash}}));
+  EXPECT_TRUE(ShippedModels().AreStill(used));
+  // A file of that name that somebody named: none of ours.
+  EXPECT_TRUE(ShippedModels().UsedBy(manifest("xxh3:2")).empty());
+  test::WriteAll(folder.path() / "models/a.safetensors", "second");
+  EXPECT_FALSE(ShippedModels().AreStill(used));
+  fs::remove(folder.path() / "models/a.safetensors");
+  EXPECT_FALSE(ShippedModels().AreStill(used));
+  ::unsetenv("GLINT_MODELS");
 }
 
 TEST(RunExperiment, WrongOptionsAreUserErrors) {

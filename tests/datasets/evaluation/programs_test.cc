@@ -164,18 +164,18 @@ TEST_F(ExperimentTest, ADeletedResultIsTheOnlyOneComputedAgain) {
 TEST_F(ExperimentTest, EveryVerbWritesTableFiguresPlotAndPictures) {
   test::WriteAll(Path("w.safetensors"), "weights");
   const std::vector<std::vector<std::string>> verbs = {
-      {"table1", "--disturb", "--counts", "1"},
+      {"table1", "--disturb", "--counts", "1", "--methods", "classic,refined"},
       {"table2", "--counts", "2"},
       {"exposure", "--stops=-6,0", "--counts", "2"},
       {"hdr", "--counts", "2"},
-      {"start", "--counts", "1"},
+      {"start", "--counts", "1", "--starts", "heuristic,rough"},
       {"topview", "--counts", "2", "--tilts", "30"},
       {"count", "--counts", "1,2"},
       {"ablation", "--counts", "1", "--weights", "all=" + Path("w.safetensors")}};
   for (std::vector<std::string> arguments : verbs) {
     const std::string verb = arguments.front();
     arguments.insert(arguments.begin() + 1, "procedural:1000000001");
-    arguments.insert(arguments.end(), {"--size", "16", "--work", Path("work")});
+    arguments.insert(arguments.end(), {"--size", "16", "--threads", "1", "--work", Path("work")});
     const Outcome outcome = Eval(arguments, bin_);
     ASSERT_EQ(outcome.code, 0) << verb << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("| 0.000000 |")) << verb;
