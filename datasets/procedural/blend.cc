@@ -116,11 +116,7 @@ void MixNormals(const float* from_x, const float* from_y, const float* from_z, c
   }
 }
 
-}  // namespace
-
-Plane DrawBlendMask(uint64_t seed, const SvbrdfMaps& first) {
-  const int width = first.width, height = first.height;
-  const Mask m = DrawMask(seed);
+Plane MaskPlane(const Mask& m, int width, int height) {
   const float pixel = 1.0f / static_cast<float>(std::max(width, height));
   Plane mask(static_cast<size_t>(width) * height);
   std::vector<float> x(width), y(width);
@@ -136,8 +132,20 @@ Plane DrawBlendMask(uint64_t seed, const SvbrdfMaps& first) {
     MaskRow(m, {x.data(), y.data(), width, pixel}, scratch,
             mask.data() + static_cast<size_t>(row) * width);
   }
+  return mask;
+}
+
+}  // namespace
+
+Plane DrawBlendMask(uint64_t seed, const SvbrdfMaps& first) {
+  const Mask m = DrawMask(seed);
+  Plane mask = MaskPlane(m, first.width, first.height);
   if (m.kind == MaskKind::kTone) FollowTone(m, ToneOf(first), &mask);
   return mask;
+}
+
+Plane DrawBlendMask(uint64_t seed, int width, int height) {
+  return MaskPlane(DrawMask(seed), width, height);
 }
 
 void Reconcile(uint64_t seed, const SvbrdfMaps& first, SvbrdfMaps* second) {

@@ -12,6 +12,8 @@ namespace glint::procedural {
 // constant, soft clouds, islands with hard borders, a tiling, or what is dark or light in `first`,
 // as the seed draws.
 Plane DrawBlendMask(uint64_t seed, const SvbrdfMaps& first);
+// The same without a material to look at: soft clouds in place of its dark or light.
+Plane DrawBlendMask(uint64_t seed, int width, int height);
 
 // Brings the mean diffuse colour and roughness of `second` toward those of `first`, as the seed
 // draws: things that lie together share dust, dye and wear. Diffuse + specular stays ≤ 1.
