@@ -69,6 +69,11 @@ double SaturatedShare(const SvbrdfMaps& maps, const ViewSetOptions& views,
   return static_cast<double>(saturated) / (static_cast<double>(maps.texels()) * views.count);
 }
 
+std::string HashOf(const SvbrdfMaps& maps) {
+  return HashBytes(
+      {reinterpret_cast<const char*>(maps.planes.data()), maps.planes.size() * sizeof(float)});
+}
+
 // The runs for one material under one condition.
 class Runs {
  public:
@@ -78,6 +83,7 @@ class Runs {
         common_(common),
         material_(material),
         condition_(condition),
+        truth_(HashOf(material.maps)),
         folder_(experiment.work / material.name / condition.folder),
         store_(material, condition.views, common),
         models_(models) {}
@@ -98,7 +104,8 @@ class Runs {
         EvaluateMaps(ToUnitWeight(result.maps, result.convention), material_.maps, common_.threads);
     Json models = models_->UsedBy(manifest.parent_path().parent_path() / "fit" / "manifest.json");
     models.update(models_->UsedBy(manifest));
-    const Json json = {{"settings", settings}, {"models", models}, {"errors", ErrorsJson(row)}};
+    const Json json = {
+        {"settings", settings}, {"truth", truth_}, {"models", models}, {"errors", ErrorsJson(row)}};
     WriteFileAtomically(file, json.dump(2) + "\n");
     return row;
   }
@@ -108,6 +115,7 @@ class Runs {
     if (common_.force || !fs::exists(file)) return std::nullopt;
     const Json json = Json::parse(ReadTextFile(file), nullptr, false);
     if (!json.is_object() || json.value("settings", Json()) != settings) return std::nullopt;
+    if (json.value("truth", truth_) != truth_) return std::nullopt;
     if (json.contains("models") && !models_->AreStill(json["models"])) return std::nullopt;
     return RowOf(file, RequireField(file, json, "", "errors"));
   }
@@ -158,6 +166,7 @@ class Runs {
   const CommonOptions& common_;
   const MaterialSource& material_;
   const Condition& condition_;
+  std::string truth_;  // hash of the true maps: generators and files change
   fs::path folder_;
   CaptureStore store_;
   ShippedModels* models_;

@@ -56,20 +56,32 @@ TEST(RunExperiment, AFinishedResultIsKept) {
                          {"fit_arguments", Json::array()}};
   const Json errors = {{"diffuse", 0.25}, {"specular", 0},         {"roughness", 0},
                        {"normal", 0},     {"map_average", 0.0625}, {"render", 0.5}};
-  test::WriteAll(folder.path() / "procedural_1000000000" / "n02" / "classic.json",
-                 Json{{"settings", settings}, {"errors", errors}}.dump());
+  const fs::path file = folder.path() / "procedural_1000000000" / "n02" / "classic.json";
+  test::WriteAll(file, Json{{"settings", settings}, {"errors", errors}}.dump());
   std::string said;
   const auto result =
       RunExperiment(experiment, OneThread(), [&](const std::string& text) { said += text; });
   ASSERT_EQ(result.entries.size(), 1u);
   EXPECT_EQ(result.entries[0].errors.render, 0.5);
   EXPECT_THAT(said, HasSubstr("(kept)"));
-  // Other settings: it has to run again, and beside a test there is no glint-fit with this option.
+  // Another truth under the same name, weights that are gone, other settings: it has to run again,
+  // and no glint-fit knows this option.
+  const std::string done = test::ReadAll(file);
   experiment.methods[0].fit_arguments = {"--no-such-option"};
+  Json marked = Json::parse(done);
+  marked["settings"]["fit_arguments"] = {"--no-such-option"};
+  test::WriteAll(file, marked.dump());
+  EXPECT_NO_THROW(RunExperiment(experiment, OneThread(), kSilent));
+  for (const Json& stale : {Json{{"truth", "xxh3:0"}}, Json{{"models", {{"gone", "xxh3:0"}}}}}) {
+    Json json = marked;
+    json.update(stale);
+    test::WriteAll(file, json.dump());
+    EXPECT_THROW(RunExperiment(experiment, OneThread(), kSilent), Error) << stale;
+  }
+  test::WriteAll(file, done);
   EXPECT_THROW(RunExperiment(experiment, OneThread(), kSilent), Error);
-  experiment.methods[0].fit_arguments.clear();
+  test::WriteAll(file, marked.dump());
   experiment.conditions[0].views.disturbance.light_off_deg = 1;
-  experiment.methods[0].fit_arguments = {"--no-such-option"};
   EXPECT_THROW(RunExperiment(experiment, OneThread(), kSilent), Error);
 }
 
