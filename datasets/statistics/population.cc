@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/statistics/fourier.h"
 #include "datasets/synth/material_source.h"
 #include "datasets/synth/parallel_rows.h"
 #include "pipeline/contract/errors.h"
@@ -74,6 +75,9 @@ std::vector<std::string> FindMaterials(const std::vector<std::string>& paths) {
 
 Population MeasureMaterials(const std::string& name, const std::vector<std::string>& materials,
                             int side, int threads) {
+  if (side < 8 || !IsPowerOfTwo(side)) {
+    throw UserError("size: found " + std::to_string(side) + "; give a power of two from 8, as 256");
+  }
   Population population;
   population.name = name;
   population.materials.resize(materials.size());

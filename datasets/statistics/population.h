@@ -26,7 +26,8 @@ struct Population {
 std::vector<std::string> FindMaterials(const std::vector<std::string>& paths);
 
 // Measures each of `materials` (datasets/synth's LoadMaterial reads them) at side × side texels.
-// The result does not depend on `threads`.
+// The result does not depend on `threads`. Throws UserError: a side that is no power of two from 8,
+// maps that cannot be read.
 Population MeasureMaterials(const std::string& name, const std::vector<std::string>& materials,
                             int side, int threads);
 

@@ -84,5 +84,10 @@ TEST(ComparisonTest, AnEmptyFolderIsTheUsersError) {
   EXPECT_THROW(FindMaterials({folder.string()}), UserError);
 }
 
+TEST(ComparisonTest, ASizeThatIsNoPowerOfTwoIsTheUsersError) {
+  EXPECT_THROW(MeasureMaterials("some", ProceduralMaterials("", 0, 1), 100, 1), UserError);
+  EXPECT_THROW(MeasureMaterials("some", ProceduralMaterials("", 0, 1), 4, 1), UserError);
+}
+
 }  // namespace
 }  // namespace glint
