@@ -12,7 +12,7 @@ namespace glint::procedural {
 namespace {
 
 constexpr int kLevelOf256 = 8;
-constexpr float kFinerGain = 0.7f;
+constexpr float kFinerGain = 0.6f;
 constexpr float kUniformSpread = 0.57735f;  // standard deviation of a lattice value
 
 // Where texels of one axis fall on a lattice.
@@ -135,7 +135,7 @@ Plane DetailNoise(const DetailOptions& options, int width, int height) {
   float amplitude = 1.4f / (kUniformSpread * std::sqrt(power));
   for (int level = options.coarsest; std::ldexp(1.0f, level) < 1.5f * longer; ++level) {
     AddLevel(options, level, amplitude, width, height, &out);
-    amplitude *= level < kLevelOf256 ? options.gain : options.gain * kFinerGain;
+    amplitude *= level < kLevelOf256 ? options.gain : std::min(options.gain, 1.0f) * kFinerGain;
   }
   return out;
 }

@@ -69,6 +69,14 @@ TEST(DetailTest, FormsStayWhereTheyAreAtAnotherResolution) {
   EXPECT_GT(product / std::sqrt(a * b), 0.93);
 }
 
+TEST(DetailTest, LargePicturesKeepTheContrast) {
+  for (const float gain : {0.8f, 2.1f}) {
+    const double at_256 = SpreadOf(DetailNoise(Options(gain), 256, 256)).deviation;
+    EXPECT_NEAR(SpreadOf(DetailNoise(Options(gain), 1024, 1024)).deviation / at_256, 1, 0.3)
+        << gain;
+  }
+}
+
 TEST(DetailTest, StretchMakesStreaks) {
   DetailOptions o = Options(1.6f);
   o.stretch_y = 3;

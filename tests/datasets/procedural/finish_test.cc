@@ -71,6 +71,38 @@ TEST(FinishTest, FinishedSurfacesHaveMoreDetailOfTexelSizeAndLessContrast) {
   EXPECT_LT(Median(OverFamilies(true, rough)), 0.9 * Median(OverFamilies(false, rough)));
 }
 
+double MeanDifference(const SvbrdfMaps& a, const SvbrdfMaps& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.planes.size(); ++i) sum += std::fabs(a.planes[i] - b.planes[i]);
+  return sum / static_cast<double>(a.planes.size());
+}
+
+SvbrdfMaps Halved(const SvbrdfMaps& fine) {
+  SvbrdfMaps out(fine.width / 2, fine.height / 2);
+  for (int p = 0; p < kSvbrdfPlanes; ++p) {
+    for (int y = 0; y < out.height; ++y) {
+      for (int x = 0; x < out.width; ++x) {
+        out.at(p, y, x) = 0.25f * (fine.at(p, 2 * y, 2 * x) + fine.at(p, 2 * y, 2 * x + 1) +
+                                   fine.at(p, 2 * y + 1, 2 * x) + fine.at(p, 2 * y + 1, 2 * x + 1));
+      }
+    }
+  }
+  return out;
+}
+
+TEST(FinishTest, LargerPicturesShowTheSameMaterial) {
+  double same = 0, other = 0;
+  for (uint64_t seed = 0; seed < 12; ++seed) {
+    MaterialRecipe recipe = DrawRecipe(seed);
+    recipe.finished = true;
+    const SvbrdfMaps coarse = MakeMaterial(recipe, 256, 256);
+    same += MeanDifference(Halved(MakeMaterial(recipe, 512, 512)), coarse);
+    ++recipe.seed;
+    other += MeanDifference(MakeMaterial(recipe, 256, 256), coarse);
+  }
+  EXPECT_LT(same, 0.35 * other);
+}
+
 TEST(FinishTest, LightPlacesAreMoreOftenSmoothThanRough) {
   const auto correlation = [](const SvbrdfMaps& maps) {
     const auto a = maps.plane(kDiffuseG), b = maps.plane(kRoughness);
