@@ -73,6 +73,33 @@ void CheckCode(const LatentCode& code, int channels, int width, int height) {
   }
 }
 
+std::vector<Tensor> DecoderTensors(const AutoencoderNetwork& network) {
+  std::vector<Tensor> tensors;
+  for (int i = 0; i < kLevels; ++i) {
+    tensors.push_back(network.decoder_weights[i]);
+    tensors.push_back(network.decoder_biases[i]);
+  }
+  return tensors;
+}
+
+// New tensors, so that a graph that still holds the old ones is not changed.
+void SetDecoder(std::span<const float> weights, AutoencoderNetwork* network) {
+  size_t at = 0;
+  const auto take = [&](Tensor* tensor) {
+    const size_t count = static_cast<size_t>(tensor->numel());
+    if (at + count > weights.size()) throw std::invalid_argument("Autoencoder: too few weights");
+    const Tensor fresh = torch::empty(tensor->sizes().vec());
+    std::copy_n(weights.begin() + static_cast<std::ptrdiff_t>(at), count, fresh.data_ptr<float>());
+    *tensor = fresh;
+    at += count;
+  };
+  for (int i = 0; i < kLevels; ++i) {
+    take(&network->decoder_weights[i]);
+    take(&network->decoder_biases[i]);
+  }
+  if (at != weights.size()) throw std::invalid_argument("Autoencoder: too many weights");
+}
+
 }  // namespace
 
 struct Autoencoder::Impl {
@@ -115,8 +142,25 @@ EncodedMaps Autoencoder::Decode(const LatentCode& code, int width, int height, i
   return Cropped(impl_->network.Decode(CodeTensor(code), torch::kFloat32), width, height);
 }
 
+std::vector<float> Autoencoder::DecoderWeights() const {
+  std::vector<float> weights;
+  for (const Tensor& t : DecoderTensors(impl_->network)) {
+    const Tensor values = t.contiguous();
+    weights.insert(weights.end(), values.data_ptr<float>(),
+                   values.data_ptr<float>() + values.numel());
+  }
+  return weights;
+}
+
+Autoencoder Autoencoder::WithDecoder(std::span<const float> weights) const {
+  auto impl = std::make_unique<Impl>(Impl{Clone(&impl_->network)});
+  SetDecoder(weights, &impl->network);
+  return Autoencoder(std::move(impl));
+}
+
 struct Autoencoder::Tape::State {
   AutoencoderNetwork network;  // its decoder in the type `compute`
+  AutoencoderNetwork tuned;    // its decoder in float32, for ForwardTuned
   torch::Dtype compute;
   int threads;
   Tensor z, decoded;
@@ -125,6 +169,7 @@ struct Autoencoder::Tape::State {
 Autoencoder::Tape::Tape(const Autoencoder& network, bool fast, int threads)
     : state_(std::make_unique<State>()) {
   state_->network = network.impl_->network;
+  state_->tuned = Clone(&network.impl_->network);
   state_->compute = fast ? FastComputeType() : torch::kFloat32;
   state_->threads = threads;
   for (int i = 0; i < kLevels; ++i) {  // cast once, not at every decode
@@ -137,6 +182,29 @@ Autoencoder::Tape::Tape(const Autoencoder& network, bool fast, int threads)
 
 Autoencoder::Tape::~Tape() = default;
 
+namespace {
+
+// ∂L/∂inputs, one after the other, from ∂L/∂encoded of the top left texels.
+std::vector<float> PullBack(const Tensor& decoded, const std::vector<Tensor>& inputs,
+                            const EncodedMaps& gradient) {
+  Tensor full = torch::zeros_like(decoded, torch::MemoryFormat::Contiguous);
+  const int64_t height = full.size(2), width = full.size(3);
+  const float* from = gradient.planes.data();
+  for (int p = 0; p < kEncodedChannels; ++p) {
+    for (int row = 0; row < gradient.height; ++row, from += gradient.width) {
+      std::copy_n(from, gradient.width, full.data_ptr<float>() + (p * height + row) * width);
+    }
+  }
+  std::vector<float> all;
+  for (const Tensor& part : torch::autograd::grad({decoded}, inputs, {full})) {
+    const Tensor g = part.contiguous();
+    all.insert(all.end(), g.data_ptr<float>(), g.data_ptr<float>() + g.numel());
+  }
+  return all;
+}
+
+}  // namespace
+
 EncodedMaps Autoencoder::Tape::Forward(const LatentCode& code, int width, int height) {
   CheckCode(code, state_->network.channels[kLevels - 1], width, height);
   torch::set_num_threads(state_->threads);
@@ -147,17 +215,29 @@ EncodedMaps Autoencoder::Tape::Forward(const LatentCode& code, int width, int he
 
 std::vector<float> Autoencoder::Tape::Backward(const EncodedMaps& gradient) {
   if (!state_->decoded.defined()) throw std::logic_error("Tape::Backward before Forward");
-  Tensor full = torch::zeros_like(state_->decoded, torch::MemoryFormat::Contiguous);
-  const int64_t height = full.size(2), width = full.size(3);
-  const float* from = gradient.planes.data();
-  for (int p = 0; p < kEncodedChannels; ++p) {
-    for (int row = 0; row < gradient.height; ++row, from += gradient.width) {
-      std::copy_n(from, gradient.width, full.data_ptr<float>() + (p * height + row) * width);
-    }
-  }
-  const Tensor g = torch::autograd::grad({state_->decoded}, {state_->z}, {full})[0].contiguous();
-  state_->decoded.reset();
-  return {g.data_ptr<float>(), g.data_ptr<float>() + g.numel()};
+  const Tensor decoded = std::move(state_->decoded);
+  state_->decoded = Tensor();
+  return PullBack(decoded, {state_->z}, gradient);
+}
+
+EncodedMaps Autoencoder::Tape::ForwardTuned(const LatentCode& code, std::span<const float> weights,
+                                            int width, int height) {
+  CheckCode(code, state_->network.channels[kLevels - 1], width, height);
+  torch::set_num_threads(state_->threads);
+  SetDecoder(weights, &state_->tuned);
+  for (const Tensor& t : DecoderTensors(state_->tuned)) t.set_requires_grad(true);
+  state_->z = CodeTensor(code).requires_grad_();
+  state_->decoded = state_->tuned.Decode(state_->z, state_->compute);
+  return Cropped(state_->decoded.detach(), width, height);
+}
+
+std::vector<float> Autoencoder::Tape::BackwardTuned(const EncodedMaps& gradient) {
+  if (!state_->decoded.defined()) throw std::logic_error("Tape::BackwardTuned before ForwardTuned");
+  const Tensor decoded = std::move(state_->decoded);
+  state_->decoded = Tensor();
+  std::vector<Tensor> inputs = DecoderTensors(state_->tuned);
+  inputs.insert(inputs.begin(), state_->z);
+  return PullBack(decoded, inputs, gradient);
 }
 
 }  // namespace glint

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,11 @@ class Autoencoder {
   // when the code is not of this network or its grid is too small.
   EncodedMaps Decode(const LatentCode& code, int width, int height, int threads) const;
 
+  // The decoder's weights and biases as one vector, and the same network with others. Throws
+  // std::invalid_argument for another number of them.
+  std::vector<float> DecoderWeights() const;
+  Autoencoder WithDecoder(std::span<const float> weights) const;
+
   // A decode that can be differentiated; keeps its buffers between calls.
   class Tape {
    public:
@@ -53,6 +59,12 @@ class Autoencoder {
     EncodedMaps Forward(const LatentCode& code, int width, int height);
     // ∂L/∂code of the last Forward from ∂L/∂encoded; in the code's layout.
     std::vector<float> Backward(const EncodedMaps& gradient);
+
+    // The same with the decoder's weights free (laid out as DecoderWeights()): fine-tuning. The
+    // gradient is by the code's values and then the weights.
+    EncodedMaps ForwardTuned(const LatentCode& code, std::span<const float> weights, int width,
+                             int height);
+    std::vector<float> BackwardTuned(const EncodedMaps& gradient);
 
    private:
     struct State;

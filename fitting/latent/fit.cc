@@ -26,8 +26,6 @@ class Parameters {
   virtual EncodedMaps ToMaps(std::span<const float> values) = 0;
   // Gradient by the parameters of the last ToMaps.
   virtual std::vector<float> Pull(const EncodedMaps& gradient) = 0;
-  // The descent begins at `values`, which stand for the maps `start`.
-  virtual void SetStart(const EncodedMaps&, std::span<const float>) {}
   // A regulariser's value; adds its gradient.
   virtual double Prior(std::span<const float>, std::span<float>) const { return 0; }
   // The maps of a result: as exact as can be.
@@ -78,49 +76,83 @@ class CodeParameters : public Parameters {
   }
   EncodedMaps ToMaps(std::span<const float> values) override {
     code_.values.assign(values.begin(), values.end());
-    return WithDetail(tape_.Forward(code_, width_, height_));
-  }
-  void SetStart(const EncodedMaps& start, std::span<const float> values) override {
-    start_.assign(values.begin(), values.end());
-    if (!options_.keep_detail) return;
-    const EncodedMaps decoded = Final(values);
-    detail_ = start.planes;
-    for (size_t i = 0; i < detail_.size(); ++i) detail_[i] -= decoded.planes[i];
+    return tape_.Forward(code_, width_, height_);
   }
   std::vector<float> Pull(const EncodedMaps& gradient) override { return tape_.Backward(gradient); }
   double Prior(std::span<const float> values, std::span<float> gradient) const override {
-    const double count = static_cast<double>(values.size());
-    double sum = 0, start_sum = 0;
+    if (options_.code_prior <= 0) return 0;
+    double sum = 0;
+    const double scale = options_.code_prior / static_cast<double>(values.size());
     for (size_t i = 0; i < values.size(); ++i) {
-      const double z = values[i], moved = z - start_[i];
-      sum += z * z;
-      start_sum += moved * moved;
-      gradient[i] += static_cast<float>(
-          2 / count * (options_.code_prior * z + options_.start_prior * moved));
+      sum += static_cast<double>(values[i]) * values[i];
+      gradient[i] += static_cast<float>(2 * scale * values[i]);
     }
-    return (options_.code_prior * sum + options_.start_prior * start_sum) / count;
+    return scale * sum;
   }
   EncodedMaps Final(std::span<const float> values) override {
     code_.values.assign(values.begin(), values.end());
-    return WithDetail(network_.Decode(code_, width_, height_, options_.threads));
+    return network_.Decode(code_, width_, height_, options_.threads);
   }
   const LatentCode& code() const { return code_; }
 
  private:
-  EncodedMaps WithDetail(EncodedMaps maps) const {
-    for (size_t i = 0; i < detail_.size(); ++i) {
-      maps.planes[i] = std::clamp(maps.planes[i] + detail_[i], -1.0f, 1.0f);
-    }
-    return maps;
-  }
-
   const Autoencoder& network_;
   Autoencoder::Tape tape_;
   int width_, height_;
   FitOptions options_;
   LatentCode code_;
-  std::vector<float> start_;
-  std::vector<float> detail_;  // of the start, beyond what its code decodes to; empty: none
+};
+
+// The latent code and the decoder's weights: values are the code's, then the weights' distance from
+// the trained ones in units of `tune_rate`.
+class TunedParameters : public Parameters {
+ public:
+  TunedParameters(const Autoencoder& network, const LatentCode& code, int width, int height,
+                  const FitOptions& options)
+      : network_(network),
+        tape_(network, options.fast, options.threads),
+        width_(width),
+        height_(height),
+        options_(options),
+        code_(code),
+        trained_(network.DecoderWeights()) {}
+
+  std::vector<float> FromMaps(const EncodedMaps&) override {
+    std::vector<float> values = code_.values;
+    values.resize(values.size() + trained_.size(), 0.0f);
+    return values;
+  }
+  EncodedMaps ToMaps(std::span<const float> values) override {
+    Take(values);
+    return tape_.ForwardTuned(code_, weights_, width_, height_);
+  }
+  std::vector<float> Pull(const EncodedMaps& gradient) override {
+    std::vector<float> g = tape_.BackwardTuned(gradient);
+    for (size_t i = code_.values.size(); i < g.size(); ++i) {
+      g[i] *= static_cast<float>(options_.tune_rate);
+    }
+    return g;
+  }
+  EncodedMaps Final(std::span<const float> values) override {
+    Take(values);
+    return network_.WithDecoder(weights_).Decode(code_, width_, height_, options_.threads);
+  }
+
+ private:
+  void Take(std::span<const float> values) {
+    const size_t codes = code_.values.size();
+    code_.values.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(codes));
+    weights_.resize(trained_.size());
+    for (size_t i = 0; i < weights_.size(); ++i) {
+      weights_[i] = trained_[i] + static_cast<float>(options_.tune_rate) * values[codes + i];
+    }
+  }
+  const Autoencoder& network_;
+  Autoencoder::Tape tape_;
+  int width_, height_;
+  FitOptions options_;
+  LatentCode code_;
+  std::vector<float> trained_, weights_;
 };
 
 // The common factor on the lights, by its logarithm, when the photographs leave it open.
@@ -181,7 +213,6 @@ EncodedMaps FitOneLevel(const PhotographSet& level_set, Parameters* parameters,
   const FitLoss loss(level_set, options.threads);
   std::vector<float> values = parameters->FromMaps(start);
   if (pull) values = PullOntoStart(parameters, std::move(values), start, options);
-  parameters->SetStart(start, values);
   Descent descent({iterations, options.learning_rate, options.tolerance, options.patience},
                   values.size());
   double rate = descent.rate();
@@ -203,13 +234,15 @@ EncodedMaps FitOneLevel(const PhotographSet& level_set, Parameters* parameters,
 using MakeParameters = std::function<std::unique_ptr<Parameters>(int width, int height)>;
 
 FitResult Fit(const PhotographSet& set, const SvbrdfMaps& start, const FitOptions& options,
-              bool pull, const MakeParameters& make, const FitProgress& progress) {
+              bool pull, const Autoencoder* network, const MakeParameters& make,
+              const FitProgress& progress) {
   for (const std::string& wrong : {set.Check(), options.Check()}) {
     if (!wrong.empty()) throw std::invalid_argument("fit: " + wrong);
   }
   const auto sizes = LevelSizes(set.plane.width, set.plane.height, options.coarse_size);
   Run run{&set, &options, &progress, 0, options.coarse_iterations +
-          static_cast<int>(sizes.size() - 1) * options.fine_iterations};
+          static_cast<int>(sizes.size() - 1) * options.fine_iterations +
+          (network == nullptr ? 0 : options.tune_iterations)};
   LightScale light(set.light_power_known, kLightRate);
   FitResult result;
   EncodedMaps maps = EncodeMaps(start);
@@ -224,14 +257,23 @@ FitResult Fit(const PhotographSet& set, const SvbrdfMaps& start, const FitOption
       result.start_loss = FitLoss(level_set, options.threads).Evaluate(maps, 1, false).loss;
     }
     const std::unique_ptr<Parameters> parameters = make(width, height);
-    FitLevel level{width, height, {}, false};
+    FitLevel level{width, height, false, {}, false};
     maps = FitOneLevel(level_set, parameters.get(), maps, pull,
                        k == 0 ? options.coarse_iterations : options.fine_iterations, &light, &run,
                        &level);
     if (const auto* code = dynamic_cast<const CodeParameters*>(parameters.get())) {
       result.code = code->code();
+      result.levels.push_back(std::move(level));
+      if (full && options.tune_iterations > 0) {
+        TunedParameters tuned(*network, code->code(), width, height, options);
+        FitLevel last{width, height, true, {}, false};
+        maps = FitOneLevel(level_set, &tuned, maps, false, options.tune_iterations, &light, &run,
+                           &last);
+        result.levels.push_back(std::move(last));
+      }
+    } else {
+      result.levels.push_back(std::move(level));
     }
-    result.levels.push_back(std::move(level));
   }
   const FitLossValue last = FitLoss(set, options.threads).Evaluate(maps, light.value(), false);
   result.final_loss = last.loss;
@@ -251,13 +293,14 @@ FitOptions FitOptions::Classic() {
 }
 
 std::string FitOptions::Check() const {
-  if (coarse_iterations < 0 || fine_iterations < 0 || start_iterations < 0) {
+  if (coarse_iterations < 0 || fine_iterations < 0 || start_iterations < 0 || tune_iterations < 0) {
     return "iterations must be 0 or more";
   }
   if (coarse_size < 1) return "the coarse size must be at least 1 texel";
+  if (!(tune_rate > 0)) return "the tuning rate must be above 0";
   if (!(learning_rate > 0)) return "the learning rate must be above 0";
   if (!(tolerance >= 0) || patience < 1) return "tolerance must be 0 or more, patience 1 or more";
-  if (!(code_prior >= 0) || !(start_prior >= 0)) return "priors must be 0 or more";
+  if (!(code_prior >= 0)) return "the code's prior must be 0 or more";
   return "";
 }
 
@@ -277,18 +320,16 @@ std::string FitResult::BriefReport() const {
 
 FitResult FitLatent(const PhotographSet& set, const SvbrdfMaps& start, const Autoencoder& network,
                     const FitOptions& options, const FitProgress& progress) {
-  FitOptions weighed = options;
-  weighed.start_prior /= std::max<double>(1, static_cast<double>(set.photographs.size()));
-  return Fit(set, start, options, options.start_iterations > 0,
+  return Fit(set, start, options, options.start_iterations > 0, &network,
              [&](int width, int height) {
-               return std::make_unique<CodeParameters>(network, width, height, weighed);
+               return std::make_unique<CodeParameters>(network, width, height, options);
              },
              progress);
 }
 
 FitResult FitClassic(const PhotographSet& set, const SvbrdfMaps& start, const FitOptions& options,
                      const FitProgress& progress) {
-  return Fit(set, start, options, false,
+  return Fit(set, start, options, false, nullptr,
              [](int width, int height) { return std::make_unique<MapParameters>(width, height); },
              progress);
 }

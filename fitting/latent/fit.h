@@ -6,11 +6,9 @@
 // loss is eq. 2, the mean of |log(I + 0.01) − log(R + 0.01)|, with R clamped to [0, 1] for LDR
 // photographs. Both work from coarse to fine: at most `coarse_size` texels along a side first, then
 // twice that, up to the photographs' size, each level from the enlarged maps of the one before.
-// With `keep_detail` the latent maps are D(z) + (m₀ − D(z₀)) in encoded channels, with m₀ the level's
-// start and z₀ the code that decodes nearest to it: what the network cannot express of the start
-// stays, and the fit moves along the learned space from there. Without it the maps are D(z), as in
-// the paper, and no sharper than the network is good.
-//
+// After the code has settled the decoder itself may be fine-tuned on the exemplar
+// (`tune_iterations`; beyond the paper): what the learned space cannot express of this sample, its
+// weights learn to, and a convolutional network prefers the regular over the accidental.
 // Results are the same bits for any number of threads.
 #pragma once
 
@@ -31,9 +29,9 @@ struct FitOptions {
   double tolerance = 0.003;     // relative fall of the loss over `patience` iterations that counts
   int patience = 25;
   int start_iterations = 25;    // latent only: pulling D(z) onto the start before fitting
-  double code_prior = 0.01;     // latent only: weight of mean z² (codes of materials are N(0, 1))
-  double start_prior = 0.1;     // latent only: weight of mean (z − z₀)², divided by the photographs' number
-  bool keep_detail = true;      // latent only: maps are D(z) + (start − D(z_start)), see above
+  double code_prior = 0;        // latent only: weight of mean z² (codes of materials are N(0, 1))
+  int tune_iterations = 0;      // latent only: of the decoder and the code together, at the last level
+  double tune_rate = 0.01;      // of the decoder's weights, relative to the code's rate
   bool fast = true;             // latent only: bf16 where the CPU has it
   int threads = 1;
 
@@ -46,7 +44,8 @@ struct FitOptions {
 struct FitLevel {
   int width = 0;
   int height = 0;
-  std::vector<double> loss;  // one value per iteration, before its step
+  bool tuned = false;        // the decoder's weights were free
+  std::vector<double> loss;  // of the photographs, one value per iteration, before its step
   bool converged = false;    // ended by tolerance, not by the number of iterations
 };
 

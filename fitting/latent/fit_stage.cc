@@ -32,10 +32,10 @@ FitOptions Resolved(const FitStageOptions& options, size_t photographs, int thre
   }
   if (options.iterations > 0) fit.coarse_iterations = options.iterations;
   if (options.fine_iterations > 0) fit.fine_iterations = options.fine_iterations;
+  if (options.tune_iterations >= 0) fit.tune_iterations = options.tune_iterations;
+  if (options.tune_rate > 0) fit.tune_rate = options.tune_rate;
   if (options.learning_rate > 0) fit.learning_rate = options.learning_rate;
-  if (options.start_prior >= 0) fit.start_prior = options.start_prior;
   if (options.code_prior >= 0) fit.code_prior = options.code_prior;
-  if (options.detail != "auto") fit.keep_detail = options.detail == "keep";
   fit.threads = threads;
   return fit;
 }
@@ -98,6 +98,7 @@ Json Metrics(const FitResult& fit, const std::vector<RectifiedView>& views) {
   for (const FitLevel& level : fit.levels) {
     levels.push_back({{"width", level.width},
                       {"height", level.height},
+                      {"decoder_tuned", level.tuned},
                       {"iterations", level.loss.size()},
                       {"converged", level.converged},
                       {"loss", level.loss}});
@@ -138,12 +139,13 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
                 "most steps at each later level; 0: the method's own");
   set->AddRange("learning-rate", &options->learning_rate, 0, 1,
                 "Adam's rate at the start of a level; 0: the method's own");
-  set->AddRange("start-prior", &options->start_prior, -1, 1e6,
-                "latent: weight of the code's distance from the start's; below 0: the method's own");
+  set->AddRange("tune-iterations", &options->tune_iterations, -1, 1e6,
+                "latent: steps that fine-tune the decoder on this sample, after the code's; below 0: "
+                "the method's own");
+  set->AddRange("tune-rate", &options->tune_rate, 0, 1,
+                "latent: rate of the decoder's weights, relative to the code's; 0: the method's own");
   set->AddRange("code-prior", &options->code_prior, -1, 1e6,
                 "latent: weight of the code's size; below 0: the method's own");
-  set->AddChoice("detail", &options->detail, {"auto", "keep", "drop"},
-                 "latent: keep what the learned space cannot show of the start, or drop it");
   set->Add("start", &options->start,
            "maps to start from, an svbrdf.exr (default: estimated from the photographs)");
   set->Add("weights", &options->weights, "the auto-encoder's weights (default: those shipped)");

@@ -22,9 +22,9 @@ struct FitStageOptions {
   int iterations = 0;                // at the first level; 0: the method's own (few from one photo)
   int fine_iterations = 0;           // at each later level; 0: the method's own
   double learning_rate = 0;          // 0: the method's own
-  double start_prior = -1;           // below 0: the method's own
+  int tune_iterations = -1;          // below 0: the method's own
+  double tune_rate = 0;              // 0: the method's own
   double code_prior = -1;            // below 0: the method's own
-  std::string detail = "auto";       // keep, drop; auto: the method's own
   std::filesystem::path start;       // maps to start from (svbrdf.exr); empty: from the photographs
   std::filesystem::path weights;     // of the auto-encoder; empty: the shipped ones
   std::filesystem::path estimator;   // weights of the estimator; empty: the shipped ones
