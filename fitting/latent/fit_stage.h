@@ -16,7 +16,7 @@ inline constexpr int kFitVersion = 1;
 struct FitStageOptions {
   // latent: in the learned space; classic: texel by texel; start: no fitting, the start as it is
   std::string method = "latent";
-  std::string bootstrap = "heuristic";  // estimator: the trained network; heuristic: bootstrap.h
+  std::string bootstrap = "estimator";  // estimator: the trained network; heuristic: bootstrap.h
   FitOptions latent = FitOptions::Latent();
   FitOptions classic = FitOptions::Classic();
   int iterations = 0;                // at the first level; 0: the method's own (few from one photo)

@@ -269,6 +269,20 @@ TEST_F(BadInputTest, ATruncatedWeightsFile) {
                 {"fit", capture().string(), "--method", "latent", "--weights", weights.string()});
 }
 
+TEST_F(BadInputTest, ATruncatedEstimatorFile) {
+  const fs::path weights = capture() / "estimator.safetensors";
+  WriteAll(weights, std::string("\x00\x10\x00\x00\x00\x00\x00\x00{\"w\":", 14));
+  ExpectRefusal({weights.string()}, 2,
+                {"fit", capture().string(), "--bootstrap", "estimator", "--estimator",
+                 weights.string()});
+}
+
+TEST_F(BadInputTest, WeightsOfTheOtherNetwork) {
+  const fs::path estimator = fs::path(GLINT_SOURCE_DIR) / "fitting/models/estimator.safetensors";
+  ExpectRefusal({estimator.string(), "architecture", "glint-autoencoder"}, 2,
+                {"fit", capture().string(), "--weights", estimator.string()});
+}
+
 // --- usage ---
 
 TEST_F(BadInputTest, UnknownStage) {

@@ -46,7 +46,7 @@ void MakeFinished() {
   ASSERT_EQ(synth.code, 0) << synth.err;
   std::string options = kQuickOptions;
   // A checkout whose weights are not trained yet still tests all the rest.
-  if (!HasWeights()) options.replace(options.find("[fit]"), 5, "[fit]\nmethod = \"classic\"");
+  if (!HasWeights()) options.replace(options.find("[fit]"), 5, "[fit]\nmethod = \"classic\"\nbootstrap = \"heuristic\"");
   std::ofstream(finished_capture->capture / "capture.toml", std::ios::app) << options;
   const auto start = std::chrono::steady_clock::now();
   const Outcome run = RunProgram({Program("glint"), "run", capture});
@@ -58,7 +58,9 @@ void MakeFinished() {
 }  // namespace
 
 bool HasWeights() {
-  return fs::exists(fs::path(GLINT_SOURCE_DIR) / "fitting/models/autoencoder.safetensors");
+  const fs::path models = fs::path(GLINT_SOURCE_DIR) / "fitting/models";
+  return fs::exists(models / "autoencoder.safetensors") &&
+         fs::exists(models / "estimator.safetensors");
 }
 
 Tree Sources(const fs::path& capture) {
