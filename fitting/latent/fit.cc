@@ -287,7 +287,7 @@ FitResult Fit(const PhotographSet& set, const SvbrdfMaps& start, const FitOption
 
 FitOptions FitOptions::Classic() {
   FitOptions options;
-  options.coarse_iterations = 800;
+  options.coarse_iterations = 3000;  // it ends by its tolerance, after 300 to 1500
   options.fine_iterations = 200;
   return options;
 }
