@@ -5,6 +5,7 @@
 
 #include "fitting/autoencoder/network.h"
 #include "fitting/autoencoder/network_file.h"
+#include "fitting/encoding/encoding_torch.h"
 #include "fitting/layers/layers.h"
 
 namespace glint {
@@ -43,20 +44,6 @@ Tensor PaddedTensor(const EncodedMaps& maps) {
     }
   }
   return padded;
-}
-
-EncodedMaps Cropped(const Tensor& decoded, int width, int height) {
-  EncodedMaps maps(width, height);
-  const Tensor all = decoded.contiguous();
-  const int64_t full_height = all.size(2), full_width = all.size(3);
-  const float* from = all.data_ptr<float>();
-  float* to = maps.planes.data();
-  for (int p = 0; p < kEncodedChannels; ++p) {
-    for (int row = 0; row < height; ++row, to += width) {
-      std::copy_n(from + (p * full_height + row) * full_width, width, to);
-    }
-  }
-  return maps;
 }
 
 Tensor CodeTensor(const LatentCode& code) {
@@ -139,7 +126,7 @@ EncodedMaps Autoencoder::Decode(const LatentCode& code, int width, int height, i
   CheckCode(code, latent_channels(), width, height);
   torch::NoGradGuard no_gradient;
   torch::set_num_threads(threads);
-  return Cropped(impl_->network.Decode(CodeTensor(code), torch::kFloat32), width, height);
+  return CroppedMaps(impl_->network.Decode(CodeTensor(code), torch::kFloat32), width, height);
 }
 
 std::vector<float> Autoencoder::DecoderWeights() const {
@@ -210,7 +197,7 @@ EncodedMaps Autoencoder::Tape::Forward(const LatentCode& code, int width, int he
   torch::set_num_threads(state_->threads);
   state_->z = CodeTensor(code).requires_grad_();
   state_->decoded = state_->network.Decode(state_->z, state_->compute);
-  return Cropped(state_->decoded.detach(), width, height);
+  return CroppedMaps(state_->decoded.detach(), width, height);
 }
 
 std::vector<float> Autoencoder::Tape::Backward(const EncodedMaps& gradient) {
@@ -228,7 +215,7 @@ EncodedMaps Autoencoder::Tape::ForwardTuned(const LatentCode& code, std::span<co
   for (const Tensor& t : DecoderTensors(state_->tuned)) t.set_requires_grad(true);
   state_->z = CodeTensor(code).requires_grad_();
   state_->decoded = state_->tuned.Decode(state_->z, state_->compute);
-  return Cropped(state_->decoded.detach(), width, height);
+  return CroppedMaps(state_->decoded.detach(), width, height);
 }
 
 std::vector<float> Autoencoder::Tape::BackwardTuned(const EncodedMaps& gradient) {

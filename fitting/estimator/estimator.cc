@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fitting/encoding/encoding.h"
+#include "fitting/encoding/encoding_torch.h"
 #include "fitting/estimator/estimator_file.h"
 #include "fitting/estimator/photograph_features.h"
 
@@ -32,19 +32,6 @@ Tensor PaddedTensor(const PhotographFeatures& features) {
   return padded;
 }
 
-EncodedMaps Cropped(const Tensor& encoded, int width, int height) {
-  EncodedMaps maps(width, height);
-  const int64_t full_height = encoded.size(2), full_width = encoded.size(3);
-  const float* from = encoded.data_ptr<float>();
-  float* to = maps.planes.data();
-  for (int p = 0; p < kEncodedChannels; ++p) {
-    for (int row = 0; row < height; ++row, to += width) {
-      std::copy_n(from + (p * full_height + row) * full_width, width, to);
-    }
-  }
-  return maps;
-}
-
 }  // namespace
 
 struct Estimator::Impl {
@@ -69,7 +56,7 @@ SvbrdfMaps Estimator::Estimate(const Photograph& photograph, const SamplePlane& 
   std::copy(features.profile.begin(), features.profile.end(), profile.data_ptr<float>());
   const Tensor encoded =
       impl_->network.Forward(PaddedTensor(features), profile, torch::kFloat32).contiguous();
-  return DecodeMaps(Cropped(encoded, plane.width, plane.height));
+  return DecodeMaps(CroppedMaps(encoded, plane.width, plane.height));
 }
 
 }  // namespace glint

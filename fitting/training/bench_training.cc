@@ -15,7 +15,7 @@
 #include "fitting/layers/layers.h"
 #include "fitting/render/render_reference.h"
 #include "fitting/training/autoencoder_trainer.h"
-#include "fitting/training/encoding_torch.h"
+#include "fitting/encoding/encoding_torch.h"
 #include "fitting/training/map_batches.h"
 #include "fitting/training/random.h"
 #include "fitting/training/render_loss.h"

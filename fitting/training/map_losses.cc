@@ -2,7 +2,7 @@
 
 #include "fitting/encoding/encoding.h"
 #include "fitting/render/render_autograd.h"
-#include "fitting/training/encoding_torch.h"
+#include "fitting/encoding/encoding_torch.h"
 #include "fitting/training/random.h"
 #include "fitting/training/render_loss.h"
 

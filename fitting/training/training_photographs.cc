@@ -5,7 +5,7 @@
 
 #include "fitting/estimator/photograph_features.h"
 #include "fitting/render/render_autograd.h"
-#include "fitting/training/encoding_torch.h"
+#include "fitting/encoding/encoding_torch.h"
 
 namespace glint {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fitting/autoencoder/autoencoder.h"
-#include "fitting/training/encoding_torch.h"
+#include "fitting/encoding/encoding_torch.h"
 #include "fitting/training/principal_start.h"
 #include "fitting/render/render_reference.h"
 #include "tests/fitting/training/toy_materials.h"

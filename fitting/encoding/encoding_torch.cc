@@ -1,6 +1,7 @@
-#include "fitting/training/encoding_torch.h"
+#include "fitting/encoding/encoding_torch.h"
 
-#include "fitting/encoding/encoding.h"
+#include <algorithm>
+
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
@@ -54,6 +55,20 @@ Tensor DecodeTexelsReference(const Tensor& encoded) {
   const Tensor slopes = t_xy * (1.0 + 3.0 * t_xy.square());
   const Tensor z = torch::rsqrt(slopes.square().sum(1, true) + 1.0);
   return torch::cat({slopes * z, z, colours, roughness}, 1);
+}
+
+EncodedMaps CroppedMaps(const Tensor& encoded, int width, int height) {
+  EncodedMaps maps(width, height);
+  const Tensor all = encoded.contiguous();
+  const int64_t full_height = all.size(2), full_width = all.size(3);
+  const float* from = all.data_ptr<float>();
+  float* to = maps.planes.data();
+  for (int p = 0; p < kEncodedChannels; ++p) {
+    for (int row = 0; row < height; ++row, to += width) {
+      std::copy_n(from + (p * full_height + row) * full_width, width, to);
+    }
+  }
+  return maps;
 }
 
 }  // namespace glint
