@@ -122,8 +122,8 @@ int RunPack(int argc, char** argv, const ProgramInfo& info) {
   fs::path out;
   int size = 512;
   OptionSet options;
-  options.AddPositional("materials", &given,
-                        "folders of maps, or folders that hold such folders", true);
+  options.AddPositional("materials", &given, "folders of maps, or folders that hold such folders",
+                        true);
   options.Add("out", &out, "pack to write, ….safetensors (needed)");
   options.AddRange("size", &size, 8, 8192, "texels a side");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions&) {
@@ -134,9 +134,9 @@ int RunPack(int argc, char** argv, const ProgramInfo& info) {
       pack.push_back(PackMaterial(material.name, material.maps));
     }
     WriteMaterialPack(out, pack);
-    return ProgramResult{fmt::format("{}: {} materials of {} x {}", out.string(), pack.size(), size,
-                                     size),
-                         {{"file", out.string()}, {"materials", pack.size()}, {"size", size}}};
+    return ProgramResult{
+        fmt::format("{}: {} materials of {} x {}", out.string(), pack.size(), size, size),
+        {{"file", out.string()}, {"materials", pack.size()}, {"size", size}}};
   });
 }
 

@@ -1,4 +1,5 @@
-// glint-train: trains the learned parts of Glint. Builds with libtorch and header-only libraries alone.
+// glint-train: trains the learned parts of Glint. Builds with libtorch and header-only libraries
+// alone.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -11,9 +12,9 @@
 
 namespace {
 
+using glint::AutoencoderTrainOptions;
 using glint::EstimatorTrainOptions;
 using glint::TrainFiles;
-using glint::AutoencoderTrainOptions;
 using glint::TrainOptions;
 using glint::TrainProgress;
 

@@ -58,9 +58,9 @@ struct Experiment {
 // UserError; also when two have one name, since results are kept by name.
 std::vector<std::string> ExpandMaterials(const std::vector<std::string>& named);
 
-// Resumable: a finished result is kept and not computed again as long as its settings, the true maps
-// and the weights that it came from are the same, unless common.force. `said` is told of each step. Throws
-// what the programs ended with.
+// Resumable: a finished result is kept and not computed again as long as its settings, the true
+// maps and the weights that it came from are the same, unless common.force. `said` is told of each
+// step. Throws what the programs ended with.
 ExperimentResult RunExperiment(const Experiment& experiment, const CommonOptions& common,
                                const std::function<void(const std::string&)>& said);
 

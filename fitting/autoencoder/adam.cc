@@ -8,8 +8,8 @@ void AdamStep(const AdamOptions& options, std::int64_t step, std::span<const flo
               std::span<float> weights, std::span<float> moment1, std::span<float> moment2) {
   const double t = static_cast<double>(step);
   const double correction2 = std::sqrt(1.0 - std::pow(options.beta2, t));
-  const float rate = static_cast<float>(options.learning_rate * correction2 /
-                                        (1.0 - std::pow(options.beta1, t)));
+  const float rate =
+      static_cast<float>(options.learning_rate * correction2 / (1.0 - std::pow(options.beta1, t)));
   const float epsilon = static_cast<float>(options.epsilon * correction2);
   const float b1 = static_cast<float>(options.beta1), b2 = static_cast<float>(options.beta2);
   float* w = weights.data();

@@ -36,8 +36,8 @@ Tensor PaddedTensor(const EncodedMaps& maps) {
       for (int column = 0; column < width; ++column) {
         const bool mirrored_x =
             column >= maps.width && (column / std::max(1, maps.width - 1)) % 2 == 1;
-        const bool turned = (p == kEncodedNormal && mirrored_x) ||
-                            (p == kEncodedNormal + 1 && mirrored_y);
+        const bool turned =
+            (p == kEncodedNormal && mirrored_x) || (p == kEncodedNormal + 1 && mirrored_y);
         const float value = from[Reflected(column, maps.width)];
         *to++ = turned ? -value : value;
       }
@@ -56,7 +56,8 @@ void CheckCode(const LatentCode& code, int channels, int width, int height) {
   const size_t values = static_cast<size_t>(code.channels) * code.height * code.width;
   if (code.channels != channels || code.values.size() != values || width < 1 || height < 1 ||
       width > code.width * kDownsampling || height > code.height * kDownsampling) {
-    throw std::invalid_argument("Autoencoder: the latent code does not fit the network or the size");
+    throw std::invalid_argument(
+        "Autoencoder: the latent code does not fit the network or the size");
   }
 }
 
@@ -116,8 +117,8 @@ LatentCode Autoencoder::Encode(const SvbrdfMaps& maps, int threads) const {
   torch::set_num_threads(threads);
   const Tensor raw = impl_->network.EncodeRaw(PaddedTensor(EncodeMaps(maps)), torch::kFloat32);
   const Tensor z = impl_->network.NormaliseByRunning(raw).contiguous();
-  LatentCode code{static_cast<int>(z.size(1)), static_cast<int>(z.size(2)),
-                  static_cast<int>(z.size(3)), {}};
+  LatentCode code{
+      static_cast<int>(z.size(1)), static_cast<int>(z.size(2)), static_cast<int>(z.size(3)), {}};
   code.values.assign(z.data_ptr<float>(), z.data_ptr<float>() + z.numel());
   return code;
 }

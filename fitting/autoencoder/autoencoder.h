@@ -2,7 +2,8 @@
 // gradient back to the code. No torch in this header.
 //
 // Source: Gao et al. 2019 (DIR), Fig. 3. Codes live on a grid 32 times coarser than the maps.
-// Results are the same bits for any number of threads (on one machine; bf16 needs the CPU's support).
+// Results are the same bits for any number of threads (on one machine; bf16 needs the CPU's
+// support).
 #pragma once
 
 #include <array>

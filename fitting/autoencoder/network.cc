@@ -70,7 +70,7 @@ InnerStep BatchStep(const AutoencoderNetwork& net, double momentum) {
 }  // namespace
 
 std::string_view NormalisationName(Normalisation normalisation) {
-  return normalisation == Normalisation::kNone ? "none"
+  return normalisation == Normalisation::kNone  ? "none"
          : normalisation == Normalisation::kAll ? "all"
                                                 : "code";
 }
@@ -82,8 +82,8 @@ Normalisation ParseNormalisation(const std::string& name) {
   throw std::runtime_error("normalisation: found \"" + name + "\"; use none, code or all");
 }
 
-AutoencoderNetwork AutoencoderNetwork::Random(const NetworkChannels& channels,
-                                              std::uint64_t seed, Normalisation normalisation) {
+AutoencoderNetwork AutoencoderNetwork::Random(const NetworkChannels& channels, std::uint64_t seed,
+                                              Normalisation normalisation) {
   torch::Generator generator = torch::make_generator<torch::CPUGeneratorImpl>(seed);
   AutoencoderNetwork net;
   net.channels = channels;
@@ -113,7 +113,8 @@ AutoencoderNetwork AutoencoderNetwork::Random(const NetworkChannels& channels,
 
 NamedTensors AutoencoderNetwork::Parameters() {
   NamedTensors list;
-  const auto add = [&](const char* part, std::vector<Tensor>* weights, std::vector<Tensor>* biases) {
+  const auto add = [&](const char* part, std::vector<Tensor>* weights,
+                       std::vector<Tensor>* biases) {
     weights->resize(kLevels);
     biases->resize(kLevels);
     for (int i = 0; i < kLevels; ++i) {

@@ -1,8 +1,8 @@
 // The auto-encoder as torch modules. Include from .cc files only: this header pulls in torch.
 //
-// Source: Gao et al. 2019 (DIR), Fig. 3 and its published code. Differences: the up-convolutions are
-// computed by ordinary ones (fitting/layers), and the code enters the decoder's first convolution as
-// it is, without a LeakyReLU, so that training can start from a linear auto-encoder
+// Source: Gao et al. 2019 (DIR), Fig. 3 and its published code. Differences: the up-convolutions
+// are computed by ordinary ones (fitting/layers), and the code enters the decoder's first
+// convolution as it is, without a LeakyReLU, so that training can start from a linear auto-encoder
 // (fitting/training/principal_start.h).
 #pragma once
 
@@ -24,8 +24,8 @@ inline constexpr int kDownsampling = 32;
 // last is the latent code's.
 using NetworkChannels = std::array<int, kLevels>;
 
-// Where batch normalisation (scale 1, bias 0) stands: nowhere, on the code alone as in the paper, or
-// after every convolution but the last as well (the paper's ablation, Fig. 4).
+// Where batch normalisation (scale 1, bias 0) stands: nowhere, on the code alone as in the paper,
+// or after every convolution but the last as well (the paper's ablation, Fig. 4).
 enum class Normalisation { kNone, kCode, kAll };
 
 std::string_view NormalisationName(Normalisation normalisation);  // "none", "code", "all"
@@ -37,7 +37,7 @@ struct AutoencoderNetwork {
   Normalisation normalisation = Normalisation::kCode;
   std::vector<torch::Tensor> encoder_weights, encoder_biases;  // [out, in, 4, 4]
   std::vector<torch::Tensor> decoder_weights, decoder_biases;  // [4·out, in, 2, 2]
-  torch::Tensor code_mean, code_variance;                      // batch normalisation's running values
+  torch::Tensor code_mean, code_variance;  // batch normalisation's running values
   // The same of the other convolutions, encoder's first; empty unless normalisation is kAll.
   std::vector<torch::Tensor> level_means, level_variances;
 
@@ -59,9 +59,10 @@ struct AutoencoderNetwork {
                                   double momentum);
   torch::Tensor DecodeForTraining(const torch::Tensor& z, torch::Dtype compute, double momentum);
 
-  // Values normalised by the running statistics, which the batch then moves by `momentum`; gradients
-  // those of batch normalisation. (Batch renormalisation, Ioffe 2017: a batch of few crops has means
-  // of its own, and normalising by them would take the crops' very colour out of the code.)
+  // Values normalised by the running statistics, which the batch then moves by `momentum`;
+  // gradients those of batch normalisation. (Batch renormalisation, Ioffe 2017: a batch of few
+  // crops has means of its own, and normalising by them would take the crops' very colour out of
+  // the code.)
   torch::Tensor NormaliseForTraining(const torch::Tensor& raw, double momentum);
   torch::Tensor NormaliseByRunning(const torch::Tensor& raw) const;  // kNone: as it is
 

@@ -23,7 +23,8 @@ AutoencoderNetwork ReadNetwork(const std::filesystem::path& path, const TensorFi
   // Files from before there was a choice have it on the code.
   const auto entry = file.metadata.find("normalisation");
   AutoencoderNetwork network = AutoencoderNetwork::Random(
-      list, 0, entry == file.metadata.end() ? Normalisation::kCode : ParseNormalisation(entry->second));
+      list, 0,
+      entry == file.metadata.end() ? Normalisation::kCode : ParseNormalisation(entry->second));
   for (auto& [name, tensor] : network.State()) {
     *tensor = ReadTensor(path, file, prefix + name, tensor->sizes().vec());
   }
@@ -36,7 +37,8 @@ void SaveNetwork(const std::filesystem::path& path, AutoencoderNetwork* network,
   file.metadata = std::move(metadata);
   file.metadata.merge(NetworkMetadata(*network));
   for (auto& [name, t] : network->State()) {
-    file.tensors.push_back(ToRecord(name, *t, name.rfind("code.", 0) != 0 && name.rfind("level.", 0) != 0));
+    file.tensors.push_back(
+        ToRecord(name, *t, name.rfind("code.", 0) != 0 && name.rfind("level.", 0) != 0));
   }
   WriteTensorFile(path, std::move(file));
 }

@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kMinStereoViews = 4;
-constexpr double kStereoDamping = 0.02;   // of the matrix's trace
+constexpr double kStereoDamping = 0.02;  // of the matrix's trace
 constexpr double kMaxStereoSlope = 0.7;
 constexpr double kMaxHighlightShare = 0.35;
-constexpr double kMetalDiffuse = 0.06;    // below it, with a strong specular lobe: a metal
+constexpr double kMetalDiffuse = 0.06;  // below it, with a strong specular lobe: a metal
 
 // What one photograph says of one texel under the assumption of the global lobes and a flat normal.
 struct Reading {
@@ -34,8 +34,8 @@ bool ReadTexel(const PhotographSet& set, const Photograph& photo, const GlobalLo
   const size_t texels = photo.mask.size();
   const size_t i = static_cast<size_t>(row) * set.plane.width + column;
   if (photo.mask[i] < 0.5f) return false;
-  const TexelGeometry<double> g = TexelGeometryInView(
-      photo.view, set.convention.falloff, set.plane.x_mm(column), set.plane.y_mm(row));
+  const TexelGeometry<double> g = TexelGeometryInView(photo.view, set.convention.falloff,
+                                                      set.plane.x_mm(column), set.plane.y_mm(row));
   if (g.light[2] < 0.05 || g.camera[2] < 0.05) return false;
   TexelSvbrdf<double> flat{{0, 0, 1}, {}, {}, lobes.roughness};
   std::copy(lobes.diffuse.begin(), lobes.diffuse.end(), flat.diffuse);

@@ -11,14 +11,14 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 // Angles between normal and half vector, degrees: fine where a polished sample's highlight lies.
-constexpr std::array<double, 24> kBinEdges{0,  0.4, 0.8, 1.3, 2,  3,  4,  5.5, 7,  9,  11, 13.5,
+constexpr std::array<double, 24> kBinEdges{0,  0.4, 0.8, 1.3,  2,  3,  4,  5.5, 7,  9,  11, 13.5,
                                            16, 19,  22,  25.5, 29, 33, 37, 42,  47, 53, 60, 70};
 constexpr size_t kBins = kBinEdges.size() - 1;
 constexpr size_t kMinInBin = 12;
 constexpr double kMostWeight = 200;  // texels beyond which a bin counts no more
 constexpr size_t kMaxSamples = 100'000;
 constexpr double kClipped = 0.99;
-constexpr double kOffset = 0.004;    // of the logarithms, in units of reflectance
+constexpr double kOffset = 0.004;  // of the logarithms, in units of reflectance
 
 constexpr std::array<double, 15> kRoughness{0.06, 0.09, 0.13, 0.18, 0.23, 0.28, 0.34, 0.4,
                                             0.46, 0.52, 0.59, 0.66, 0.74, 0.83, 0.93};
@@ -59,9 +59,8 @@ void Collect(const PhotographSet& set, const Photograph& photo, size_t stride,
     if (photo.mask[i] < 0.5f) continue;
     const int row = static_cast<int>(i / set.plane.width);
     const int column = static_cast<int>(i % set.plane.width);
-    const TexelGeometry<double> g =
-        TexelGeometryInView(photo.view, set.convention.falloff, set.plane.x_mm(column),
-                            set.plane.y_mm(row));
+    const TexelGeometry<double> g = TexelGeometryInView(
+        photo.view, set.convention.falloff, set.plane.x_mm(column), set.plane.y_mm(row));
     const double n_dot_l = g.light[2];
     if (n_dot_l < 0.1 || g.camera[2] < 0.1) continue;
     const double degrees = std::acos(std::min(1.0, g.half[2])) * 180.0 / kPi;
@@ -89,8 +88,8 @@ double Mean(const std::vector<double>& values) {
 }
 
 double Quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() +
-                  static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at + kOffset;
 }
@@ -101,9 +100,10 @@ bool ShowsGlints(const std::vector<Bin>& bins) {
   std::vector<double> near, far;
   for (const Bin& bin : bins) {
     const std::vector<double>& green = bin.reflectance[1];
-    std::vector<double>* side = bin.degrees < kNearDegrees                                    ? &near
-                                : bin.degrees >= kFarDegrees && bin.degrees < kFarthestDegrees ? &far
-                                                                                               : nullptr;
+    std::vector<double>* side = bin.degrees < kNearDegrees ? &near
+                                : bin.degrees >= kFarDegrees && bin.degrees < kFarthestDegrees
+                                    ? &far
+                                    : nullptr;
     if (side != nullptr) side->insert(side->end(), green.begin(), green.end());
   }
   if (near.size() < 200 || far.size() < 200) return false;
@@ -128,8 +128,8 @@ double LogCost(const std::vector<Sample>& samples, const std::vector<double>& hi
                double diffuse) {
   double sum = 0, weight = 0;
   for (size_t b = 0; b < samples.size(); ++b) {
-    const double difference = std::log(diffuse + highlight[b] + kOffset) -
-                              std::log(samples[b].reflectance + kOffset);
+    const double difference =
+        std::log(diffuse + highlight[b] + kOffset) - std::log(samples[b].reflectance + kOffset);
     weight += samples[b].weight;
     if (samples[b].at_least && difference > 0) continue;
     sum += samples[b].weight * difference * difference;

@@ -25,8 +25,12 @@ inline constexpr float kMaxSlope = 4.0f;
 // Written into weights files: weights trained for another encoding are refused.
 inline constexpr char kEncodingName[] = "sqrt-diffuse sqrt-specular roughness cubic-slope v1";
 
-enum EncodedPlane : int { kEncodedDiffuse = 0, kEncodedSpecular = 3, kEncodedRoughness = 6,
-                          kEncodedNormal = 7 };
+enum EncodedPlane : int {
+  kEncodedDiffuse = 0,
+  kEncodedSpecular = 3,
+  kEncodedRoughness = 6,
+  kEncodedNormal = 7
+};
 
 // `maps`: kSvbrdfPlanes planes in the order of SvbrdfPlane. Values outside the ranges are clamped,
 // values that are not finite become the middle of the range.

@@ -1,4 +1,5 @@
-// The encoding as functions of torch's autograd, and its tensors as maps. Include from .cc files only.
+// The encoding as functions of torch's autograd, and its tensors as maps. Include from .cc files
+// only.
 #pragma once
 
 #include <torch/torch.h>
@@ -7,8 +8,8 @@
 
 namespace glint {
 
-// Encoded maps [B, 9, H, W], float32 → SVBRDF maps [B, 10, H, W], planes as in SvbrdfPlane. The fused
-// code of encoding.h both ways.
+// Encoded maps [B, 9, H, W], float32 → SVBRDF maps [B, 10, H, W], planes as in SvbrdfPlane. The
+// fused code of encoding.h both ways.
 torch::Tensor DecodeTexelsTorch(const torch::Tensor& encoded);
 
 // The same in torch operations, for any floating type; tests hold the two together.

@@ -11,7 +11,8 @@ namespace glint {
 
 inline constexpr char kEstimatorArchitecture[] = "glint-estimator v1";
 
-// What a file of this network says of itself: architecture, encoding, channels (levels, full, global).
+// What a file of this network says of itself: architecture, encoding, channels (levels, full,
+// global).
 std::map<std::string, std::string> EstimatorMetadata(const EstimatorNetwork& network);
 
 // Weights for users, in bf16.

@@ -109,10 +109,9 @@ Tensor EstimatorNetwork::Forward(const Tensor& features, const Tensor& profile,
   }
   for (int i = kEstimatorLevels - 1; i >= 0; --i) {
     if (i < kEstimatorLevels - 1) x = torch::cat({x, skips[i]}, 1);
-    x = at::leaky_relu(
-        UpConvolve(x.contiguous(torch::MemoryFormat::ChannelsLast), up_weights[i], up_biases[i],
-                   compute),
-        kLeak);
+    x = at::leaky_relu(UpConvolve(x.contiguous(torch::MemoryFormat::ChannelsLast), up_weights[i],
+                                  up_biases[i], compute),
+                       kLeak);
   }
   const auto full = [&](const Tensor& y, int k) {
     const Tensor both = torch::cat({y, input}, 1).contiguous(torch::MemoryFormat::ChannelsLast);

@@ -3,8 +3,8 @@
 //
 // Role and shape after Deschaintre et al. 2018 (a U-Net with a track of global features beside it,
 // fed back at every level, so that a texel far from the highlight knows of it). Its global track
-// starts from the photograph's profile (photograph_features.h), which already says where and how high
-// the highlight is. Fully convolutional: any size, multiples of 32 inside.
+// starts from the photograph's profile (photograph_features.h), which already says where and how
+// high the highlight is. Fully convolutional: any size, multiples of 32 inside.
 #pragma once
 
 #include <torch/torch.h>

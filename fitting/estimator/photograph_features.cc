@@ -12,7 +12,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::array<double, kProfileBins> kBinEndDegrees{1.5, 3,  5,  7.5, 10.5, 14,
                                                           18,  23, 29, 36,  45,   90};
-constexpr double kBrightest = 4.0;   // of π·I/(E·NoL)
+constexpr double kBrightest = 4.0;  // of π·I/(E·NoL)
 constexpr double kClipped = 0.99;
 constexpr double kLogOffset = 0.003;
 constexpr double kLeastCosine = 0.02;
@@ -25,8 +25,8 @@ struct Ring {
 size_t RingOf(double angle) {
   const double degrees = angle * 180.0 / kPi;
   const auto end = std::lower_bound(kBinEndDegrees.begin(), kBinEndDegrees.end(), degrees);
-  return static_cast<size_t>(std::min<std::ptrdiff_t>(end - kBinEndDegrees.begin(),
-                                                      kProfileBins - 1));
+  return static_cast<size_t>(
+      std::min<std::ptrdiff_t>(end - kBinEndDegrees.begin(), kProfileBins - 1));
 }
 
 std::vector<float> Profile(const std::array<Ring, kProfileBins>& rings) {
@@ -47,8 +47,8 @@ std::vector<float> Profile(const std::array<Ring, kProfileBins>& rings) {
 PhotographFeatures FeaturesOf(const Photograph& photograph, const SamplePlane& plane,
                               const ReflectanceConvention& convention) {
   const size_t texels = photograph.mask.size();
-  PhotographFeatures features{plane.width, plane.height,
-                              std::vector<float>(kFeaturePlanes * texels), {}};
+  PhotographFeatures features{
+      plane.width, plane.height, std::vector<float>(kFeaturePlanes * texels), {}};
   std::array<Ring, kProfileBins> rings{};
   const auto put = [&](int p, size_t i, double value) {
     features.planes[p * texels + i] = static_cast<float>(value);
@@ -65,8 +65,9 @@ PhotographFeatures FeaturesOf(const Photograph& photograph, const SamplePlane& p
     put(7, i, g.camera[0]);
     put(8, i, g.camera[1]);
     put(9, i, angle);
-    put(10, i, std::clamp(std::log(std::max(1e-9, mean_e * cosine / kPi)), -kLogIrradianceRange,
-                          kLogIrradianceRange));
+    put(10, i,
+        std::clamp(std::log(std::max(1e-9, mean_e * cosine / kPi)), -kLogIrradianceRange,
+                   kLogIrradianceRange));
     if (photograph.mask[i] < 0.5f) continue;
     Ring& ring = rings[RingOf(angle)];
     bool clipped = false;

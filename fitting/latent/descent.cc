@@ -9,8 +9,8 @@
 namespace glint {
 namespace {
 
-constexpr double kFall = 0.3;    // of the learning rate, each time progress ends
-constexpr int kMostFalls = 3;    // then the descent has converged
+constexpr double kFall = 0.3;       // of the learning rate, each time progress ends
+constexpr int kMostFalls = 3;       // then the descent has converged
 constexpr double kLastPart = 0.75;  // of the iterations; after it the rate falls in any case
 
 }  // namespace
@@ -31,7 +31,8 @@ void Descent::Step(double loss, std::span<const float> gradient, std::span<float
   LowerRate();
   ++step_;
   // The last quarter ends at a tenth of the rate, so that a descent cut short still settles.
-  const double rest = (static_cast<double>(step_) / options_.iterations - kLastPart) / (1 - kLastPart);
+  const double rest =
+      (static_cast<double>(step_) / options_.iterations - kLastPart) / (1 - kLastPart);
   const double settle = rest > 0 ? std::pow(0.1, rest) : 1.0;
   AdamStep({rate_ * settle, 0.5, 0.99}, step_, gradient, values, moment1_, moment2_);
 }

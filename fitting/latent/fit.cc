@@ -16,7 +16,7 @@ namespace {
 constexpr double kMostLightScale = 16;  // and 1/16 the least
 constexpr double kLightRate = 0.02;     // Adam's, on the scale's logarithm
 constexpr double kLightPrior = 1e-3;    // pull of its square: albedo and power trade off otherwise
-constexpr float kMostCode = 0.995f;     // of |t| where tanh is inverted: its gradient must not vanish
+constexpr float kMostCode = 0.995f;  // of |t| where tanh is inverted: its gradient must not vanish
 
 // What a level optimises: parameters ↔ encoded maps, and the gradient back.
 class Parameters {
@@ -240,17 +240,17 @@ FitResult Fit(const PhotographSet& set, const SvbrdfMaps& start, const FitOption
     if (!wrong.empty()) throw std::invalid_argument("fit: " + wrong);
   }
   const auto sizes = LevelSizes(set.plane.width, set.plane.height, options.coarse_size);
-  Run run{&set, &options, &progress, 0, options.coarse_iterations +
-          static_cast<int>(sizes.size() - 1) * options.fine_iterations +
-          (network == nullptr ? 0 : options.tune_iterations)};
+  Run run{&set, &options, &progress, 0,
+          options.coarse_iterations + static_cast<int>(sizes.size() - 1) * options.fine_iterations +
+              (network == nullptr ? 0 : options.tune_iterations)};
   LightScale light(set.light_power_known, kLightRate);
   FitResult result;
   EncodedMaps maps = EncodeMaps(start);
   for (size_t k = 0; k < sizes.size(); ++k) {
     const auto [width, height] = sizes[k];
     const bool full = k + 1 == sizes.size();
-    const PhotographSet small = full ? PhotographSet{}
-                                     : Downsampled(set, width, height, options.threads);
+    const PhotographSet small =
+        full ? PhotographSet{} : Downsampled(set, width, height, options.threads);
     const PhotographSet& level_set = full ? set : small;
     maps = Resized(maps, width, height);
     if (k == 0) {
@@ -320,18 +320,20 @@ std::string FitResult::BriefReport() const {
 
 FitResult FitLatent(const PhotographSet& set, const SvbrdfMaps& start, const Autoencoder& network,
                     const FitOptions& options, const FitProgress& progress) {
-  return Fit(set, start, options, options.start_iterations > 0, &network,
-             [&](int width, int height) {
-               return std::make_unique<CodeParameters>(network, width, height, options);
-             },
-             progress);
+  return Fit(
+      set, start, options, options.start_iterations > 0, &network,
+      [&](int width, int height) {
+        return std::make_unique<CodeParameters>(network, width, height, options);
+      },
+      progress);
 }
 
 FitResult FitClassic(const PhotographSet& set, const SvbrdfMaps& start, const FitOptions& options,
                      const FitProgress& progress) {
-  return Fit(set, start, options, false, nullptr,
-             [](int width, int height) { return std::make_unique<MapParameters>(width, height); },
-             progress);
+  return Fit(
+      set, start, options, false, nullptr,
+      [](int width, int height) { return std::make_unique<MapParameters>(width, height); },
+      progress);
 }
 
 }  // namespace glint

@@ -28,11 +28,11 @@ struct FitOptions {
   double learning_rate = 0.03;  // Adam's, at the start of a level; falls as progress ends
   double tolerance = 0.003;     // relative fall of the loss over `patience` iterations that counts
   int patience = 25;
-  int start_iterations = 25;    // latent only: pulling D(z) onto the start before fitting
-  double code_prior = 0;        // latent only: weight of mean z² (codes of materials are N(0, 1))
-  int tune_iterations = 0;      // latent only: of the decoder and the code together, at the last level
-  double tune_rate = 0.01;      // of the decoder's weights, relative to the code's rate
-  bool fast = true;             // latent only: bf16 where the CPU has it
+  int start_iterations = 25;  // latent only: pulling D(z) onto the start before fitting
+  double code_prior = 0;      // latent only: weight of mean z² (codes of materials are N(0, 1))
+  int tune_iterations = 0;  // latent only: of the decoder and the code together, at the last level
+  double tune_rate = 0.01;  // of the decoder's weights, relative to the code's rate
+  bool fast = true;         // latent only: bf16 where the CPU has it
   int threads = 1;
 
   static FitOptions Latent() { return {}; }
@@ -50,7 +50,7 @@ struct FitLevel {
 };
 
 struct FitResult {
-  SvbrdfMaps maps;                // at the photographs' size
+  SvbrdfMaps maps;  // at the photographs' size
   std::vector<FitLevel> levels;
   double start_loss = 0;          // of the start given, at the first level
   double final_loss = 0;          // of `maps`

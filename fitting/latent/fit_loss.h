@@ -11,9 +11,9 @@ namespace glint {
 
 struct FitLossValue {
   double loss = 0;
-  EncodedMaps gradient;               // ∂loss/∂encoded maps
+  EncodedMaps gradient;  // ∂loss/∂encoded maps
   double log_light_scale_gradient = 0;
-  std::vector<double> view_loss;      // NaN where a photograph has no usable texel
+  std::vector<double> view_loss;  // NaN where a photograph has no usable texel
 };
 
 class FitLoss {

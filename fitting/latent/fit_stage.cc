@@ -72,11 +72,10 @@ PhotographSet Load(const RectifiedSet& set, const std::vector<RectifiedView>& vi
 
 SvbrdfMaps EstimatedStart(const FitStageOptions& options, const PhotographSet& photographs,
                           int threads) {
-  const Estimator estimator = AsUserError(
-      [&] { return Estimator::Load(FindModel(kEstimatorModel, options.estimator)); });
-  SvbrdfMaps maps = estimator.Estimate(
-      photographs.photographs[BestStartingPhotograph(photographs)], photographs.plane,
-      photographs.convention, threads);
+  const Estimator estimator =
+      AsUserError([&] { return Estimator::Load(FindModel(kEstimatorModel, options.estimator)); });
+  SvbrdfMaps maps = estimator.Estimate(photographs.photographs[BestStartingPhotograph(photographs)],
+                                       photographs.plane, photographs.convention, threads);
   if (photographs.convention.diffuse_weight == DiffuseWeight::kOne) return maps;
   for (int c = 0; c < 3; ++c) {  // the same look with diffuse weight 1 − k_s
     for (size_t i = 0; i < maps.texels(); ++i) {
@@ -127,23 +126,27 @@ Json Data(const FitResult& fit, const RectifiedSet& set, const FitStageOptions& 
 }  // namespace
 
 void AddFitOptions(OptionSet* set, FitStageOptions* options) {
-  set->AddChoice("method", &options->method, {"latent", "classic", "start"},
-                 "latent: in the learned space; classic: the maps themselves, texel by texel; start: "
-                 "no fitting, the start as it is");
-  set->AddChoice("bootstrap", &options->bootstrap, {"estimator", "heuristic"},
-                 "what the start is estimated by: a trained network from the photograph nearest the "
-                 "top, or lobes fitted to the whole sample");
+  set->AddChoice(
+      "method", &options->method, {"latent", "classic", "start"},
+      "latent: in the learned space; classic: the maps themselves, texel by texel; start: "
+      "no fitting, the start as it is");
+  set->AddChoice(
+      "bootstrap", &options->bootstrap, {"estimator", "heuristic"},
+      "what the start is estimated by: a trained network from the photograph nearest the "
+      "top, or lobes fitted to the whole sample");
   set->AddRange("iterations", &options->iterations, 0, 1e6,
                 "most steps at the first, coarse level; 0: the method's own");
   set->AddRange("fine-iterations", &options->fine_iterations, 0, 1e6,
                 "most steps at each later level; 0: the method's own");
   set->AddRange("learning-rate", &options->learning_rate, 0, 1,
                 "Adam's rate at the start of a level; 0: the method's own");
-  set->AddRange("tune-iterations", &options->tune_iterations, -1, 1e6,
-                "latent: steps that fine-tune the decoder on this sample, after the code's; below 0: "
-                "the method's own");
-  set->AddRange("tune-rate", &options->tune_rate, 0, 1,
-                "latent: rate of the decoder's weights, relative to the code's; 0: the method's own");
+  set->AddRange(
+      "tune-iterations", &options->tune_iterations, -1, 1e6,
+      "latent: steps that fine-tune the decoder on this sample, after the code's; below 0: "
+      "the method's own");
+  set->AddRange(
+      "tune-rate", &options->tune_rate, 0, 1,
+      "latent: rate of the decoder's weights, relative to the code's; 0: the method's own");
   set->AddRange("code-prior", &options->code_prior, -1, 1e6,
                 "latent: weight of the code's size; below 0: the method's own");
   set->Add("start", &options->start,

@@ -8,8 +8,8 @@ namespace {
 
 using torch::Tensor;
 
-// Copies between the layouts of Interleave: `wide` [n, h+1, w+1, 2, 2, c], `fine` [n, 2h, 2w, c], both
-// contiguous, elements of any type. Output row m reads wide row (m+1)/2, phase (m+1)%2.
+// Copies between the layouts of Interleave: `wide` [n, h+1, w+1, 2, 2, c], `fine` [n, 2h, 2w, c],
+// both contiguous, elements of any type. Output row m reads wide row (m+1)/2, phase (m+1)%2.
 template <bool kToFine>
 void CopyPhases(char* wide, char* fine, int64_t n, int64_t h, int64_t w, int64_t run_bytes) {
   at::parallel_for(0, n * 2 * h, 1, [&](int64_t begin, int64_t end) {
@@ -68,14 +68,14 @@ Tensor DownConvolve(const Tensor& x, const Tensor& weight, const Tensor& bias,
   return at::conv2d(x, AsType(weight, compute), bias.to(compute), 2, 1);
 }
 
-Tensor UpConvolve(const Tensor& x, const Tensor& weight, const Tensor& bias,
-                  torch::Dtype compute) {
+Tensor UpConvolve(const Tensor& x, const Tensor& weight, const Tensor& bias, torch::Dtype compute) {
   return Interleave::apply(at::conv2d(x, AsType(weight, compute), bias.to(compute), 1, 1));
 }
 
-// A 3×3 kernel [out, in, 3, 3] after nearest upsampling, as the 2×2 kernels of the four phases. Output
-// 2i sees input i−1 with the first tap and i with the other two; output 2i+1 sees i with the first two
-// and i+1 with the last. Phase 1 of wide row i is output 2i, phase 0 of wide row i+1 is output 2i+1.
+// A 3×3 kernel [out, in, 3, 3] after nearest upsampling, as the 2×2 kernels of the four phases.
+// Output 2i sees input i−1 with the first tap and i with the other two; output 2i+1 sees i with the
+// first two and i+1 with the last. Phase 1 of wide row i is output 2i, phase 0 of wide row i+1 is
+// output 2i+1.
 Tensor PhaseKernels(const Tensor& kernel) {
   std::vector<Tensor> phases;
   for (int a = 0; a < 2; ++a) {

@@ -17,10 +17,10 @@ torch::Tensor AsType(const torch::Tensor& t, torch::Dtype type);
 torch::Tensor DownConvolve(const torch::Tensor& x, const torch::Tensor& weight,
                            const torch::Tensor& bias, torch::Dtype compute);
 
-// 4×4 up-convolution of stride 2 in `compute`: [B, in, h, w] → [B, out, 2h, 2w]. bf16 needs ordinary
-// convolutions, so it is computed as a 2×2 convolution to four times the channels (`weight`
-// [4·out, in, 2, 2], channel = phase·out + k) whose results are interleaved (pixel shuffle) and
-// cropped by one: the same linear map with the same number of multiplications.
+// 4×4 up-convolution of stride 2 in `compute`: [B, in, h, w] → [B, out, 2h, 2w]. bf16 needs
+// ordinary convolutions, so it is computed as a 2×2 convolution to four times the channels
+// (`weight` [4·out, in, 2, 2], channel = phase·out + k) whose results are interleaved (pixel
+// shuffle) and cropped by one: the same linear map with the same number of multiplications.
 torch::Tensor UpConvolve(const torch::Tensor& x, const torch::Tensor& weight,
                          const torch::Tensor& bias, torch::Dtype compute);
 

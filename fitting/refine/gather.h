@@ -6,8 +6,8 @@
 
 namespace glint {
 
-// Linear radiance from which a photograph that clips is taken to be at its limit; resampling may have
-// mixed a little of a darker pixel in (see AdmitClippedTexels).
+// Linear radiance from which a photograph that clips is taken to be at its limit; resampling may
+// have mixed a little of a darker pixel in (see AdmitClippedTexels).
 inline constexpr double kClipped = 0.99;
 
 // Replaces what `observations` holds by the usable views of the texel.

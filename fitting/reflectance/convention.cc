@@ -39,7 +39,8 @@ std::string ToString(const ReflectanceConvention& convention) {
   text += " light=";
   text += convention.falloff == LightFalloff::kNone ? "none" : "inverse_square";
   text += " sampling=";
-  text += convention.sampling == TexelSampling::kPixelCentres ? "pixel_centres" : "corner_to_corner";
+  text +=
+      convention.sampling == TexelSampling::kPixelCentres ? "pixel_centres" : "corner_to_corner";
   return text;
 }
 

@@ -6,14 +6,16 @@
 
 namespace glint {
 
-// Weight of the diffuse lobe k_d/π: 1 (DIR 2019), or 1 − k_s per channel (Deschaintre 2018, MaterialGAN).
+// Weight of the diffuse lobe k_d/π: 1 (DIR 2019), or 1 − k_s per channel (Deschaintre 2018,
+// MaterialGAN).
 enum class DiffuseWeight { kOne, kOneMinusSpecular };
 
 // Irradiance on a plane facing the light: `light_rgb` itself (DIR 2019 with light_rgb = π), or
 // `light_rgb / d²` with d the distance from light to texel in millimetres.
 enum class LightFalloff { kNone, kInverseSquare };
 
-// Where texel i of n samples the extent [-s/2, s/2]: at (i + 0.5)/n, or corner to corner at i/(n − 1).
+// Where texel i of n samples the extent [-s/2, s/2]: at (i + 0.5)/n, or corner to corner at i/(n −
+// 1).
 enum class TexelSampling { kPixelCentres, kCornerToCorner };
 
 struct ReflectanceConvention {
@@ -33,7 +35,8 @@ struct ReflectanceConvention {
   bool operator==(const ReflectanceConvention&) const = default;
 };
 
-// Names as manifests and EXR headers write them: "diffuse=one light=inverse_square sampling=pixel_centres".
+// Names as manifests and EXR headers write them: "diffuse=one light=inverse_square
+// sampling=pixel_centres".
 std::string ToString(const ReflectanceConvention& convention);
 
 // The inverse of ToString; also accepts the presets "photograph", "dir2019" and "materialgan".

@@ -77,7 +77,8 @@ class AutoencoderTraining : public Trainable {
       auto generator = torch::make_generator<torch::CPUGeneratorImpl>(
           StreamSeed(options_.seed ^ kNoiseStream, static_cast<std::uint64_t>(step)));
       const Tensor part = z.slice(0, 0, twice);
-      const Tensor noise = torch::randn(part.sizes(), generator) * std::sqrt(options_.noise_variance);
+      const Tensor noise =
+          torch::randn(part.sizes(), generator) * std::sqrt(options_.noise_variance);
       codes = torch::cat({z, part + noise}, 0);
     }
     const Tensor decoded = network_.DecodeForTraining(codes, compute_, kBatchStatisticsMomentum);
@@ -123,7 +124,8 @@ TrainProgress TrainAutoencoder(const AutoencoderTrainOptions& options, const Tra
                                const TrainReport& report) {
   Check(options);
   torch::set_num_threads(options.threads);
-  AutoencoderTraining training(options, FirstStep(files) * options.accumulate, materials, validation);
+  AutoencoderTraining training(options, FirstStep(files) * options.accumulate, materials,
+                               validation);
   return RunTraining(options, files, &training, report);
 }
 

@@ -12,10 +12,10 @@
 
 #include "datasets/procedural/material.h"
 #include "fitting/encoding/encoding.h"
+#include "fitting/encoding/encoding_torch.h"
 #include "fitting/layers/layers.h"
 #include "fitting/render/render_reference.h"
 #include "fitting/training/autoencoder_trainer.h"
-#include "fitting/encoding/encoding_torch.h"
 #include "fitting/training/map_batches.h"
 #include "fitting/training/random.h"
 #include "fitting/training/render_loss.h"
@@ -153,7 +153,8 @@ int main(int argc, char** argv) {
   const auto argument = [&](int i, int otherwise) {
     return argc > i ? std::atoi(argv[i]) : otherwise;
   };
-  const auto options = glint::Options(argument(1, 1), argument(2, 9), argument(3, 128), argument(4, 8));
+  const auto options =
+      glint::Options(argument(1, 1), argument(2, 9), argument(3, 128), argument(4, 8));
   const double ours = glint::OursPerSecond(options);
   const double plain = glint::PlainPerSecond(options);
   std::printf("glint-train's loop            %8.1f samples/s\n", ours);

@@ -11,8 +11,8 @@
 namespace glint {
 
 struct TrainState {
-  NamedTensors network;  // learned tensors first
-  NamedTensors average;  // the same, averaged
+  NamedTensors network;                         // learned tensors first
+  NamedTensors average;                         // the same, averaged
   std::vector<torch::Tensor> moment1, moment2;  // Adam's, of the learned ones
   std::int64_t step = 0;
   double seconds = 0;
@@ -23,7 +23,8 @@ struct TrainState {
 void SaveCheckpoint(const std::filesystem::path& path, const TrainState& state,
                     const std::map<std::string, std::string>& description);
 
-// Overwrites the tensors. Throws std::runtime_error when the file's metadata differ from `description`.
+// Overwrites the tensors. Throws std::runtime_error when the file's metadata differ from
+// `description`.
 void LoadCheckpoint(const std::filesystem::path& path,
                     const std::map<std::string, std::string>& description, TrainState* state);
 

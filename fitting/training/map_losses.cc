@@ -1,8 +1,8 @@
 #include "fitting/training/map_losses.h"
 
 #include "fitting/encoding/encoding.h"
-#include "fitting/render/render_autograd.h"
 #include "fitting/encoding/encoding_torch.h"
+#include "fitting/render/render_autograd.h"
 #include "fitting/training/random.h"
 #include "fitting/training/render_loss.h"
 

@@ -18,10 +18,10 @@ constexpr float kScale = 32767.0f;
 struct Change {
   bool flip_x, flip_y, transpose;
   int row, column;
-  int colour[3];        // which channel each of R, G, B is taken from
-  float gain[6];        // of diffuse and specular, on √c
+  int colour[3];  // which channel each of R, G, B is taken from
+  float gain[6];  // of diffuse and specular, on √c
   float roughness_gain, roughness_offset;
-  float slope_gain;     // on t: nearly proportional for small slopes
+  float slope_gain;  // on t: nearly proportional for small slopes
 };
 
 Change DrawChange(Stream* random, int size, int crop) {

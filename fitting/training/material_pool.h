@@ -20,11 +20,11 @@ namespace glint {
 using MaterialSource = std::function<SvbrdfMaps(std::uint64_t k)>;
 
 struct PoolOptions {
-  int material_size = 256;     // texels along a side of each material
-  int window = 2048;           // materials a step chooses from, once that many exist
-  int first = 64;              // materials made before step 0
-  double per_step = 1.0;       // new materials per step
-  std::uint64_t seed = 0;      // of choices and changes; the source has its own
+  int material_size = 256;  // texels along a side of each material
+  int window = 2048;        // materials a step chooses from, once that many exist
+  int first = 64;           // materials made before step 0
+  double per_step = 1.0;    // new materials per step
+  std::uint64_t seed = 0;   // of choices and changes; the source has its own
 };
 
 class MaterialPool {

@@ -31,8 +31,8 @@ Level Components(const Tensor& blocks, int64_t out) {
   Level level;
   level.mean = blocks.mean(0);
   const Tensor centred = blocks - level.mean;
-  const Tensor covariance = centred.t().mm(centred).to(torch::kFloat64) /
-                            static_cast<double>(blocks.size(0));
+  const Tensor covariance =
+      centred.t().mm(centred).to(torch::kFloat64) / static_cast<double>(blocks.size(0));
   const auto [values, vectors] = torch::linalg_eigh(covariance);
   const int64_t kept = std::min(out, vectors.size(1));
   // More channels than components: the rest stays unused at first.

@@ -1,5 +1,5 @@
-// Counter-based random numbers: the n-th number of a stream depends on nothing but the stream's name,
-// so that training resumes exactly and batches do not depend on threads.
+// Counter-based random numbers: the n-th number of a stream depends on nothing but the stream's
+// name, so that training resumes exactly and batches do not depend on threads.
 #pragma once
 
 #include <cmath>

@@ -30,8 +30,8 @@ std::vector<View> DrawRenderLossViews(Stream* random, int count) {
   const int free_views = (count + 2) / 3;
   for (int i = 0; i < count; ++i) {
     const bool mirror = i >= free_views;
-    const Vec3d centre = mirror ? Vec3d{random->Uniform(-1, 1), random->Uniform(-1, 1), 0.0}
-                                : Vec3d{0.0, 0.0, 0.0};
+    const Vec3d centre =
+        mirror ? Vec3d{random->Uniform(-1, 1), random->Uniform(-1, 1), 0.0} : Vec3d{0.0, 0.0, 0.0};
     const Vec3d to_light = CosineDirection(random);
     const Vec3d to_camera =
         mirror ? Vec3d{-to_light[0], -to_light[1], to_light[2]} : CosineDirection(random);

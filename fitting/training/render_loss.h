@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "fitting/training/random.h"
 #include "fitting/reflectance/view.h"
+#include "fitting/training/random.h"
 
 namespace glint {
 

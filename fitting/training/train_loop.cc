@@ -30,8 +30,8 @@ void CheckTrainOptions(const TrainOptions& o) {
     if (!good) throw std::runtime_error("training options: " + message);
   };
   require(o.steps > 0 || o.minutes > 0, "found neither steps nor minutes; give one of them");
-  require(o.batch >= 1 && o.batch <= 4096, "found batch " + std::to_string(o.batch) +
-                                               "; it must be 1 to 4096");
+  require(o.batch >= 1 && o.batch <= 4096,
+          "found batch " + std::to_string(o.batch) + "; it must be 1 to 4096");
   require(o.crop >= kCropMultiple && o.crop % kCropMultiple == 0 && o.crop <= o.pool.material_size,
           "found crop " + std::to_string(o.crop) +
               "; it must be a multiple of 32 that fits the materials");
@@ -53,7 +53,8 @@ class Log {
   Log(const std::filesystem::path& path, bool append)
       : out_(path, append ? std::ios::app : std::ios::trunc) {
     if (!append || out_.tellp() == 0) {
-      out_ << "step,seconds,samples_per_second,learning_rate,loss,map,smoothness,render,validation\n";
+      out_ << "step,seconds,samples_per_second,learning_rate,loss,map,smoothness,render,"
+              "validation\n";
     }
   }
   void Write(const TrainProgress& p) {
@@ -101,8 +102,8 @@ class Loop {
       : options_(options),
         files_(files),
         trainable_(trainable),
-        state_(TrainState::From(trainable->State(), trainable->AverageState(),
-                                trainable->learned())) {
+        state_(
+            TrainState::From(trainable->State(), trainable->AverageState(), trainable->learned())) {
     if (files.resume && std::filesystem::exists(files.CheckpointPath())) {
       LoadCheckpoint(files.CheckpointPath(), trainable->Description(), &state_);
     }
@@ -204,12 +205,13 @@ class Loop {
 
   void Save(double validation) {
     SaveCheckpoint(files_.CheckpointPath(), state_, trainable_->Description());
-    trainable_->SaveWeights(files_.weights,
-                            {{"data", options_.data_name},
-                             {"seed", std::to_string(options_.seed)},
-                             {"steps", std::to_string(state_.step)},
-                             {"samples", std::to_string(state_.step * options_.accumulate * options_.batch)},
-                             {"validation_map_l1", std::to_string(validation)}});
+    trainable_->SaveWeights(
+        files_.weights,
+        {{"data", options_.data_name},
+         {"seed", std::to_string(options_.seed)},
+         {"steps", std::to_string(state_.step)},
+         {"samples", std::to_string(state_.step * options_.accumulate * options_.batch)},
+         {"validation_map_l1", std::to_string(validation)}});
   }
 
   const TrainOptions& options_;

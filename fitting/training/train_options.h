@@ -12,11 +12,11 @@
 namespace glint {
 
 struct TrainOptions {
-  std::int64_t steps = 0;        // 0: until `minutes` are over
-  double minutes = 0;            // training time, counted over all resumes
+  std::int64_t steps = 0;  // 0: until `minutes` are over
+  double minutes = 0;      // training time, counted over all resumes
   int batch = 16;
-  int crop = 128;                // texels; a multiple of 32
-  double learning_rate = 5e-4;   // the highest; it rises over `warmup_steps`, then falls as a cosine
+  int crop = 128;               // texels; a multiple of 32
+  double learning_rate = 5e-4;  // the highest; it rises over `warmup_steps`, then falls as a cosine
   int warmup_steps = 200;
   std::int64_t warmup_from = 0;  // the step it rises from: a checkpoint's, when a resume lengthens
   int accumulate = 1;            // batches whose gradients make one step
@@ -28,9 +28,9 @@ struct TrainOptions {
   bool bf16 = true;              // where the CPU multiplies it natively
   int threads = 1;
   std::uint64_t seed = 1;
-  double checkpoint_minutes = 3; // also how often validation runs
+  double checkpoint_minutes = 3;  // also how often validation runs
   PoolOptions pool;
-  std::string data_name;         // written into the weights' metadata
+  std::string data_name;  // written into the weights' metadata
 };
 
 struct TrainFiles {
@@ -47,7 +47,7 @@ struct TrainFiles {
 // One line of the log.
 struct TrainProgress {
   std::int64_t step = 0;
-  double seconds = 0;             // of training, resumes included
+  double seconds = 0;  // of training, resumes included
   double samples_per_second = 0;
   double eta_seconds = 0;
   double learning_rate = 0;

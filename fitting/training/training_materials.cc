@@ -43,7 +43,8 @@ void ChangeRoughness(Stream* random, SvbrdfMaps* maps) {
   for (const float r : maps->plane(kRoughness)) mean += r;
   mean /= static_cast<double>(maps->texels());
   for (float& r : maps->plane(kRoughness)) {
-    const float changed = gain * (static_cast<float>(mean) + contrast * (r - static_cast<float>(mean)));
+    const float changed =
+        gain * (static_cast<float>(mean) + contrast * (r - static_cast<float>(mean)));
     r = std::clamp(changed, 0.05f, 1.0f);
   }
 }
@@ -66,13 +67,13 @@ SvbrdfMaps TrainingMaterial(const TrainingMaterialOptions& options, const Materi
   const std::uint64_t seed = ProceduralSeed(options.seed, k);
   const bool packed = pack != nullptr && !pack->empty() && random.Uniform() < options.pack_share;
   if (!packed) return MakeMaterial(seed, options.size, options.size);
-  const PackedMaterial& material = (*pack)[static_cast<size_t>(
-      random.Below(static_cast<int>(pack->size())))];
+  const PackedMaterial& material =
+      (*pack)[static_cast<size_t>(random.Below(static_cast<int>(pack->size())))];
   const SvbrdfMaps maps = PackedWindow(material, options.size, &random);
   if (random.Uniform() >= options.mixture_share) return maps;
   const SvbrdfMaps other = MakeMaterial(seed, options.size, options.size);
-  return procedural::BlendMaterials(
-      maps, other, procedural::DrawBlendMask(seed, options.size, options.size));
+  return procedural::BlendMaterials(maps, other,
+                                    procedural::DrawBlendMask(seed, options.size, options.size));
 }
 
 }  // namespace glint

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fitting/encoding/encoding_torch.h"
 #include "fitting/estimator/photograph_features.h"
 #include "fitting/render/render_autograd.h"
-#include "fitting/encoding/encoding_torch.h"
 
 namespace glint {
 namespace {
@@ -31,7 +31,9 @@ Vec3d Direction(double tilt, double azimuth) {
 Shot DrawShot(Stream* random, LightFalloff falloff, bool plain) {
   Shot shot;
   const bool top = plain || random->Uniform() < 0.5;
-  const double tilt = plain ? 0 : top ? 0.12 * std::abs(random->Normal()) : random->Uniform(0, kMostTilt);
+  const double tilt = plain ? 0
+                      : top ? 0.12 * std::abs(random->Normal())
+                            : random->Uniform(0, kMostTilt);
   const Vec3d d = Direction(std::min(tilt, kMostTilt), random->Uniform(0, 2 * kPi));
   const double distance = plain ? kDirHeight : random->Uniform(1.4, 3.6);
   const bool apart = !plain && random->Uniform() < 0.4;

@@ -36,24 +36,30 @@ size_t DtypeBytes(const std::string& dtype) {
 
 TensorRecord ReadRecord(const std::filesystem::path& path, const std::string& name,
                         const Json& entry, std::span<const std::byte> data) {
-  TensorRecord record{name, entry.at("dtype").get<std::string>(),
-                      entry.at("shape").get<std::vector<std::int64_t>>(), {}};
+  TensorRecord record{name,
+                      entry.at("dtype").get<std::string>(),
+                      entry.at("shape").get<std::vector<std::int64_t>>(),
+                      {}};
   const auto range = entry.at("data_offsets").get<std::array<std::uint64_t, 2>>();
   if (range[0] > range[1] || range[1] > data.size()) {
-    Fail(path, "tensor " + name, "bytes " + std::to_string(range[0]) + " to " +
-         std::to_string(range[1]) + " of " + std::to_string(data.size()));
+    Fail(path, "tensor " + name,
+         "bytes " + std::to_string(range[0]) + " to " + std::to_string(range[1]) + " of " +
+             std::to_string(data.size()));
   }
   // The product is compared against a size that is known to be in memory, so it cannot overflow.
   std::uint64_t wanted = DtypeBytes(record.dtype);
   const std::uint64_t held = range[1] - range[0];
   for (const std::int64_t n : record.shape) {
-    if (n < 0 || (n > 0 && wanted > held / static_cast<std::uint64_t>(n))) wanted = held + 1;
-    else wanted *= static_cast<std::uint64_t>(n);
+    if (n < 0 || (n > 0 && wanted > held / static_cast<std::uint64_t>(n)))
+      wanted = held + 1;
+    else
+      wanted *= static_cast<std::uint64_t>(n);
     if (wanted > held) break;
   }
   if (wanted != held) {
-    Fail(path, "tensor " + name, std::to_string(held) + " bytes, not what dtype " + record.dtype +
-         " and shape " + entry.at("shape").dump() + " need");
+    Fail(path, "tensor " + name,
+         std::to_string(held) + " bytes, not what dtype " + record.dtype + " and shape " +
+             entry.at("shape").dump() + " need");
   }
   record.bytes.assign(data.begin() + range[0], data.begin() + range[1]);
   return record;
@@ -125,8 +131,9 @@ TensorFile ReadTensorFile(const std::filesystem::path& path) {
   if (bytes.size() < sizeof length) Fail(path, "header", std::to_string(bytes.size()) + " bytes");
   std::memcpy(&length, bytes.data(), sizeof length);
   if (length > kMaxHeaderBytes || length > bytes.size() - sizeof length) {
-    Fail(path, "header", "a length of " + std::to_string(length) + " bytes in a file of " +
-         std::to_string(bytes.size()));
+    Fail(path, "header",
+         "a length of " + std::to_string(length) + " bytes in a file of " +
+             std::to_string(bytes.size()));
   }
   const char* text = reinterpret_cast<const char*>(bytes.data()) + sizeof length;
   const std::span<const std::byte> data = std::span(bytes).subspan(sizeof length + length);

@@ -1,9 +1,10 @@
-// Reads and writes weights in the safetensors format (https://huggingface.co/docs/safetensors): eight
-// bytes of header length (little-endian), a JSON header, raw little-endian tensors one after another.
+// Reads and writes weights in the safetensors format (https://huggingface.co/docs/safetensors):
+// eight bytes of header length (little-endian), a JSON header, raw little-endian tensors one after
+// another.
 //
-// On writing, the metadata entry "checksum" gets the FNV-1a hash (64 bit, hexadecimal) of the tensor
-// bytes; reading checks it when present. All errors are std::runtime_error with a message of the
-// form "FILE: PART: found …; MEND".
+// On writing, the metadata entry "checksum" gets the FNV-1a hash (64 bit, hexadecimal) of the
+// tensor bytes; reading checks it when present. All errors are std::runtime_error with a message of
+// the form "FILE: PART: found …; MEND".
 #pragma once
 
 #include <cstddef>
@@ -40,7 +41,6 @@ TensorRecord MakeRecord(const std::string& name, std::vector<std::int64_t> shape
                         std::span<const float> values, bool as_bf16);
 std::vector<float> RecordValues(const TensorRecord& record);  // throws for other dtypes
 
-std::uint64_t Fnv1a64(std::span<const std::byte> bytes,
-                      std::uint64_t hash = 0xCBF29CE484222325ull);
+std::uint64_t Fnv1a64(std::span<const std::byte> bytes, std::uint64_t hash = 0xCBF29CE484222325ull);
 
 }  // namespace glint

@@ -44,10 +44,10 @@ RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file);
 
 // Throws UserError when size or channels do not fit the set.
 RectifiedImage ReadRectifiedImage(const RectifiedSet& set, const RectifiedView& view);
-// Makes texels usable that an LDR photograph shows as fully clipped (mask 0, a channel at 1): compared
-// with renderings clamped to [0, 1] (eq. 2) they say that the highlight is at least that bright, and
-// where sharp highlights clip they are all that is known of gloss. Texels that are only partly
-// clipped stay masked: their average is biased.
+// Makes texels usable that an LDR photograph shows as fully clipped (mask 0, a channel at 1):
+// compared with renderings clamped to [0, 1] (eq. 2) they say that the highlight is at least that
+// bright, and where sharp highlights clip they are all that is known of gloss. Texels that are only
+// partly clipped stay masked: their average is biased.
 void AdmitClippedTexels(const RectifiedView& view, RectifiedImage* image);
 
 void WriteRectifiedImage(const std::filesystem::path& file, const RectifiedImage& image,

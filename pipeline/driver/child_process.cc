@@ -32,8 +32,8 @@ EnvironmentError CannotStart(const std::string& program, int error) {
                           "; check that Glint is installed completely");
 }
 
-// OpenMP's threads spin while they wait, unless told otherwise before the program starts; beside any
-// other load on the machine that made fitting six times slower (docs/experiments.md).
+// OpenMP's threads spin while they wait, unless told otherwise before the program starts; beside
+// any other load on the machine that made fitting six times slower (docs/experiments.md).
 void LetOpenMpWaitPassively() { ::setenv("OMP_WAIT_POLICY", "passive", 0); }
 
 // In the child, between fork and exec: only calls that are safe there.

@@ -128,8 +128,7 @@ std::vector<double> SampleSize_mm(const InitOptions& options, const Board& board
 
 std::string BoardText(const InitOptions& options, const std::vector<double>& window,
                       const std::string& board_photos) {
-  std::string text =
-      "[board]                          # what lies round the sample\n";
+  std::string text = "[board]                          # what lies round the sample\n";
   text += "kind = \"" + options.board + "\"\n";
   text += "squares = " + List(options.squares) + "               # columns, rows of squares\n";
   text += "square_mm = " + NumberText(options.square_mm) +

@@ -272,9 +272,9 @@ TEST_F(BadInputTest, ATruncatedWeightsFile) {
 TEST_F(BadInputTest, ATruncatedEstimatorFile) {
   const fs::path weights = capture() / "estimator.safetensors";
   WriteAll(weights, std::string("\x00\x10\x00\x00\x00\x00\x00\x00{\"w\":", 14));
-  ExpectRefusal({weights.string()}, 2,
-                {"fit", capture().string(), "--bootstrap", "estimator", "--estimator",
-                 weights.string()});
+  ExpectRefusal(
+      {weights.string()}, 2,
+      {"fit", capture().string(), "--bootstrap", "estimator", "--estimator", weights.string()});
 }
 
 TEST_F(BadInputTest, WeightsOfTheOtherNetwork) {

@@ -46,7 +46,9 @@ void MakeFinished() {
   ASSERT_EQ(synth.code, 0) << synth.err;
   std::string options = kQuickOptions;
   // A checkout whose weights are not trained yet still tests all the rest.
-  if (!HasWeights()) options.replace(options.find("[fit]"), 5, "[fit]\nmethod = \"classic\"\nbootstrap = \"heuristic\"");
+  if (!HasWeights())
+    options.replace(options.find("[fit]"), 5,
+                    "[fit]\nmethod = \"classic\"\nbootstrap = \"heuristic\"");
   std::ofstream(finished_capture->capture / "capture.toml", std::ios::app) << options;
   const auto start = std::chrono::steady_clock::now();
   const Outcome run = RunProgram({Program("glint"), "run", capture});

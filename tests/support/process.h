@@ -78,7 +78,7 @@ inline int WaitFor(pid_t pid) {
 }
 
 inline Outcome RunProgram(const std::vector<std::string>& arguments,
-                   const std::function<void()>& before_exec = {}) {
+                          const std::function<void()>& before_exec = {}) {
   const TemporaryFolder folder;
   const auto out = folder.path() / "out", err = folder.path() / "err";
   Outcome outcome;

@@ -4,8 +4,8 @@
 
 #include "fitting/autoencoder/autoencoder.h"
 #include "fitting/encoding/encoding_torch.h"
-#include "fitting/training/principal_start.h"
 #include "fitting/render/render_reference.h"
+#include "fitting/training/principal_start.h"
 #include "tests/fitting/training/toy_materials.h"
 
 namespace glint {
@@ -71,18 +71,21 @@ TEST(Network, UpConvolutionIsTheTransposedConvolution) {
     Tensor kernel = torch::zeros({in, out, 4, 4}, torch::kFloat64);
     for (int a = 0; a < 2; ++a) {
       for (int b = 0; b < 2; ++b) {
-        const Tensor phase = w.slice(0, (a * 2 + b) * out, (a * 2 + b + 1) * out).permute({1, 0, 2, 3});
+        const Tensor phase =
+            w.slice(0, (a * 2 + b) * out, (a * 2 + b + 1) * out).permute({1, 0, 2, 3});
         for (int u = 0; u < 2; ++u) {
           for (int v = 0; v < 2; ++v) {
             // Fine row 2i + 1 − a takes coarse row i + u − a by tap u.
-            kernel.select(3, 2 - 2 * v + b).select(2, 2 - 2 * u + a) = phase.select(3, v).select(2, u);
+            kernel.select(3, 2 - 2 * v + b).select(2, 2 - 2 * u + a) =
+                phase.select(3, v).select(2, u);
           }
         }
       }
     }
     x = at::conv_transpose2d(x, kernel, {}, 2, 1);
   }
-  EXPECT_LT((torch::tanh(x) - network.Decode(z, torch::kFloat64)).abs().max().item<double>(), 1e-12);
+  EXPECT_LT((torch::tanh(x) - network.Decode(z, torch::kFloat64)).abs().max().item<double>(),
+            1e-12);
 }
 
 TEST(Network, FusedDecodingOfTexelsAgreesWithTorchOperations) {
@@ -100,8 +103,7 @@ TEST(Network, FusedDecodingOfTexelsAgreesWithTorchOperations) {
 TEST(Network, GradientOfTheRenderingLossByTheCodeAgreesWithFiniteDifferences) {
   torch::manual_seed(3);
   torch::set_num_threads(1);
-  const AutoencoderNetwork network =
-      InDouble(StartFromPrincipalComponents(kTiny, ToyBatch(8, 32)));
+  const AutoencoderNetwork network = InDouble(StartFromPrincipalComponents(kTiny, ToyBatch(8, 32)));
   const Tensor z = torch::randn({1, 14, 1, 1}, torch::kFloat64) * 0.5;
   ViewBatch batch;
   batch.plane = {32, 32, 2, 2, TexelSampling::kPixelCentres};
@@ -133,7 +135,8 @@ TEST(Network, TapeDecodesAndDifferentiatesLikeTheNetwork) {
   Autoencoder::Tape tape(network, false, 1);
   const EncodedMaps maps = tape.Forward(code, 50, 20);
   const EncodedMaps plain = network.Decode(code, 50, 20, 1);
-  for (size_t i = 0; i < maps.planes.size(); ++i) EXPECT_NEAR(maps.planes[i], plain.planes[i], 1e-6);
+  for (size_t i = 0; i < maps.planes.size(); ++i)
+    EXPECT_NEAR(maps.planes[i], plain.planes[i], 1e-6);
 
   EncodedMaps weights(50, 20);
   for (size_t i = 0; i < weights.planes.size(); ++i) weights.planes[i] = std::sin(i * 0.37f);
@@ -176,8 +179,7 @@ TEST(Network, BitsDoNotDependOnThreads) {
 TEST(Network, PrincipalComponentsPassDetailBeforeAnyTraining) {
   torch::set_num_threads(1);
   const Tensor batch = ToyBatch(12, 64);
-  const AutoencoderNetwork network =
-      StartFromPrincipalComponents({16, 24, 32, 48, 64}, batch);
+  const AutoencoderNetwork network = StartFromPrincipalComponents({16, 24, 32, 48, 64}, batch);
   const Tensor z = network.NormaliseByRunning(network.EncodeRaw(batch, torch::kFloat32));
   const double error = (network.Decode(z, torch::kFloat32) - batch).abs().mean().item<double>();
   const Tensor means = batch.mean(c10::IntArrayRef{2, 3}, true);

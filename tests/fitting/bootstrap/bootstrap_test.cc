@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "tests/fitting/training/toy_materials.h"
 #include "tests/fitting/bootstrap/synthetic_set.h"
+#include "tests/fitting/training/toy_materials.h"
 
 namespace glint {
 namespace {

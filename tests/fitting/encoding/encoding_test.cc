@@ -25,9 +25,10 @@ TEST(Encoding, RoundTripKeepsTheMaps) {
 
 TEST(Encoding, StaysWithinTheRangeOfTanh) {
   SvbrdfMaps maps(4, 1);
-  maps.planes = {0, 1, 0, 0.99999f, 0, 0, -1, 0, 1, 0, 0, 0,  // normals: up, along x, along −y, grazing
-                 0, 1, 2, -1, 0, 1, 2, -1, 0, 1, 2, -1, 0, 1, 2, -1, 0, 1, 2, -1, 0, 1, 2, -1,
-                 0, 1, 2, -1};
+  maps.planes = {
+      0, 1,  0, 0.99999f, 0, 0,  -1, 0,  1, 0,  0, 0,  // normals: up, along x, along −y, grazing
+      0, 1,  2, -1,       0, 1,  2,  -1, 0, 1,  2, -1, 0, 1,
+      2, -1, 0, 1,        2, -1, 0,  1,  2, -1, 0, 1,  2, -1};
   for (const float t : EncodeMaps(maps).planes) {
     EXPECT_GE(t, -1.0f);
     EXPECT_LE(t, 1.0f);

@@ -58,7 +58,8 @@ TEST_F(EstimatorFile, BeforeTrainingDiffuseIsAboutWhatAMatteTexelShows) {
 TEST_F(EstimatorFile, DamagedFilesAreRefusedWithTheirName) {
   const std::string bytes = test::ReadAll(path_);
   for (const double share : {0.0, 0.01, 0.5, 0.99}) {
-    test::WriteAll(path_, bytes.substr(0, static_cast<size_t>(share * static_cast<double>(bytes.size()))));
+    test::WriteAll(path_,
+                   bytes.substr(0, static_cast<size_t>(share * static_cast<double>(bytes.size()))));
     try {
       Estimator::Load(path_);
       ADD_FAILURE() << share;

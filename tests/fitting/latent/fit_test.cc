@@ -8,8 +8,8 @@
 #include "fitting/latent/descent.h"
 #include "fitting/latent/fit_loss.h"
 #include "fitting/latent/levels.h"
-#include "tests/fitting/training/toy_materials.h"
 #include "tests/fitting/bootstrap/synthetic_set.h"
+#include "tests/fitting/training/toy_materials.h"
 
 namespace glint {
 namespace {
@@ -235,7 +235,8 @@ TEST(Levels, EnlargedMapsShowTheSame) {
   const EncodedMaps there = Resized(Resized(textured, 64, 64), 32, 32);
   double error = 0;
   for (size_t i = 0; i < there.planes.size(); ++i) {
-    error += std::abs(there.planes[i] - textured.planes[i]) / static_cast<double>(there.planes.size());
+    error +=
+        std::abs(there.planes[i] - textured.planes[i]) / static_cast<double>(there.planes.size());
   }
   EXPECT_LT(error, 0.03);
 }

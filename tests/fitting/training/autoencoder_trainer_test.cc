@@ -37,10 +37,11 @@ TEST(Trainer, AShortTrainingTakesASeventhOffTheLossOnUnseenMaterials) {
   AutoencoderTrainOptions options = Tiny(150);
   options.principal_start = false;
   double first = 0;
-  const TrainProgress last = TrainAutoencoder(options, {folder.path() / "w.safetensors", {}, {}, false}, Toy,
-                                   Unseen, [&](const TrainProgress& p) {
-                                     if (p.step == 0) first = *p.validation_map_loss;
-                                   });
+  const TrainProgress last =
+      TrainAutoencoder(options, {folder.path() / "w.safetensors", {}, {}, false}, Toy, Unseen,
+                       [&](const TrainProgress& p) {
+                         if (p.step == 0) first = *p.validation_map_loss;
+                       });
   ASSERT_TRUE(last.validation_map_loss.has_value());
   EXPECT_GT(first, 0.1);
   EXPECT_LT(*last.validation_map_loss, 0.86 * first);
@@ -146,8 +147,8 @@ TEST_F(TrainedWeights, AreReadBack) {
 
 TEST_F(TrainedWeights, TruncatedAreRefusedWithTheFilesName) {
   for (const double share : {0.0, 0.01, 0.5, 0.999}) {
-    const std::string message =
-        LoadError(bytes_.substr(0, static_cast<size_t>(share * static_cast<double>(bytes_.size()))));
+    const std::string message = LoadError(
+        bytes_.substr(0, static_cast<size_t>(share * static_cast<double>(bytes_.size()))));
     EXPECT_THAT(message, testing::AllOf(testing::HasSubstr("changed.safetensors"),
                                         testing::HasSubstr("found"), testing::HasSubstr("again")));
   }

@@ -77,7 +77,8 @@ TEST(TrainingMaterials, DependOnTheirNumberAloneAndTakeTheirShareOfThePack) {
   EXPECT_GT(packed, 10);
   EXPECT_LT(packed, 30);
   options.pack_share = 0;
-  EXPECT_EQ(TrainingMaterial(options, &pack, 3).planes, TrainingMaterial(options, nullptr, 3).planes);
+  EXPECT_EQ(TrainingMaterial(options, &pack, 3).planes,
+            TrainingMaterial(options, nullptr, 3).planes);
 }
 
 }  // namespace

@@ -87,7 +87,8 @@ TEST(MaterialPool, MirrorsAndTurnsTakeTheNormalsAlong) {
 }
 
 TEST(MaterialPool, AFailingSourceIsReported) {
-  MaterialPool pool(Small(), [](std::uint64_t) -> SvbrdfMaps { throw std::runtime_error("no"); }, 0);
+  MaterialPool pool(
+      Small(), [](std::uint64_t) -> SvbrdfMaps { throw std::runtime_error("no"); }, 0);
   EXPECT_THROW(Batch(&pool, 0), std::runtime_error);
 }
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fitting/training/random.h"
 #include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/training/random.h"
 
 namespace glint {
 

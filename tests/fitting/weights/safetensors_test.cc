@@ -90,7 +90,8 @@ TEST_F(Safetensors, HeadersThatLieAreRefused) {
   EXPECT_NE(with_header(R"({"a":{"dtype":"F32","shape":[-4],"data_offsets":[0,16]}})"), "");
   EXPECT_NE(with_header(R"({"a":{"dtype":"F99","shape":[4],"data_offsets":[0,16]}})"), "");
   EXPECT_NE(with_header(R"({"a":{"dtype":"F32","shape":[4294967296,4294967296,4],)"
-                        R"("data_offsets":[0,16]}})"), "");
+                        R"("data_offsets":[0,16]}})"),
+            "");
   EXPECT_NE(with_header(R"({"a":{"dtype":"F32","shape":[4],"data_offsets":[16,0]}})"), "");
   EXPECT_NE(with_header(R"({"a":3})"), "");
   EXPECT_NE(with_header("[]"), "");

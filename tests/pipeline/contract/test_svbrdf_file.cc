@@ -49,7 +49,8 @@ TEST(SvbrdfFile, MissingChannelsAndWildValuesAreNamed) {
 TEST(ResampleSvbrdf, KeepsALinearRampAndUnitNormalsBothWays) {
   const SvbrdfMaps maps = Ramp(64, 32);
   for (const auto& [width, height] : {std::pair{16, 8}, std::pair{24, 12}, std::pair{128, 64}}) {
-    // Texels that straddle a boundary are shared between two averages, which bends the ramp a little.
+    // Texels that straddle a boundary are shared between two averages, which bends the ramp a
+    // little.
     const double tolerance = 64 % width == 0 || width > 64 ? 1e-5 : 0.1 / width;
     const SvbrdfMaps resampled = ResampleSvbrdf(maps, width, height);
     for (int x = 2; x < width - 2; ++x) {
