@@ -336,4 +336,18 @@ FitResult FitClassic(const PhotographSet& set, const SvbrdfMaps& start, const Fi
       progress);
 }
 
+FitResult KeepStart(const PhotographSet& set, const SvbrdfMaps& start, int threads) {
+  if (const std::string wrong = set.Check(); !wrong.empty()) {
+    throw std::invalid_argument("fit: " + wrong);
+  }
+  const bool fits = start.width == set.plane.width && start.height == set.plane.height;
+  const EncodedMaps encoded = Resized(EncodeMaps(start), set.plane.width, set.plane.height);
+  const FitLossValue loss = FitLoss(set, threads).Evaluate(encoded, 1, false);
+  FitResult result;
+  result.maps = fits ? start : DecodeMaps(encoded);
+  result.start_loss = result.final_loss = loss.loss;
+  result.view_loss = loss.view_loss;
+  return result;
+}
+
 }  // namespace glint

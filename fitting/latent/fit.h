@@ -71,4 +71,8 @@ FitResult FitLatent(const PhotographSet& set, const SvbrdfMaps& start, const Aut
 FitResult FitClassic(const PhotographSet& set, const SvbrdfMaps& start, const FitOptions& options,
                      const FitProgress& progress = {});
 
+// No fitting: `start` as it is, resampled where its size is not the photographs', and its loss.
+// Throws std::invalid_argument when set.Check() says something.
+FitResult KeepStart(const PhotographSet& set, const SvbrdfMaps& start, int threads);
+
 }  // namespace glint

@@ -189,9 +189,7 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
       bar->Set(done, "log-L1 " + std::to_string(loss));
     };
     if (options.method == "start") {
-      FitOptions none = fit_options;
-      none.coarse_iterations = none.fine_iterations = 0;
-      result.fit = FitClassic(photographs, start, none, progress);
+      result.fit = KeepStart(photographs, start, threads);
     } else if (IsLatent(options)) {
       const Autoencoder network = AsUserError(
           [&] { return Autoencoder::Load(FindModel(kAutoencoderModel, options.weights)); });

@@ -85,6 +85,17 @@ TEST(FitLatent, LowersTheLossEvenWithoutTraining) {
   EXPECT_EQ(result.code.channels, 24);
 }
 
+TEST(KeepStart, ChangesNoTexelOfAStartOfAnySize) {
+  // Larger than the first level of a fit, which would take detail away.
+  const SvbrdfMaps start = ToyMaterial(9, 300, 280);
+  const PhotographSet set = PhotographMaps(ToyMaterial(3, 300, 280), 1);
+  const FitResult kept = KeepStart(set, start, 2);
+  EXPECT_EQ(kept.maps.planes, start.planes);
+  EXPECT_EQ(kept.start_loss, kept.final_loss);
+  EXPECT_NEAR(kept.final_loss, FitLoss(set, 1).Evaluate(EncodeMaps(start), 1, false).loss, 1e-12);
+  EXPECT_EQ(KeepStart(set, ToyMaterial(9, 30, 28), 1).maps.width, 300);
+}
+
 TEST(FitLatent, TuningTheDecoderLowersTheLossBelowTheCodesOwn) {
   const PhotographSet set = PhotographMaps(ToyMaterial(3, 48, 40), 3);
   const SvbrdfMaps start = EstimateMaps(set, 1);
