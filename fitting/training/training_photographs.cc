@@ -43,7 +43,9 @@ Shot DrawShot(Stream* random, LightFalloff falloff, bool plain) {
         distance * d[i] + (apart ? 0.12 * distance / kDirHeight * random->Normal() : 0.0);
   }
   shot.view.light_in_sample_mm[2] = std::max(0.7, shot.view.light_in_sample_mm[2]);
-  const double exposure = plain ? 1 : std::exp(0.35 * random->Normal());
+  // Phones clip: half a stop is usual, a stop and more happens, and what is rough then shows the
+  // same white as a mirror's highlight.
+  const double exposure = plain ? 1 : std::exp(0.15 + 0.55 * random->Normal());
   const double power =
       kPi * exposure * (falloff == LightFalloff::kInverseSquare ? distance * distance : 1);
   shot.view.light_rgb = {power, power, power};
