@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <opencv2/core.hpp>
-#include <thread>
 
+#include "base/parallel/parallel.h"
 #include "calib/corners/markers.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/progress.h"
@@ -69,28 +67,13 @@ std::vector<DetectedPhoto> DetectPhotos(const Capture& capture, const CalibOptio
   cv::setNumThreads(1);  // photographs are what is shared out
   const size_t flash = capture.photos.size(), all = flash + capture.board_photos.size();
   std::vector<DetectedPhoto> photos(all);
-  std::vector<std::exception_ptr> errors(all);
   Progress progress("corners", static_cast<std::int64_t>(all));
-  std::atomic<size_t> next{0};
-  const auto work = [&] {
-    for (size_t i = next++; i < all; i = next++) {
-      const std::string& name = i < flash ? capture.photos[i] : capture.board_photos[i - flash];
-      try {
-        photos[i] = DetectOne(capture, options, name, i >= flash);
-      } catch (...) {
-        errors[i] = std::current_exception();
-      }
-      progress.Advance(1, name);
-    }
-  };
-  std::vector<std::thread> workers;
-  for (int i = 1; i < std::min<int>(threads, static_cast<int>(all)); ++i)
-    workers.emplace_back(work);
-  work();
-  for (std::thread& worker : workers) worker.join();
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
+  ForEachPiece(static_cast<int>(all), threads, [&](int piece) {
+    const size_t i = static_cast<size_t>(piece);
+    const std::string& name = i < flash ? capture.photos[i] : capture.board_photos[i - flash];
+    photos[i] = DetectOne(capture, options, name, i >= flash);
+    progress.Advance(1, name);
+  });
   return photos;
 }
 

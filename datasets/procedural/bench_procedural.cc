@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/parallel/parallel.h"
 #include "datasets/procedural/material.h"
 
 namespace glint {
@@ -41,14 +42,7 @@ double SecondsOfOneThread(int maps) {
 
 double SecondsOfAll(int maps, int threads) {
   const auto start = std::chrono::steady_clock::now();
-  std::atomic<int> next{0};
-  std::vector<std::thread> pool;
-  for (int t = 0; t < threads; ++t) {
-    pool.emplace_back([&] {
-      for (int seed = next++; seed < maps; seed = next++) Make(static_cast<uint64_t>(seed));
-    });
-  }
-  for (std::thread& thread : pool) thread.join();
+  ForEachPiece(maps, threads, [](int seed) { Make(static_cast<uint64_t>(seed)); });
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel/parallel.h"
 #include "datasets/statistics/fourier.h"
 #include "datasets/synth/material_source.h"
-#include "datasets/synth/parallel_rows.h"
 #include "pipeline/contract/errors.h"
 
 namespace glint {
@@ -82,8 +82,8 @@ Population MeasureMaterials(const std::string& name, const std::vector<std::stri
   population.name = name;
   population.materials.resize(materials.size());
   population.statistics.resize(materials.size());
-  ParallelRows(static_cast<int>(materials.size()), threads, [&](int row) {
-    const size_t i = static_cast<size_t>(row);
+  ForEachPiece(static_cast<int>(materials.size()), threads, [&](int piece) {
+    const size_t i = static_cast<size_t>(piece);
     const MaterialSource material = LoadMaterial(materials[i], side);
     population.materials[i] = material.name;
     population.statistics[i] = MeasureMaterial(material.maps);

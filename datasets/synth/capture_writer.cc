@@ -6,8 +6,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/parallel/parallel.h"
 #include "datasets/procedural/random.h"
-#include "datasets/synth/parallel_rows.h"
 #include "datasets/synth/photo_file.h"
 #include "datasets/synth/photo_renderer.h"
 #include "pipeline/contract/calibration.h"
@@ -133,7 +133,7 @@ class PhotoShoot {
     if (!linear) bytes_.resize(static_cast<size_t>(3) * width * height);
     std::atomic<std::int64_t> clipped{0};
     const int bands = (height + kBandRows - 1) / kBandRows;
-    ParallelRows(bands, threads_, [&](int band) {
+    ForEachPiece(bands, threads_, [&](int band) {
       const int first = band * kBandRows;
       clipped += TakeBand(index, first, std::min(kBandRows, height - first));
     });

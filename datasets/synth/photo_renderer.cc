@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string>
 
-#include "datasets/synth/parallel_rows.h"
+#include "base/parallel/parallel.h"
 #include "fitting/reflectance/brdf.h"
 #include "pipeline/contract/errors.h"
 
@@ -50,7 +50,7 @@ PhotoRenderer::PhotoRenderer(const CapturePlan& plan, const SvbrdfMaps& maps, in
   }
   const int columns = plan.camera.width_px + 1;
   normalized_.resize(static_cast<size_t>(columns) * (plan.camera.height_px + 1));
-  ParallelRows(plan.camera.height_px + 1, threads, [&](int row) {
+  ForEachPiece(plan.camera.height_px + 1, threads, [&](int row) {
     for (int column = 0; column < columns; ++column) {
       const auto point = NormalizedFromImage(plan.camera, Vector2d(column, row));
       if (!point) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel/parallel.h"
 #include "fitting/reflectance/brdf.h"
 
 namespace glint {
@@ -140,7 +141,7 @@ void EstimateTexel(const GlobalLobes& lobes, TexelReadings* readings, int row, i
 SvbrdfMaps EstimateMaps(const PhotographSet& set, int threads) {
   const GlobalLobes lobes = FitGlobalLobes(set);
   SvbrdfMaps maps(set.plane.width, set.plane.height);
-  ParallelBlocks(set.plane.height, 8, threads, [&](int begin, int end) {
+  ForEachBlock(set.plane.height, 8, threads, [&](int begin, int end) {
     TexelReadings readings;
     for (int row = begin; row < end; ++row) {
       for (int column = 0; column < set.plane.width; ++column) {

@@ -1,12 +1,10 @@
 #include "fitting/photographs/photographs.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <mutex>
 #include <stdexcept>
-#include <thread>
+
+#include "base/parallel/parallel.h"
 
 namespace glint {
 namespace {
@@ -38,7 +36,7 @@ Photograph Downsample(const Photograph& from, const SamplePlane& big, int width,
   Photograph to{from.view, from.ldr, std::vector<float>(3 * texels), std::vector<float>(texels)};
   const std::vector<Footprint> across = Footprints(big.width, width);
   const std::vector<Footprint> down = Footprints(big.height, height);
-  ParallelBlocks(height, 16, threads, [&](int begin, int end) {
+  ForEachBlock(height, 16, threads, [&](int begin, int end) {
     for (int row = begin; row < end; ++row) {
       for (int column = 0; column < width; ++column) {
         double area = 0, usable = 0, sum[3] = {0, 0, 0};
@@ -113,31 +111,6 @@ PhotographSet Downsampled(const PhotographSet& set, int width, int height, int t
     small.photographs.push_back(Downsample(p, set.plane, width, height, threads));
   }
   return small;
-}
-
-void ParallelBlocks(int count, int block, int threads,
-                    const std::function<void(int begin, int end)>& body) {
-  const int blocks = (count + block - 1) / block;
-  if (threads <= 0) threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  std::atomic<int> next{0};
-  std::exception_ptr failure;
-  std::mutex mutex;
-  const auto work = [&] {
-    for (int b = next++; b < blocks; b = next++) {
-      try {
-        body(b * block, std::min(count, (b + 1) * block));
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-        next = blocks;
-      }
-    }
-  };
-  std::vector<std::thread> workers;
-  for (int t = 1; t < std::min(threads, blocks); ++t) workers.emplace_back(work);
-  work();
-  for (std::thread& worker : workers) worker.join();
-  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace glint

@@ -1,7 +1,6 @@
 // The photographs that maps are fitted to, in memory: rectified, linear, with known geometry.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,10 +29,5 @@ struct PhotographSet {
 // Area averages of the usable texels; a texel's mask becomes the usable share of its area.
 // width and height at most the set's. Works tile by tile; results do not depend on `threads`.
 PhotographSet Downsampled(const PhotographSet& set, int width, int height, int threads);
-
-// Runs body(begin, end) over [0, count) in fixed blocks on `threads` threads (≤ 0: one per core).
-// Exceptions of the body are rethrown here.
-void ParallelBlocks(int count, int block, int threads,
-                    const std::function<void(int begin, int end)>& body);
 
 }  // namespace glint

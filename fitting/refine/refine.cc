@@ -10,12 +10,12 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "base/parallel/parallel.h"
 #include "fitting/refine/confidence.h"
 #include "fitting/refine/gather.h"
 #include "fitting/refine/refine_prior.h"
 #include "fitting/refine/texel_parameters.h"
 #include "fitting/refine/texel_search.h"
-#include "fitting/refine/tiles.h"
 
 namespace glint {
 namespace {
@@ -135,7 +135,7 @@ void Refiner::ForEachTexel(const std::function<void(size_t, Worker*)>& visit) {
   const int pieces = static_cast<int>((texels + kTexelsPerPiece - 1) / kTexelsPerPiece);
   const std::int64_t visits =
       static_cast<std::int64_t>(texels) * (2 + 2 * options_.neighbour_passes);
-  ForEachPiece(pieces, threads_, [&](int piece, int worker) {
+  ForEachPieceByWorker(pieces, threads_, [&](int piece, int worker) {
     const size_t first = static_cast<size_t>(piece) * kTexelsPerPiece;
     const size_t last = std::min(first + kTexelsPerPiece, texels);
     for (size_t texel = first; texel < last; ++texel) visit(texel, workers_[worker].get());
@@ -153,7 +153,7 @@ void Refiner::EstimateNoise() {
   const size_t sampled = std::min(kSampled, texels);
   const PriorWeights weak = HoldToStart(1.0, 0.005, summary.distinct_views, {});
   std::vector<double> variances(sampled, -1.0);
-  ForEachPiece(static_cast<int>(sampled), threads_, [&](int i, int worker) {
+  ForEachPieceByWorker(static_cast<int>(sampled), threads_, [&](int i, int worker) {
     Worker& w = *workers_[worker];
     const size_t texel = texels * i / sampled;
     GatherObservations(problem_, texel, &w.observations);

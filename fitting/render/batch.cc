@@ -4,6 +4,7 @@
 #include <memory>
 #include <new>
 
+#include "base/parallel/parallel.h"
 #include "fitting/reflectance/brdf_constants.h"
 
 namespace glint::kernel {
@@ -102,7 +103,7 @@ std::vector<ViewSums> RunJobs(std::span<const Job<T>> jobs, Mode mode, const Til
 
 TileRunner ThreadRunner(int threads) {
   return [threads](int tiles, const std::function<void(int)>& task) {
-    RunTiles(tiles, threads, task);
+    ForEachPiece(tiles, threads, task);
   };
 }
 

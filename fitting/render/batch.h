@@ -1,15 +1,18 @@
 // Inside of glint_render: runs kernel jobs tile by tile, and makes them from Glint's types.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "fitting/reflectance/convention.h"
 #include "fitting/reflectance/view.h"
 #include "fitting/render/kernel.h"
-#include "fitting/render/tiles.h"
 
 namespace glint::kernel {
+
+// Runs task(tile) once for every tile in [0, tiles), in any order, from any thread.
+using TileRunner = std::function<void(int tiles, const std::function<void(int tile)>& task)>;
 
 // Texel coordinates of a plane, kept for as long as jobs point into them.
 template <class T>

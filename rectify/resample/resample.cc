@@ -1,11 +1,10 @@
 #include "rectify/resample/resample.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <thread>
 
+#include "base/parallel/parallel.h"
 #include "rectify/resample/footprint.h"
 
 namespace glint {
@@ -172,16 +171,8 @@ ResampledView ResampleToPlane(const LinearPhoto& photo, const PlaneProjection& p
 
   const int tiles_x = (plane.width + kTile - 1) / kTile;
   const int tiles = tiles_x * ((plane.height + kTile - 1) / kTile);
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int tile = next++; tile < tiles; tile = next++) {
-      resampler.Tile(tile % tiles_x * kTile, tile / tiles_x * kTile);
-    }
-  };
-  std::vector<std::jthread> helpers;
-  for (int i = 1; i < std::min(options.threads, tiles); ++i) helpers.emplace_back(work);
-  work();
-  helpers.clear();  // joins
+  ForEachPiece(tiles, options.threads,
+               [&](int tile) { resampler.Tile(tile % tiles_x * kTile, tile / tiles_x * kTile); });
   return view;
 }
 

@@ -2,12 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
-#include "fitting/render/tiles.h"
 #include "tests/fitting/render/random_scene.h"
 
 namespace glint {
@@ -100,20 +98,6 @@ TEST(RendererTest, SizesThatDisagreeAreNamed) {
   torn.planes.resize(7);
   EXPECT_THROW(RenderView(torn, {4, 3, 1, 1}, View(), ReflectanceConvention(), image.data()),
                std::invalid_argument);
-}
-
-TEST(TilesTest, EveryTileRunsOnceAndErrorsComeBack) {
-  for (const int threads : {1, 2, 7}) {
-    std::vector<std::atomic<int>> runs(50);
-    RunTiles(50, threads, [&](int tile) { ++runs[tile]; });
-    for (const auto& count : runs) EXPECT_EQ(count, 1);
-    EXPECT_THROW(RunTiles(50, threads,
-                          [](int tile) {
-                            if (tile == 20) throw std::runtime_error("tile 20");
-                          }),
-                 std::runtime_error);
-  }
-  RunTiles(0, 4, [](int) { FAIL() << "no tile to run"; });
 }
 
 }  // namespace
