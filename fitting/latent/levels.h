@@ -13,8 +13,8 @@ namespace glint {
 // first has no side above `coarse_size` (if the full size allows).
 std::vector<std::pair<int, int>> LevelSizes(int width, int height, int coarse_size);
 
-// Encoded maps at another size: bilinear where larger, area average where smaller (slopes average
-// as they should; a normal's length plays no part).
+// Encoded maps at another size: bilinear where larger, tent-averaged where smaller (slopes
+// average as they should; a normal's length plays no part).
 EncodedMaps Resized(const EncodedMaps& maps, int width, int height);
 
 }  // namespace glint

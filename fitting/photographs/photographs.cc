@@ -5,45 +5,26 @@
 #include <stdexcept>
 
 #include "base/parallel/parallel.h"
+#include "base/resampling/resampling.h"
 
 namespace glint {
 namespace {
-
-// Where output texel i of n lies over m input texels, and the weights of those it covers.
-struct Footprint {
-  int first;
-  std::vector<double> weights;
-};
-
-std::vector<Footprint> Footprints(int input, int output) {
-  std::vector<Footprint> all(output);
-  for (int i = 0; i < output; ++i) {
-    const double begin = static_cast<double>(i) * input / output;
-    const double end = static_cast<double>(i + 1) * input / output;
-    Footprint& f = all[i];
-    f.first = static_cast<int>(begin);
-    for (int k = f.first; k < input && k < end; ++k) {
-      f.weights.push_back(std::min(end, k + 1.0) - std::max(begin, static_cast<double>(k)));
-    }
-  }
-  return all;
-}
 
 Photograph Downsample(const Photograph& from, const SamplePlane& big, int width, int height,
                       int threads) {
   const size_t texels = static_cast<size_t>(width) * height;
   const size_t big_texels = static_cast<size_t>(big.width) * big.height;
   Photograph to{from.view, from.ldr, std::vector<float>(3 * texels), std::vector<float>(texels)};
-  const std::vector<Footprint> across = Footprints(big.width, width);
-  const std::vector<Footprint> down = Footprints(big.height, height);
+  const std::vector<Overlaps> across = AreaOverlaps(big.width, width);
+  const std::vector<Overlaps> down = AreaOverlaps(big.height, height);
   ForEachBlock(height, 16, threads, [&](int begin, int end) {
     for (int row = begin; row < end; ++row) {
       for (int column = 0; column < width; ++column) {
         double area = 0, usable = 0, sum[3] = {0, 0, 0};
-        for (size_t u = 0; u < down[row].weights.size(); ++u) {
-          for (size_t v = 0; v < across[column].weights.size(); ++v) {
+        for (size_t u = 0; u < down[row].shares.size(); ++u) {
+          for (size_t v = 0; v < across[column].shares.size(); ++v) {
             const size_t i = (down[row].first + u) * big.width + across[column].first + v;
-            const double weight = down[row].weights[u] * across[column].weights[v];
+            const double weight = down[row].shares[u] * across[column].shares[v];
             const double used = weight * from.mask[i];
             area += weight;
             if (used <= 0) continue;

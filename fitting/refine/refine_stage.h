@@ -12,7 +12,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 1;
+inline constexpr int kRefineVersion = 2;
 
 struct RefineStageOptions {
   RefineOptions refine;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "base/resampling/resampling.h"
 #include "fitting/encoding/encoding.h"
 #include "fitting/weights/safetensors.h"
 
@@ -26,24 +27,38 @@ void CheckEntry(const std::filesystem::path& path, const TensorFile& file, const
   if (found != wanted) Fail(path, key, "\"" + found + "\" where \"" + wanted + "\" is expected");
 }
 
-// Weights of `count` output texels over a window of `window`: output i covers
-// [i, i + 1)·window/count.
-struct Span {
-  int first, last;  // inclusive
-  double first_weight, last_weight;
-};
-
-Span SpanOf(int i, int window, int count) {
-  const double step = static_cast<double>(window) / count;
-  const double begin = i * step, end = (i + 1) * step;
-  const int first = static_cast<int>(begin);
-  const int last = std::min(window - 1, static_cast<int>(std::ceil(end - 1e-9)) - 1);
-  if (first == last) return {first, last, end - begin, end - begin};
-  return {first, last, first + 1 - begin, end - last};
+// The window's maps at the pack's own resolution.
+SvbrdfMaps Window(const PackedMaterial& material, int column, int row, int window) {
+  EncodedMaps cut(window, window);
+  for (int k = 0; k < kEncodedChannels; ++k) {
+    for (int y = 0; y < window; ++y) {
+      const std::int16_t* from =
+          material.values.data() +
+          (static_cast<size_t>(k) * material.size + row + y) * material.size + column;
+      float* to = cut.planes.data() + (static_cast<size_t>(k) * window + y) * window;
+      for (int x = 0; x < window; ++x) to[x] = from[x] / kScale;
+    }
+  }
+  return DecodeMaps(cut);
 }
 
-double WeightIn(const Span& span, int k) {
-  return k == span.first ? span.first_weight : k == span.last ? span.last_weight : 1.0;
+void SlopesFromNormals(SvbrdfMaps* maps) {
+  for (size_t i = 0; i < maps->texels(); ++i) {
+    const float z = maps->plane(kNormalZ)[i];
+    maps->plane(kNormalX)[i] /= z;
+    maps->plane(kNormalY)[i] /= z;
+    maps->plane(kNormalZ)[i] = 1;
+  }
+}
+
+void NormalsFromSlopes(SvbrdfMaps* maps) {
+  for (size_t i = 0; i < maps->texels(); ++i) {
+    const float sx = maps->plane(kNormalX)[i], sy = maps->plane(kNormalY)[i];
+    const float z = 1 / std::sqrt(1 + sx * sx + sy * sy);
+    maps->plane(kNormalX)[i] = sx * z;
+    maps->plane(kNormalY)[i] = sy * z;
+    maps->plane(kNormalZ)[i] = z;
+  }
 }
 
 }  // namespace
@@ -97,49 +112,13 @@ SvbrdfMaps CutMaterial(const PackedMaterial& material, int column, int row, int 
       row + window > material.size) {
     throw std::invalid_argument("material pack: the window does not lie in " + material.name);
   }
-  EncodedMaps cut(window, window);
-  for (int k = 0; k < kEncodedChannels; ++k) {
-    for (int y = 0; y < window; ++y) {
-      const std::int16_t* from =
-          material.values.data() +
-          (static_cast<size_t>(k) * material.size + row + y) * material.size + column;
-      float* to = cut.planes.data() + (static_cast<size_t>(k) * window + y) * window;
-      for (int x = 0; x < window; ++x) to[x] = from[x] / kScale;
-    }
-  }
-  SvbrdfMaps fine = DecodeMaps(cut);
+  SvbrdfMaps fine = Window(material, column, row, window);
   if (window == size) return fine;
-  // Slopes average, not normals.
-  for (size_t i = 0; i < fine.texels(); ++i) {
-    const float z = fine.plane(kNormalZ)[i];
-    fine.plane(kNormalX)[i] /= z;
-    fine.plane(kNormalY)[i] /= z;
-    fine.plane(kNormalZ)[i] = 1;
-  }
-  std::vector<Span> spans;
-  for (int i = 0; i < size; ++i) spans.push_back(SpanOf(i, window, size));
+  SlopesFromNormals(&fine);  // slopes average, not normals
+  const std::vector<Taps> taps = AreaTaps(window, size);
   SvbrdfMaps maps(size, size);
-  const double area = static_cast<double>(window) / size * window / size;
-  for (int p = 0; p < kSvbrdfPlanes; ++p) {
-    for (int y = 0; y < size; ++y) {
-      for (int x = 0; x < size; ++x) {
-        double sum = 0;
-        for (int v = spans[y].first; v <= spans[y].last; ++v) {
-          for (int u = spans[x].first; u <= spans[x].last; ++u) {
-            sum += WeightIn(spans[y], v) * WeightIn(spans[x], u) * fine.at(p, v, u);
-          }
-        }
-        maps.at(p, y, x) = static_cast<float>(sum / area);
-      }
-    }
-  }
-  for (size_t i = 0; i < maps.texels(); ++i) {
-    const float sx = maps.plane(kNormalX)[i], sy = maps.plane(kNormalY)[i];
-    const float z = 1 / std::sqrt(1 + sx * sx + sy * sy);
-    maps.plane(kNormalX)[i] = sx * z;
-    maps.plane(kNormalY)[i] = sy * z;
-    maps.plane(kNormalZ)[i] = z;
-  }
+  maps.planes = ResamplePlanes(fine.planes, window, window, taps, taps);
+  NormalsFromSlopes(&maps);
   return maps;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/resampling/resampling.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
 
@@ -46,33 +47,8 @@ void Normalise(SvbrdfMaps* maps) {
   }
 }
 
-// Weights with which source samples make target sample i, in one dimension: area average when
-// shrinking, linear interpolation when growing.
-struct Taps {
-  int first = 0;
-  std::vector<float> weights;
-};
-
-std::vector<Taps> MakeTaps(int from, int to) {
-  std::vector<Taps> taps(static_cast<size_t>(to));
-  const double scale = static_cast<double>(from) / to;
-  for (int i = 0; i < to; ++i) {
-    Taps& tap = taps[static_cast<size_t>(i)];
-    if (scale > 1) {
-      const double low = i * scale, high = (i + 1) * scale;
-      tap.first = static_cast<int>(low);
-      for (int s = tap.first; s < std::min(from, static_cast<int>(std::ceil(high - 1e-9))); ++s) {
-        const double overlap = std::min(high, s + 1.0) - std::max<double>(low, s);
-        tap.weights.push_back(static_cast<float>(overlap / scale));
-      }
-    } else {
-      const double centre = std::clamp((i + 0.5) * scale - 0.5, 0.0, from - 1.0);
-      tap.first = std::min(static_cast<int>(centre), std::max(0, from - 2));
-      const float second = static_cast<float>(centre - tap.first);
-      tap.weights = from > 1 ? std::vector<float>{1 - second, second} : std::vector<float>{1.0f};
-    }
-  }
-  return taps;
+std::vector<Taps> TapsBetween(int from, int to) {
+  return from > to ? AreaTaps(from, to) : TentTaps(from, to);
 }
 
 }  // namespace
@@ -113,34 +89,9 @@ SvbrdfMaps ReadSvbrdf(const std::filesystem::path& file, ReflectanceConvention* 
 
 SvbrdfMaps ResampleSvbrdf(const SvbrdfMaps& maps, int width, int height) {
   if (width == maps.width && height == maps.height) return maps;
-  const std::vector<Taps> columns = MakeTaps(maps.width, width);
-  const std::vector<Taps> rows = MakeTaps(maps.height, height);
   SvbrdfMaps result(width, height);
-  std::vector<float> narrow(static_cast<size_t>(width) * maps.height);
-  for (int p = 0; p < kSvbrdfPlanes; ++p) {
-    const float* source = maps.plane(p).data();
-    for (int y = 0; y < maps.height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const Taps& tap = columns[static_cast<size_t>(x)];
-        float sum = 0;
-        for (size_t k = 0; k < tap.weights.size(); ++k) {
-          sum += tap.weights[k] * source[static_cast<size_t>(y) * maps.width + tap.first + k];
-        }
-        narrow[static_cast<size_t>(y) * width + x] = sum;
-      }
-    }
-    auto target = result.plane(p);
-    for (int y = 0; y < height; ++y) {
-      const Taps& tap = rows[static_cast<size_t>(y)];
-      for (int x = 0; x < width; ++x) {
-        float sum = 0;
-        for (size_t k = 0; k < tap.weights.size(); ++k) {
-          sum += tap.weights[k] * narrow[(tap.first + k) * width + x];
-        }
-        target[static_cast<size_t>(y) * width + x] = sum;
-      }
-    }
-  }
+  result.planes = ResamplePlanes(maps.planes, maps.width, maps.height,
+                                 TapsBetween(maps.width, width), TapsBetween(maps.height, height));
   Normalise(&result);
   return result;
 }

@@ -1,0 +1,37 @@
+// Regular grids of samples at another size, one axis after the other. Sample i of n covers
+// [i, i + 1)/n of the axis.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace glint {
+
+// The input samples that make one output sample: first, first + 1, …, and their weights.
+struct Taps {
+  int first = 0;
+  std::vector<float> weights;  // sum: 1
+};
+
+// The input samples that lie in one output sample, and how much of each.
+struct Overlaps {
+  int first = 0;
+  std::vector<double> shares;  // 0 … 1; sum: input / output
+};
+
+// One entry per output sample; 1 ≤ output ≤ input. For averages that weigh samples by more than
+// their area.
+std::vector<Overlaps> AreaOverlaps(int input, int output);
+
+// Area average: AreaOverlaps() as weights.
+std::vector<Taps> AreaTaps(int input, int output);
+
+// Triangle filter as wide as two samples of the coarser grid: bilinear up, tent-averaged down.
+std::vector<Taps> TentTaps(int input, int output);
+
+// `planes` holds blocks of width × height samples, row by row; returns as many blocks of
+// across.size() × down.size(), in the same order.
+std::vector<float> ResamplePlanes(std::span<const float> planes, int width, int height,
+                                  std::span<const Taps> across, std::span<const Taps> down);
+
+}  // namespace glint
