@@ -171,7 +171,9 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_al
     const double e = irradiance[v];
     const double f = specular + (1.0 - specular) * fresnel[v];
     const double received = e * nl[v] + ambient[v];
-    const double offset_radiance = lobe * received + e * f * s[v] + kLogOffset;
+    const double surround = ambient[v] * kInversePi;  // as the specular part reflects it
+    const double offset_radiance =
+        lobe * received + e * f * s[v] + specular * surround + kLogOffset;
 
     const double free = Log(offset_radiance) - target[v];
     const double error = free < ceiling[v] ? free : ceiling[v];
@@ -192,7 +194,7 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_al
     by_y[v] = chain * (diffuse_normal * nl_y[v] + specular_normal * s_y[v]);
     by_r[v] = chain * (specular_normal * s_r[v]);
     by_d[v] = chain * (by_diffuse_lobe * received);
-    by_s[v] = chain * (e * s[v] * (1.0 - fresnel[v]) + lobe_by_specular * received);
+    by_s[v] = chain * (e * s[v] * (1.0 - fresnel[v]) + surround + lobe_by_specular * received);
   }
 }
 
@@ -300,7 +302,7 @@ struct AlbedoSums {
     const Lanes w = load(inverse + v);
     const Lanes usable = load(rows.row(channel, KernelRows::kResidual) + v);
     const Lanes a = w * (e * nl + ambient) * kInversePi;
-    const Lanes b = w * e * s * (1.0 - fresnel);
+    const Lanes b = w * (e * s * (1.0 - fresnel) + ambient * kInversePi);
     const Lanes y = usable - w * (e * s * fresnel + kLogOffset);
     aa += a * a;
     ab += a * b;

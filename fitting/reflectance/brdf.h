@@ -6,7 +6,10 @@
 //   G = G1(NoL)·G1(NoV),  G1(x) = x / (x(1−k) + k),  k = α/2
 //   F = k_s + (1−k_s)·2^(VoH(−5.55473·VoH − 6.98316))
 //   f = w·k_d/π + D·G·F / (4·NoL·NoV),   w = 1 or 1−k_s (DiffuseWeight)
-//   radiance = exposure·(E·f·NoL + ambient·w·k_d/π)
+//   radiance = exposure·(E·f·NoL + ambient·(w·k_d + k_s)/π)
+//
+// The ambient term is a uniform surround reflected by a flat surface, its specular part without
+// Fresnel's rise toward grazing views: what a metal shows of a room.
 //
 // The scalar T may be float, double or an automatic-differentiation type (ceres::Jet).
 //
@@ -96,6 +99,12 @@ T DiffuseLobe(const TexelSvbrdf<T>& texel, DiffuseWeight weight, int channel) {
   return weight == DiffuseWeight::kOne ? lobe : lobe * (T(1) - texel.specular[channel]);
 }
 
+// What is reflected of a uniform surround: radiance over irradiance, of one channel.
+template <class T>
+T AmbientLobe(const TexelSvbrdf<T>& texel, DiffuseWeight weight, int channel) {
+  return DiffuseLobe(texel, weight, channel) + texel.specular[channel] * T(kInversePi);
+}
+
 // The BRDF f, per channel [1/sr]. `geometry` needs its directions only.
 template <class T>
 void EvaluateBrdf(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
@@ -115,7 +124,7 @@ void ShadeRadiance(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry
   EvaluateBrdf(texel, geometry, weight, radiance);
   for (int c = 0; c < 3; ++c) {
     radiance[c] = geometry.irradiance[c] * radiance[c] * n_dot_l +
-                  geometry.ambient[c] * DiffuseLobe(texel, weight, c);
+                  geometry.ambient[c] * AmbientLobe(texel, weight, c);
   }
 }
 

@@ -95,10 +95,11 @@ void ShadeTexelCompact(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geom
     const T fresnel = texel.specular[c] + (T(1) - texel.specular[c]) * geometry.fresnel;
     const T diffuse = DiffuseLobe(texel, weight, c);
     const T received = (irradiance * n_dot_l + geometry.ambient[c]) * T(kInversePi);
-    radiance[c] =
-        irradiance * (diffuse * n_dot_l + lobe.value * fresnel) + geometry.ambient[c] * diffuse;
+    radiance[c] = irradiance * (diffuse * n_dot_l + lobe.value * fresnel) +
+                  geometry.ambient[c] * AmbientLobe(texel, weight, c);
     derivatives->diffuse[c] = received;
-    derivatives->specular[c] = irradiance * lobe.value * (T(1) - geometry.fresnel);
+    derivatives->specular[c] =
+        irradiance * lobe.value * (T(1) - geometry.fresnel) + geometry.ambient[c] * T(kInversePi);
     if (weight == DiffuseWeight::kOneMinusSpecular) {
       derivatives->diffuse[c] *= T(1) - texel.specular[c];
       derivatives->specular[c] -= received * texel.diffuse[c];

@@ -50,7 +50,7 @@ template <class T>
 GLINT_INLINE VectorOf<T> Radiance(const View<T>& view, const Directions<T>& d, const Shading<T>& s,
                                   int c) {
   const VectorOf<T> lit = s.radiance[c] * (d.falloff * view.exposed_light[c]);
-  return Fma(s.lobe[c], Broadcast(view.exposed_ambient_over_pi[c]), lit);
+  return Fma(s.ambient_lobe[c], Broadcast(view.exposed_ambient_over_pi[c]), lit);
 }
 
 // The adjoint of Radiance: gradients of the texels, and of the view's light and ambient.
@@ -62,7 +62,7 @@ GLINT_INLINE void PullBack(const Job<T>& job, const View<T>& view, const Texels<
   for (int c = 0; c < 3; ++c) {
     const VectorOf<T> by_light = by_image[c] * d.falloff;
     sums[2 + c] = Fma(by_light, s.radiance[c], sums[2 + c]);
-    sums[5 + c] = Fma(by_image[c], s.lobe[c], sums[5 + c]);
+    sums[5 + c] = Fma(by_image[c], s.ambient_lobe[c], sums[5 + c]);
     by_radiance[c] = by_light * view.exposed_light[c];
     by_ambient_lobe[c] = by_image[c] * view.exposed_ambient_over_pi[c];
   }

@@ -32,6 +32,7 @@ struct Shading {
   VectorOf<T> specular;        // the factor of F
   VectorOf<T> cosine_over_pi;  // NoL/π
   VectorOf<T> lobe[3];         // w·k_d
+  VectorOf<T> ambient_lobe[3];  // w·k_d + k_s
   VectorOf<T> fresnel[3];
   VectorOf<T> radiance[3];  // for irradiance 1 and no ambient
 };
@@ -107,14 +108,15 @@ GLINT_INLINE Shading<T> Shade(const Texels<T>& texels, const Directions<T>& d,
   for (int c = 0; c < 3; ++c) {
     s.lobe[c] = texels.diffuse[c];
     if (one_minus_specular) s.lobe[c] *= one - texels.specular[c];
+    s.ambient_lobe[c] = s.lobe[c] + texels.specular[c];
     s.fresnel[c] = Fma(texels.specular[c], one - d.fresnel, d.fresnel);
     s.radiance[c] = Fma(s.specular, s.fresnel[c], s.lobe[c] * s.cosine_over_pi);
   }
   return s;
 }
 
-// Adds to gradient[kPlanes], given for each channel ∂loss/∂(Shading::radiance) and the part of
-// ∂loss/∂lobe that comes through the ambient term.
+// Adds to gradient[kPlanes], given for each channel ∂loss/∂(Shading::radiance) and
+// ∂loss/∂(Shading::ambient_lobe).
 template <class T>
 GLINT_INLINE void AddAdjoint(const Texels<T>& texels, const Directions<T>& d, const Shading<T>& s,
                              bool one_minus_specular, const VectorOf<T>* by_radiance,
@@ -126,7 +128,7 @@ GLINT_INLINE void AddAdjoint(const Texels<T>& texels, const Directions<T>& d, co
   const V by_f0 = s.specular * (one - d.fresnel);
   for (int c = 0; c < 3; ++c) {
     V by_lobe = Fma(by_radiance[c], s.cosine_over_pi, by_ambient_lobe[c]);
-    gradient[6 + c] = Fma(by_radiance[c], by_f0, gradient[6 + c]);
+    gradient[6 + c] = Fma(by_radiance[c], by_f0, gradient[6 + c]) + by_ambient_lobe[c];
     if (one_minus_specular) {
       gradient[6 + c] = Fma(-by_lobe, texels.diffuse[c], gradient[6 + c]);
       by_lobe *= one - texels.specular[c];

@@ -97,7 +97,7 @@ Tensor RenderReference(const Tensor& maps, const Tensor& light_rgb, const ViewBa
   if (batch.convention.falloff == LightFalloff::kInverseSquare) {
     irradiance = irradiance / light_distance_squared;
   }
-  const Tensor ambient = PerView(batch, maps, &View::ambient_rgb) * lobe;
+  const Tensor ambient = PerView(batch, maps, &View::ambient_rgb) * (lobe + specular * kInversePi);
   return Exposures(batch, maps) * (irradiance * brdf * n_dot_l + ambient);
 }
 

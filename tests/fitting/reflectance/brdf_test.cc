@@ -84,7 +84,8 @@ std::array<double, 3> TextbookRadiance(const Point& point, DiffuseWeight weight)
     const double f = f0 + (1 - f0) * std::pow(2.0, voh * (-5.55473 * voh - 6.98316));
     const double w = weight == DiffuseWeight::kOne ? 1 : 1 - f0;
     const double brdf = w * s.diffuse[c] / kPi + d * g1(nol) * g1(nov) * f / (4 * nol * nov);
-    radiance[c] = g.irradiance[c] * brdf * nol + g.ambient[c] * w * s.diffuse[c] / kPi;
+    radiance[c] =
+        g.irradiance[c] * brdf * nol + g.ambient[c] * (w * s.diffuse[c] + s.specular[c]) / kPi;
   }
   return radiance;
 }
