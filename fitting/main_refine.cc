@@ -15,6 +15,15 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined) {
       fmt::format("refine: {}x{} texels from {} views in {:.1f} s ({:.0f} texels/s)\n  {}\n",
                   refined.width, refined.height, refined.views.size(), refined.seconds,
                   texels / refined.seconds, refined.summary.BriefReport());
+  const Json& correction = refined.metrics["correction"];
+  if (refined.correction.taken) {
+    result.text += fmt::format(
+        "  views corrected: lights turned by {:.1f} deg, pictures moved by {:.2f} texels, ambient "
+        "light {:.1f} % of the flash (means)\n",
+        correction["light_turned_deg"].get<double>(),
+        correction["registration_texel"].get<double>(),
+        100 * correction["ambient_of_flash"].get<double>());
+  }
   for (const Json& view : refined.metrics["views"]) {
     result.text += fmt::format("  {}  {:<28} loss {}\n", view["name"].get<std::string>(),
                                view["photo"].get<std::string>(), view["log_l1"].dump());

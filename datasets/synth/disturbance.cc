@@ -41,37 +41,6 @@ double WhitePlaneRadiance(const View& view, const SamplePlane& plane,
   return sum / static_cast<double>(rgb.size());
 }
 
-// Weights of Catmull and Rom's cubic for the samples at −1, 0, 1, 2.
-void CubicWeights(double t, double weights[4]) {
-  weights[0] = 0.5 * t * (-1 + t * (2 - t));
-  weights[1] = 0.5 * (2 + t * t * (-5 + 3 * t));
-  weights[2] = 0.5 * t * (1 + t * (4 - 3 * t));
-  weights[3] = 0.5 * t * t * (t - 1);
-}
-
-float LookUp(const float* plane, int width, int height, double column, double row) {
-  const double c0 = std::floor(column), r0 = std::floor(row);
-  double across[4], down[4];
-  CubicWeights(column - c0, across);
-  CubicWeights(row - r0, down);
-  double sum = 0;
-  for (int j = 0; j < 4; ++j) {
-    const int r = std::clamp(static_cast<int>(r0) + j - 1, 0, height - 1);
-    double line = 0;
-    for (int i = 0; i < 4; ++i) {
-      const int c = std::clamp(static_cast<int>(c0) + i - 1, 0, width - 1);
-      line += across[i] * plane[static_cast<ptrdiff_t>(r) * width + c];
-    }
-    sum += down[j] * line;
-  }
-  return static_cast<float>(std::max(sum, 0.0));
-}
-
-double Bilinear(const double corners[4], double u, double v) {
-  return (1 - v) * ((1 - u) * corners[0] + u * corners[1]) +
-         v * ((1 - u) * corners[2] + u * corners[3]);
-}
-
 }  // namespace
 
 Vec3d TurnLight(const Vec3d& light_mm, double angle_deg, double azimuth_rad) {
@@ -117,23 +86,6 @@ EnvironmentLight ScaledEnvironment(const Disturbance& disturbance, const View& f
   environment.Scale(disturbance.environment_percent / 100 *
                     WhitePlaneRadiance(unexposed, plane, convention) / reflected);
   return environment;
-}
-
-void ShiftPicture(const CornerShifts& shifts, int width, int height,
-                  std::vector<float>* rgb_planar) {
-  const std::vector<float> source = *rgb_planar;
-  const size_t texels = static_cast<size_t>(width) * height;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const double u = (x + 0.5) / width, v = (y + 0.5) / height;
-      const double column = x + Bilinear(shifts.column, u, v);
-      const double row = y + Bilinear(shifts.row, u, v);
-      for (size_t c = 0; c < 3; ++c) {
-        (*rgb_planar)[c * texels + static_cast<size_t>(y) * width + x] =
-            LookUp(source.data() + c * texels, width, height, column, row);
-      }
-    }
-  }
 }
 
 }  // namespace glint

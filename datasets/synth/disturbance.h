@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "datasets/synth/environment_light.h"
+#include "fitting/photographs/picture_shift.h"
 #include "fitting/reflectance/view.h"
 #include "pipeline/contract/rectified_set.h"
 
@@ -34,12 +35,6 @@ struct Disturbance {
 // direction; its distance stays.
 Vec3d TurnLight(const Vec3d& light_mm, double angle_deg, double azimuth_rad);
 
-// Where the corners of a picture (top left, top right, bottom left, bottom right) are found: off by
-// (column, row) texels.
-struct CornerShifts {
-  double column[4] = {0, 0, 0, 0}, row[4] = {0, 0, 0, 0};
-};
-
 // The disturbance of view `index` of the set with `seed`; views of longer sets are the same.
 struct ViewDisturbance {
   double light_azimuth_rad = 0;
@@ -51,9 +46,5 @@ ViewDisturbance DrawDisturbance(const Disturbance& disturbance, std::uint64_t se
 EnvironmentLight ScaledEnvironment(const Disturbance& disturbance, const View& first,
                                    const SamplePlane& plane,
                                    const ReflectanceConvention& convention);
-
-// `rgb_planar` looked up where the shifts say (Catmull-Rom, edges repeated, not below 0).
-void ShiftPicture(const CornerShifts& shifts, int width, int height,
-                  std::vector<float>* rgb_planar);
 
 }  // namespace glint

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "fitting/reflectance/brdf.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/progress.h"
@@ -27,28 +28,20 @@ std::vector<RectifiedView> ChooseViews(const RectifiedSet& set, const RefineStar
   return SelectViews(set, only, options.exclude);
 }
 
-// The photographs in memory, as the problem's spans see them.
-struct LoadedPhotographs {
-  std::vector<RectifiedImage> images;
-  RefineProblem problem;
-};
-
-LoadedPhotographs Load(const RectifiedSet& set, const std::vector<RectifiedView>& views,
-                       const ReflectanceConvention& convention, const Vec3d& light_scale_rgb) {
-  LoadedPhotographs loaded;
-  loaded.images.reserve(views.size());
-  loaded.problem.plane = set.plane;
-  loaded.problem.convention = convention;
+PhotographSet Load(const RectifiedSet& set, const std::vector<RectifiedView>& views,
+                   const ReflectanceConvention& convention, const Vec3d& light_scale_rgb) {
+  PhotographSet loaded;
+  loaded.plane = set.plane;
+  loaded.convention = convention;
   for (const RectifiedView& view : views) {
-    loaded.images.push_back(ReadRectifiedImage(set, view));
-    AdmitClippedTexels(view, &loaded.images.back());
-    const RectifiedImage& image = loaded.images.back();
-    RefineView& added = loaded.problem.views.emplace_back();
+    RectifiedImage image = ReadRectifiedImage(set, view);
+    AdmitClippedTexels(view, &image);
+    Photograph& added = loaded.photographs.emplace_back();
     added.view = view.view;
     for (int c = 0; c < 3; ++c) added.view.light_rgb[c] *= light_scale_rgb[c];
     added.ldr = view.ldr;
-    added.rgb = image.rgb;
-    added.mask = image.mask;
+    added.rgb = std::move(image.rgb);
+    added.mask = std::move(image.mask);
   }
   return loaded;
 }
@@ -80,6 +73,52 @@ Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& vie
           {"views", losses}};
 }
 
+double MeanShift(const CornerShifts& shifts) {
+  double squares = 0;
+  for (int i = 0; i < 4; ++i) {
+    squares += shifts.column[i] * shifts.column[i] + shifts.row[i] * shifts.row[i];
+  }
+  return std::sqrt(squares / 4);
+}
+
+// What was found and taken: data.corrections, by view, and its sizes among the metrics.
+void AddCorrections(const CorrectionResult& found, const RectifiedSet& set,
+                    const std::vector<RectifiedView>& views, RefineStageResult* result) {
+  result->metrics["correction"] = {
+      {"taken", found.taken}, {"cost_before", found.cost_before}, {"cost_after", found.cost_after}};
+  if (!found.taken) return;
+  Json entries = Json::array();
+  double turned_deg = 0, shifted = 0;
+  for (size_t i = 0; i < views.size(); ++i) {
+    const ViewCorrection& c = found.corrections[i];
+    turned_deg += LightTurnedDeg(views[i].view, c) / static_cast<double>(views.size());
+    shifted += MeanShift(c.shifts) / static_cast<double>(views.size());
+    Json columns = Json::array(), rows = Json::array();
+    for (int k = 0; k < 4; ++k) {
+      columns.push_back(c.shifts.column[k]);
+      rows.push_back(c.shifts.row[k]);
+    }
+    entries.push_back({{"name", views[i].name},
+                       {"light_offset_mm", c.light_offset_mm},
+                       {"ambient_rgb", c.ambient_rgb},
+                       {"exposure", c.exposure},
+                       {"corner_columns_texel", columns},
+                       {"corner_rows_texel", rows}});
+  }
+  result->data["corrections"] = entries;
+  const Vec3d& ambient = found.corrections[0].ambient_rgb;
+  const TexelGeometry<double> centre =
+      TexelGeometryInView(views[0].view, set.convention.falloff, 0.0, 0.0);
+  double flash = 0, room = 0;
+  for (size_t k = 0; k < 3; ++k) {
+    flash += centre.irradiance[k] / views[0].view.exposure;
+    room += ambient[k];
+  }
+  result->metrics["correction"].update({{"light_turned_deg", turned_deg},
+                                        {"registration_texel", shifted},
+                                        {"ambient_of_flash", room / flash}});
+}
+
 Image ConfidenceImage(const RefineResult& result) {
   Image image(result.maps.width, result.maps.height, kConfidenceChannels);
   image.samples = result.confidence;
@@ -100,6 +139,10 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "factor on the weight that holds texels to their start; 0: none");
   set->AddRange("robust-scale", &refine->robust_scale, 1e-3, 100,
                 "residuals (logarithms) beyond it count linearly");
+  set->AddChoice("correct-views", &options->correction.when, {"auto", "always", "never"},
+                 "find from the photographs where lights, registration and ambient light are off");
+  set->Add("correct-exposures", &options->correction.view.exposure,
+           "let corrections change the photographs' relative exposures too");
   set->Add("views", &options->views, "views to use, by name or photo (default: those of fit)");
   set->Add("exclude", &options->exclude, "views to keep back, by name or photo");
   set->Add("from", &options->from, "maps to start from, an svbrdf.exr (default: the fit's)");
@@ -142,19 +185,24 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
     maps = ResampleSvbrdf(maps, set.plane.width, set.plane.height);
   }
   const std::vector<RectifiedView> views = ChooseViews(set, start, options);
-  const LoadedPhotographs loaded = Load(set, views, convention, start.light_scale_rgb);
+  PhotographSet photographs = Load(set, views, convention, start.light_scale_rgb);
 
   const auto began = std::chrono::steady_clock::now();
   RefineResult refined;
+  RefineStageResult result;
+  result.correction =
+      FindCorrections(photographs, maps, options.refine, options.correction, threads);
+  if (result.correction.taken) {
+    photographs = Corrected(photographs, result.correction.corrections, threads);
+  }
   {
     std::unique_ptr<Progress> bar;
-    refined = Refine(loaded.problem, maps, options.refine, threads,
+    refined = Refine(ProblemOf(photographs), maps, options.refine, threads,
                      [&](std::int64_t done, std::int64_t total) {
                        if (!bar) bar = std::make_unique<Progress>("refine", total);
                        bar->Set(done);
                      });
   }
-  RefineStageResult result;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   result.summary = refined.summary;
   result.width = maps.width;
@@ -169,6 +217,7 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
                  {"views", result.views},
                  {"method", "refined"}};
   result.metrics = Metrics(refined.summary, views);
+  AddCorrections(result.correction, set, views, &result);
   stage->Commit(result.data, result.metrics);
   return result;
 }

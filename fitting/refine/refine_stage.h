@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fitting/refine/correct_views.h"
 #include "fitting/refine/refine.h"
 #include "pipeline/contract/stage.h"
 
@@ -16,6 +17,7 @@ inline constexpr int kRefineVersion = 2;
 
 struct RefineStageOptions {
   RefineOptions refine;
+  CorrectionOptions correction;
   std::vector<std::string> views;    // names of those to use; empty: those that fit used
   std::vector<std::string> exclude;  // names of those kept back
   std::filesystem::path from;        // maps to start from (svbrdf.exr); empty: the result of fit
@@ -38,6 +40,7 @@ RefineStart ResolveRefineStart(const std::filesystem::path& work,
 struct RefineStageResult {
   Json data, metrics;
   RefineSummary summary;
+  CorrectionResult correction;
   std::vector<std::string> views;
   int width = 0, height = 0;
   double seconds = 0;  // of refinement itself; for a person only

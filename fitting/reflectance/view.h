@@ -11,7 +11,8 @@ using Vec3d = std::array<double, 3>;  // plain, so that the renderer and trainer
 
 // One view of the sample. Sample frame: millimetres, origin at the sample's centre, x right, y up,
 // z toward the viewer. Observed radiance of a texel is
-//   exposure · ( E·f·NoL + ambient_rgb · (w·k_d + k_s)/π ),   E from light_rgb by the convention's falloff,
+//   exposure · ( E·f·NoL + ambient_rgb · (w·k_d + k_s)/π ),   E from light_rgb by the convention's
+//   falloff,
 // where w is the convention's diffuse weight.
 struct View {
   Vec3d camera_in_sample_mm{0, 0, 0};

@@ -28,10 +28,10 @@ struct Shading {
   VectorOf<T> n_dot_l, n_dot_v, n_dot_h;  // clamped
   VectorOf<T> n_dot_l_free, n_dot_v_free, n_dot_h_free;
   VectorOf<T> alpha, k, t_free, inverse_t, inverse_a, inverse_b, inverse_ab;
-  VectorOf<T> ratio;           // α/t
-  VectorOf<T> specular;        // the factor of F
-  VectorOf<T> cosine_over_pi;  // NoL/π
-  VectorOf<T> lobe[3];         // w·k_d
+  VectorOf<T> ratio;            // α/t
+  VectorOf<T> specular;         // the factor of F
+  VectorOf<T> cosine_over_pi;   // NoL/π
+  VectorOf<T> lobe[3];          // w·k_d
   VectorOf<T> ambient_lobe[3];  // w·k_d + k_s
   VectorOf<T> fresnel[3];
   VectorOf<T> radiance[3];  // for irradiance 1 and no ambient

@@ -115,31 +115,6 @@ TEST(Disturbance, RegistrationMovesCornersByItsStrength) {
   EXPECT_NEAR(std::sqrt(squares / (4 * kViews)), 0.5, 0.02);
 }
 
-TEST(ShiftPicture, MovesARampByTheShift) {
-  constexpr int kSize = 16;
-  std::vector<float> ramp(3 * kSize * kSize);
-  for (int c = 0; c < 3; ++c) {
-    for (int y = 0; y < kSize; ++y) {
-      for (int x = 0; x < kSize; ++x) {
-        ramp[static_cast<size_t>((c * kSize + y) * kSize + x)] = static_cast<float>(10 * x + y);
-      }
-    }
-  }
-  CornerShifts shifts;
-  for (int k = 0; k < 4; ++k) {
-    shifts.column[k] = 0.3;
-    shifts.row[k] = -0.2;
-  }
-  const std::vector<float> before = ramp;
-  ShiftPicture(shifts, kSize, kSize, &ramp);
-  for (int y = 3; y < kSize - 3; ++y) {
-    for (int x = 3; x < kSize - 3; ++x) {
-      const auto i = static_cast<size_t>(y * kSize + x);
-      EXPECT_NEAR(ramp[i] - before[i], 10 * 0.3 - 0.2, 1e-4);
-    }
-  }
-}
-
 TEST(PlanViews, WithoutATopViewAllCamerasAreTilted) {
   ViewSetOptions options;
   options.count = 40;

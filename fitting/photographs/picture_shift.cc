@@ -1,0 +1,110 @@
+#include "fitting/photographs/picture_shift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace glint {
+namespace {
+
+// Weights of Catmull and Rom's cubic for the samples at −1, 0, 1, 2, and their derivatives by t.
+void CubicWeights(double t, double weights[4], double slopes[4]) {
+  weights[0] = 0.5 * t * (-1 + t * (2 - t));
+  weights[1] = 0.5 * (2 + t * t * (-5 + 3 * t));
+  weights[2] = 0.5 * t * (1 + t * (4 - 3 * t));
+  weights[3] = 0.5 * t * t * (t - 1);
+  slopes[0] = 0.5 * (-1 + t * (4 - 3 * t));
+  slopes[1] = 0.5 * t * (-10 + 9 * t);
+  slopes[2] = 0.5 * (1 + t * (8 - 9 * t));
+  slopes[3] = 0.5 * t * (3 * t - 2);
+}
+
+}  // namespace
+
+void CornerWeights(double u, double v, double weights[4]) {
+  weights[0] = (1 - v) * (1 - u);
+  weights[1] = (1 - v) * u;
+  weights[2] = v * (1 - u);
+  weights[3] = v * u;
+}
+
+CornerShifts::Shift CornerShifts::At(int at_column, int at_row, int width, int height) const {
+  double weights[4];
+  CornerWeights((at_column + 0.5) / width, (at_row + 0.5) / height, weights);
+  Shift shift{0, 0};
+  for (int i = 0; i < 4; ++i) {
+    shift.column += weights[i] * column[i];
+    shift.row += weights[i] * row[i];
+  }
+  return shift;
+}
+
+bool CornerShifts::any() const {
+  const auto moved = [](double shift) { return shift != 0; };
+  return std::any_of(column, column + 4, moved) || std::any_of(row, row + 4, moved);
+}
+
+LookedUp LookUp(const float* plane, int width, int height, double column, double row) {
+  const double c0 = std::floor(column), r0 = std::floor(row);
+  double across[4], down[4], across_slopes[4], down_slopes[4];
+  CubicWeights(column - c0, across, across_slopes);
+  CubicWeights(row - r0, down, down_slopes);
+  LookedUp sum{0, 0, 0};
+  for (int j = 0; j < 4; ++j) {
+    const int r = std::clamp(static_cast<int>(r0) + j - 1, 0, height - 1);
+    double line = 0, line_slope = 0;
+    for (int i = 0; i < 4; ++i) {
+      const int c = std::clamp(static_cast<int>(c0) + i - 1, 0, width - 1);
+      const double value = plane[static_cast<std::ptrdiff_t>(r) * width + c];
+      line += across[i] * value;
+      line_slope += across_slopes[i] * value;
+    }
+    sum.value += down[j] * line;
+    sum.by_column += down[j] * line_slope;
+    sum.by_row += down_slopes[j] * line;
+  }
+  return sum;
+}
+
+void ShiftPicture(const CornerShifts& shifts, int width, int height,
+                  std::vector<float>* rgb_planar) {
+  const std::vector<float> source = *rgb_planar;
+  const size_t texels = static_cast<size_t>(width) * height;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const CornerShifts::Shift shift = shifts.At(x, y, width, height);
+      for (size_t c = 0; c < 3; ++c) {
+        const double value =
+            LookUp(source.data() + c * texels, width, height, x + shift.column, y + shift.row)
+                .value;
+        (*rgb_planar)[c * texels + static_cast<size_t>(y) * width + x] =
+            static_cast<float>(std::max(value, 0.0));
+      }
+    }
+  }
+}
+
+void ShiftMask(const CornerShifts& shifts, int width, int height, std::vector<float>* mask) {
+  const std::vector<float> source = *mask;
+  const auto usable = [&](int c, int r) {
+    return c >= 0 && c < width && r >= 0 && r < height &&
+           source[static_cast<size_t>(r) * width + c] >= 0.5f;
+  };
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const CornerShifts::Shift shift = shifts.At(x, y, width, height);
+      // A hundredth of a texel outside still counts as the texel.
+      const double column = x + shift.column, row = y + shift.row;
+      const int left = static_cast<int>(std::floor(column + 0.01));
+      const int right = static_cast<int>(std::ceil(column - 0.01));
+      const int top = static_cast<int>(std::floor(row + 0.01));
+      const int bottom = static_cast<int>(std::ceil(row - 0.01));
+      if (!usable(left, top) || !usable(right, top) || !usable(left, bottom) ||
+          !usable(right, bottom)) {
+        (*mask)[static_cast<size_t>(y) * width + x] = 0.0f;
+      }
+    }
+  }
+}
+
+}  // namespace glint

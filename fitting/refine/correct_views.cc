@@ -1,0 +1,69 @@
+#include "fitting/refine/correct_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "fitting/refine/refine_prior.h"
+#include "pipeline/contract/svbrdf_file.h"
+
+namespace glint {
+namespace {
+
+PhotographSet AtWorkingSize(const PhotographSet& set, int working_size, int threads) {
+  const int longer = std::max(set.plane.width, set.plane.height);
+  if (longer <= working_size) return set;
+  const double scale = static_cast<double>(working_size) / longer;
+  const auto scaled = [&](int texels) {
+    return std::max(1, static_cast<int>(std::lround(texels * scale)));
+  };
+  return Downsampled(set, scaled(set.plane.width), scaled(set.plane.height), threads);
+}
+
+}  // namespace
+
+bool CorrectionOptions::Wanted(double distinct_views_of_set) const {
+  return when == "always" || (when == "auto" && distinct_views_of_set >= distinct_views);
+}
+
+std::string CorrectionOptions::Check() const {
+  if (when != "auto" && when != "always" && when != "never") {
+    return "views are corrected auto, always or never";
+  }
+  if (!(least_gain >= 0 && least_gain < 1)) return "the least gain must be from 0 to 1";
+  if (working_size < 16) return "the working size must be at least 16 texels";
+  return view.Check();
+}
+
+RefineProblem ProblemOf(const PhotographSet& set) {
+  RefineProblem problem;
+  problem.plane = set.plane;
+  problem.convention = set.convention;
+  for (const Photograph& p : set.photographs) {
+    problem.views.push_back({p.view, p.ldr, p.rgb, p.mask});
+  }
+  return problem;
+}
+
+CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& start,
+                                 const RefineOptions& refine, const CorrectionOptions& options,
+                                 int threads) {
+  const std::string wrong = options.Check();
+  if (!wrong.empty()) throw std::invalid_argument("correct views: " + wrong);
+  CorrectionResult result;
+  if (!options.Wanted(DistinctViews(ProblemOf(set)))) return result;
+  const PhotographSet small = AtWorkingSize(set, options.working_size, threads);
+  const int width = small.plane.width, height = small.plane.height;
+  const SvbrdfMaps maps =
+      Refine(ProblemOf(small), ResampleSvbrdf(start, width, height), refine, threads).maps;
+  const ViewCorrectionResult found = CorrectViews(small, maps, options.view);
+  result.cost_before = found.cost_before;
+  result.cost_after = found.cost_after;
+  result.taken = found.cost_after < (1 - options.least_gain) * found.cost_before;
+  if (result.taken) {
+    result.corrections = AtSize(found.views, width, height, set.plane.width, set.plane.height);
+  }
+  return result;
+}
+
+}  // namespace glint

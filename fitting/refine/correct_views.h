@@ -1,0 +1,42 @@
+// Finds what is wrong with the views before they are refined from: whether to look, at which size,
+// and whether what was found is worth taking.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fitting/photographs/photographs.h"
+#include "fitting/refine/refine.h"
+#include "fitting/view_correction/view_correction.h"
+
+namespace glint {
+
+struct CorrectionOptions {
+  std::string when = "auto";    // auto: with views enough; always; never
+  double distinct_views = 3.5;  // of the set (refine_prior.h) from which on "auto" looks
+  // Relative fall of the cost below which nothing is taken: views that are right stay untouched.
+  double least_gain = 0.1;
+  int working_size = 256;  // texels along the longer side; larger sets are averaged down
+  ViewCorrectionOptions view;
+
+  bool Wanted(double distinct_views_of_set) const;
+  // Empty: all is well; otherwise what is wrong.
+  std::string Check() const;
+};
+
+struct CorrectionResult {
+  bool taken = false;
+  double cost_before = 0, cost_after = 0;   // 0: not looked
+  std::vector<ViewCorrection> corrections;  // one per photograph, at their size; empty: not taken
+};
+
+// The problem that Refine() solves for these photographs; its spans are of `set`.
+RefineProblem ProblemOf(const PhotographSet& set);
+
+// `start` has the set's size. Throws as Refine() and CorrectViews() do.
+CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& start,
+                                 const RefineOptions& refine, const CorrectionOptions& options,
+                                 int threads);
+
+}  // namespace glint

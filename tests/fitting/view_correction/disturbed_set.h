@@ -1,0 +1,83 @@
+// A photographed toy material whose manifest is wrong about the views.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "fitting/render/renderer.h"
+#include "fitting/view_correction/view_correction.h"
+#include "tests/fitting/bootstrap/synthetic_set.h"
+
+namespace glint::test {
+
+inline constexpr double kAmbientShare = 0.05;
+
+// Waves in two directions: structure that tells displacements along both axes.
+inline SvbrdfMaps CrossedWaves(int size) {
+  SvbrdfMaps maps(size, size);
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      const double across = std::sin(0.31 * column + 0.1 * row);
+      const double down = std::sin(0.37 * row - 0.12 * column);
+      for (int c = 0; c < 3; ++c) {
+        maps.at(kDiffuseR + c, row, column) =
+            static_cast<float>(0.35 + 0.12 * across + 0.1 * down + 0.02 * c);
+        maps.at(kSpecularR + c, row, column) = static_cast<float>(0.06 + 0.02 * down);
+      }
+      maps.at(kRoughness, row, column) = static_cast<float>(0.4 + 0.1 * across * down);
+      const double x = 0.2 * down, y = 0.2 * across, z = 1 / std::sqrt(1 + x * x + y * y);
+      maps.at(kNormalX, row, column) = static_cast<float>(x * z);
+      maps.at(kNormalY, row, column) = static_cast<float>(y * z);
+      maps.at(kNormalZ, row, column) = static_cast<float>(z);
+    }
+  }
+  return maps;
+}
+
+struct DisturbedSet {
+  SvbrdfMaps maps;                     // the truth
+  PhotographSet set;                   // as believed
+  std::vector<ViewCorrection> errors;  // what would make it right
+};
+
+// Every light `light_off` of its distance away from where it is believed to be, every picture moved
+// by up to `shift_texel` at its corners (at most a texel), ambient light of kAmbientShare of the
+// flash if `ambient`.
+inline DisturbedSet Disturb(int count, double light_off, double shift_texel, bool ambient,
+                            int size = 64) {
+  DisturbedSet made{CrossedWaves(size), {}, {}};
+  made.set = PhotographMaps(made.maps, count, false);
+  for (int i = 0; i < count; ++i) {
+    Photograph& photo = made.set.photographs[static_cast<size_t>(i)];
+    ViewCorrection error;
+    const Vec3d light = photo.view.light_in_sample_mm;
+    const double distance = std::hypot(light[0], light[1], light[2]);
+    const double angle = 2.1 * i + 0.5;
+    error.light_offset_mm = {light_off * distance * std::cos(angle),
+                             light_off * distance * std::sin(angle), 0};
+    for (int k = 0; k < 4; ++k) {
+      error.shifts.column[k] = shift_texel * std::sin(3.7 * i + k);
+      error.shifts.row[k] = shift_texel * std::cos(5.3 * i - k);
+    }
+    if (ambient)
+      error.ambient_rgb = {3.14159 * kAmbientShare, 3.14159 * kAmbientShare,
+                           3.14159 * kAmbientShare};
+    View real = photo.view;
+    for (size_t k = 0; k < 3; ++k) {
+      real.light_in_sample_mm[k] += error.light_offset_mm[k];
+      real.ambient_rgb[k] += error.ambient_rgb[k];
+    }
+    RenderView(made.maps, made.set.plane, real, made.set.convention, photo.rgb.data());
+    // Looked up the other way: what a picture that is moved so shows.
+    CornerShifts away;
+    for (int k = 0; k < 4; ++k) {
+      away.column[k] = -error.shifts.column[k];
+      away.row[k] = -error.shifts.row[k];
+    }
+    ShiftPicture(away, size, size, &photo.rgb);
+    made.errors.push_back(error);
+  }
+  return made;
+}
+
+}  // namespace glint::test

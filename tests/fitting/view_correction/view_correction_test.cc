@@ -1,0 +1,148 @@
+#include "fitting/view_correction/view_correction.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "tests/fitting/view_correction/disturbed_set.h"
+
+namespace glint {
+namespace {
+
+using test::Disturb;
+using test::DisturbedSet;
+
+ViewCorrectionOptions Few() {
+  ViewCorrectionOptions options;
+  options.texels = 400;
+  return options;
+}
+
+// Degrees between the light found and the true one, mean over the views.
+double LightErrorDeg(const DisturbedSet& disturbed, const std::vector<ViewCorrection>& found) {
+  double sum = 0;
+  for (size_t i = 0; i < found.size(); ++i) {
+    View real = disturbed.set.photographs[i].view;
+    ViewCorrection rest;
+    for (size_t k = 0; k < 3; ++k) {
+      real.light_in_sample_mm[k] += disturbed.errors[i].light_offset_mm[k];
+      rest.light_offset_mm[k] =
+          found[i].light_offset_mm[k] - disturbed.errors[i].light_offset_mm[k];
+    }
+    sum += LightTurnedDeg(real, rest) / static_cast<double>(found.size());
+  }
+  return sum;
+}
+
+TEST(CorrectViews, BringsLightsBackThatAreOff) {
+  const DisturbedSet disturbed = Disturb(12, 0.1, 0, false);
+  const ViewCorrectionResult found = CorrectViews(disturbed.set, disturbed.maps, Few());
+  const std::vector<ViewCorrection> none(disturbed.errors.size());
+  EXPECT_GT(LightErrorDeg(disturbed, none), 4.5);
+  EXPECT_LT(LightErrorDeg(disturbed, found.views), 1.5);
+  EXPECT_LT(found.cost_after, 0.1 * found.cost_before);
+}
+
+TEST(CorrectViews, FindsHowPicturesAreDisplaced) {
+  const DisturbedSet disturbed = Disturb(12, 0, 0.6, false);
+  const ViewCorrectionResult found = CorrectViews(disturbed.set, disturbed.maps, Few());
+  // What the views share is the maps' own place: compare what is left without it.
+  double squares = 0, count = 0;
+  for (int k = 0; k < 4; ++k) {
+    double common = 0;
+    for (const ViewCorrection& e : disturbed.errors) {
+      common += e.shifts.column[k] / static_cast<double>(disturbed.errors.size());
+    }
+    for (size_t i = 0; i < found.views.size(); ++i) {
+      const double error =
+          found.views[i].shifts.column[k] - (disturbed.errors[i].shifts.column[k] - common);
+      squares += error * error;
+      ++count;
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / count), 0.15);  // of 0.42 before
+}
+
+TEST(CorrectViews, FindsTheAmbientLight) {
+  const DisturbedSet disturbed = Disturb(12, 0, 0, true);
+  ViewCorrectionOptions options = Few();
+  options.ambient_sigma = 1;  // albedos explain most of it too: a firm prior would prefer them
+  const ViewCorrectionResult found = CorrectViews(disturbed.set, disturbed.maps, options);
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(found.views[0].ambient_rgb[c], 3.14159 * test::kAmbientShare, 0.035);
+    EXPECT_EQ(found.views[0].ambient_rgb[c], found.views[7].ambient_rgb[c]);
+  }
+}
+
+TEST(CorrectViews, LeavesRightViewsRight) {
+  const DisturbedSet right = Disturb(8, 0, 0, false);
+  const ViewCorrectionResult found = CorrectViews(right.set, right.maps, Few());
+  for (const ViewCorrection& c : found.views) {
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(c.light_offset_mm[k], 0, 1e-3);
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(c.shifts.column[k], 0, 1e-3);
+  }
+}
+
+TEST(CorrectViews, HoldsWhatItIsToldToHold) {
+  const DisturbedSet disturbed = Disturb(6, 0.1, 0.5, true);
+  ViewCorrectionOptions options = Few();
+  options.light = options.ambient = false;
+  const ViewCorrectionResult found = CorrectViews(disturbed.set, disturbed.maps, options);
+  bool moved = false;
+  for (const ViewCorrection& c : found.views) {
+    EXPECT_EQ(c.light_offset_mm, (Vec3d{0, 0, 0}));
+    EXPECT_EQ(c.ambient_rgb, (Vec3d{0, 0, 0}));
+    EXPECT_EQ(c.exposure, 1);
+    moved = moved || c.shifts.any();
+  }
+  EXPECT_TRUE(moved);
+}
+
+TEST(CorrectViews, AViewThatShowsNothingStaysAsItIs) {
+  DisturbedSet disturbed = Disturb(5, 0.1, 0, false);
+  std::fill(disturbed.set.photographs[2].mask.begin(), disturbed.set.photographs[2].mask.end(),
+            0.0f);
+  ViewCorrectionOptions options = Few();
+  options.registration = false;
+  const ViewCorrectionResult found = CorrectViews(disturbed.set, disturbed.maps, options);
+  EXPECT_EQ(found.views[2].light_offset_mm, (Vec3d{0, 0, 0}));
+  EXPECT_NE(found.views[1].light_offset_mm, (Vec3d{0, 0, 0}));
+}
+
+TEST(CorrectViews, RefusesMapsOfAnotherSize) {
+  const DisturbedSet disturbed = Disturb(3, 0, 0, false, 32);
+  EXPECT_THROW(CorrectViews(disturbed.set, SvbrdfMaps(31, 32), Few()), std::invalid_argument);
+  ViewCorrectionOptions wrong = Few();
+  wrong.light_sigma = 0;
+  EXPECT_THROW(CorrectViews(disturbed.set, disturbed.maps, wrong), std::invalid_argument);
+}
+
+TEST(Corrected, UndoesTheDisturbanceForAnyNumberOfThreads) {
+  const DisturbedSet disturbed = Disturb(3, 0.1, 0.5, true);
+  const PhotographSet one = Corrected(disturbed.set, disturbed.errors, 1);
+  const PhotographSet two = Corrected(disturbed.set, disturbed.errors, 2);
+  double left = 0, before = 0;
+  std::vector<float> rendered(3 * disturbed.maps.texels());
+  for (size_t i = 0; i < one.photographs.size(); ++i) {
+    EXPECT_EQ(one.photographs[i].rgb, two.photographs[i].rgb);
+    RenderView(disturbed.maps, one.plane, one.photographs[i].view, one.convention, rendered.data());
+    for (size_t t = 0; t < rendered.size(); ++t) {
+      if (one.photographs[i].mask[t % disturbed.maps.texels()] < 0.5f) continue;
+      left += std::abs(rendered[t] - one.photographs[i].rgb[t]);
+      before += std::abs(rendered[t] - disturbed.set.photographs[i].rgb[t]);
+    }
+  }
+  EXPECT_LT(left, 0.35 * before);
+}
+
+TEST(AtSize, ScalesDisplacementsWithThePicture) {
+  ViewCorrection c;
+  c.shifts.column[1] = 0.5;
+  c.shifts.row[2] = -0.25;
+  const auto large = AtSize({c}, 100, 50, 200, 200);
+  EXPECT_DOUBLE_EQ(large[0].shifts.column[1], 1.0);
+  EXPECT_DOUBLE_EQ(large[0].shifts.row[2], -1.0);
+}
+
+}  // namespace
+}  // namespace glint
