@@ -4,12 +4,9 @@
 #include <stdexcept>
 
 #include "fitting/autoencoder/network_file.h"
-#include "fitting/layers/layers.h"
-#include "fitting/training/map_batches.h"
-#include "fitting/training/map_losses.h"
+#include "fitting/training/map_training.h"
 #include "fitting/training/principal_start.h"
 #include "fitting/training/random.h"
-#include "fitting/training/train_loop.h"
 
 namespace glint {
 namespace {
@@ -30,20 +27,13 @@ AutoencoderNetwork FirstWeights(const AutoencoderTrainOptions& options, std::int
   return StartFromPrincipalComponents(options.channels, pool->SampleFirst(kPrincipalSamples));
 }
 
-class AutoencoderTraining : public Trainable {
+class AutoencoderTraining : public MapTraining<AutoencoderNetwork, AutoencoderTrainOptions> {
  public:
   AutoencoderTraining(const AutoencoderTrainOptions& options, std::int64_t first_batch,
                       const MaterialSource& materials, const MaterialSource& validation)
-      : options_(options),
-        compute_(options.bf16 ? FastComputeType() : torch::kFloat32),
-        map_weights_(MapWeights(options)),
-        pool_(options, materials, first_batch),
-        validation_maps_(ValidationMaps(validation, options.pool.material_size)),
-        network_(FirstWeights(options, first_batch, &pool_)),
-        average_(Clone(&network_)) {}
+      : MapTraining(options, first_batch, materials, validation,
+                    [&](MapBatches* pool) { return FirstWeights(options, first_batch, pool); }) {}
 
-  NamedTensors State() override { return network_.State(); }
-  NamedTensors AverageState() override { return average_.State(); }
   size_t learned() const override { return AutoencoderNetwork(network_).Parameters().size(); }
   std::map<std::string, std::string> Description() const override {
     return NetworkMetadata(network_);
@@ -51,17 +41,6 @@ class AutoencoderTraining : public Trainable {
   void SaveWeights(const std::filesystem::path& path,
                    std::map<std::string, std::string> metadata) override {
     SaveNetwork(path, &average_, std::move(metadata));
-  }
-
-  double Validate() override {
-    torch::NoGradGuard no_gradient;
-    double sum = 0;
-    for (int64_t i = 0; i < validation_maps_.size(0); ++i) {
-      const Tensor one = validation_maps_.slice(0, i, i + 1);
-      const Tensor z = average_.NormaliseByRunning(average_.EncodeRaw(one, compute_));
-      sum += (average_.Decode(z, compute_) - one).abs().mean().item<double>();
-    }
-    return sum / static_cast<double>(validation_maps_.size(0));
   }
 
   StepLosses Forward(std::int64_t step) override {
@@ -83,30 +62,22 @@ class AutoencoderTraining : public Trainable {
     }
     const Tensor decoded = network_.DecodeForTraining(codes, compute_, kBatchStatisticsMomentum);
     const Tensor plain = decoded.slice(0, 0, count);
-    const Tensor map = ((plain - batch).abs() * map_weights_).mean();
-    losses.map = map.item<double>();
-    losses.total = options_.map_weight * map;
+    AddMapLoss(plain, batch, &losses);
     if (twice > 0) {
       const Tensor moved = decoded.slice(0, count, count + twice) - decoded.slice(0, 0, twice);
-      const Tensor smoothness = (moved.abs() * map_weights_).mean();
+      const Tensor smoothness = WeightedL1(moved);
       losses.smoothness = smoothness.item<double>();
-      losses.total = losses.total + options_.smoothness * smoothness;
+      Add(options_.smoothness * smoothness, &losses);
     }
-    if (options_.render_weight > 0 && options_.render_views > 0) {
-      const Tensor render = RenderLossOf(plain, batch, options_, step);
-      losses.render = render.item<double>();
-      losses.total = losses.total + options_.render_weight * render;
-    }
+    AddRenderLoss(plain, batch, step, &losses);
     return losses;
   }
 
  private:
-  const AutoencoderTrainOptions options_;
-  const torch::Dtype compute_;
-  const Tensor map_weights_;
-  MapBatches pool_;
-  const Tensor validation_maps_;
-  AutoencoderNetwork network_, average_;
+  Tensor AveragedMaps(const Tensor& truth, std::int64_t) override {
+    const Tensor z = average_.NormaliseByRunning(average_.EncodeRaw(truth, compute_));
+    return average_.Decode(z, compute_);
+  }
 };
 
 void Check(const AutoencoderTrainOptions& options) {

@@ -3,10 +3,7 @@
 #include <stdexcept>
 
 #include "fitting/estimator/estimator_file.h"
-#include "fitting/layers/layers.h"
-#include "fitting/training/map_batches.h"
-#include "fitting/training/map_losses.h"
-#include "fitting/training/train_loop.h"
+#include "fitting/training/map_training.h"
 #include "fitting/training/training_photographs.h"
 
 namespace glint {
@@ -28,20 +25,14 @@ EstimatorChannels ChannelsOf(const EstimatorTrainOptions& options) {
   return channels;
 }
 
-class EstimatorTraining : public Trainable {
+class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOptions> {
  public:
   EstimatorTraining(const EstimatorTrainOptions& options, std::int64_t first_batch,
                     const MaterialSource& materials, const MaterialSource& validation)
-      : options_(options),
-        compute_(options.bf16 ? FastComputeType() : torch::kFloat32),
-        map_weights_(MapWeights(options)),
-        pool_(options, materials, first_batch),
-        validation_maps_(ValidationMaps(validation, options.pool.material_size)),
-        network_(EstimatorNetwork::Random(ChannelsOf(options), options.seed)),
-        average_(Clone(&network_)) {}
+      : MapTraining(options, first_batch, materials, validation, [&](MapBatches*) {
+          return EstimatorNetwork::Random(ChannelsOf(options), options.seed);
+        }) {}
 
-  NamedTensors State() override { return network_.State(); }
-  NamedTensors AverageState() override { return average_.State(); }
   size_t learned() const override { return EstimatorNetwork(network_).State().size(); }
   std::map<std::string, std::string> Description() const override {
     return EstimatorMetadata(network_);
@@ -51,43 +42,23 @@ class EstimatorTraining : public Trainable {
     SaveEstimator(path, &average_, std::move(metadata));
   }
 
-  double Validate() override {
-    torch::NoGradGuard no_gradient;
-    double sum = 0;
-    for (int64_t i = 0; i < validation_maps_.size(0); ++i) {
-      const Tensor truth = validation_maps_.slice(0, i, i + 1);
-      Stream random(static_cast<std::uint64_t>(i));
-      const PhotographBatch shown = PhotographMaps(truth, &random, true);
-      const Tensor maps = average_.Forward(shown.features, shown.profiles, compute_);
-      sum += (maps - truth).abs().mean().item<double>();
-    }
-    return sum / static_cast<double>(validation_maps_.size(0));
-  }
-
   StepLosses Forward(std::int64_t step) override {
     const Tensor truth = pool_.Sample(step);
     Stream random(StreamSeed(options_.seed ^ kShotStream, static_cast<std::uint64_t>(step)));
     const PhotographBatch shown = PhotographMaps(truth, &random, false);
     const Tensor maps = network_.Forward(shown.features, shown.profiles, compute_);
     StepLosses losses;
-    const Tensor map = ((maps - truth).abs() * map_weights_).mean();
-    losses.map = map.item<double>();
-    losses.total = options_.map_weight * map;
-    if (options_.render_weight > 0 && options_.render_views > 0) {
-      const Tensor render = RenderLossOf(maps, truth, options_, step);
-      losses.render = render.item<double>();
-      losses.total = losses.total + options_.render_weight * render;
-    }
+    AddMapLoss(maps, truth, &losses);
+    AddRenderLoss(maps, truth, step, &losses);
     return losses;
   }
 
  private:
-  const EstimatorTrainOptions options_;
-  const torch::Dtype compute_;
-  const Tensor map_weights_;
-  MapBatches pool_;
-  const Tensor validation_maps_;
-  EstimatorNetwork network_, average_;
+  Tensor AveragedMaps(const Tensor& truth, std::int64_t number) override {
+    Stream random(static_cast<std::uint64_t>(number));
+    const PhotographBatch shown = PhotographMaps(truth, &random, true);
+    return average_.Forward(shown.features, shown.profiles, compute_);
+  }
 };
 
 }  // namespace
