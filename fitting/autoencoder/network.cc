@@ -183,9 +183,7 @@ AutoencoderNetwork Clone(AutoencoderNetwork* network) {
   AutoencoderNetwork copy;
   copy.channels = network->channels;
   copy.normalisation = network->normalisation;
-  NamedTensors to = copy.State();
-  const NamedTensors from = network->State();
-  for (size_t i = 0; i < to.size(); ++i) *to[i].second = from[i].second->detach().clone();
+  CopyTensors(network->State(), copy.State());
   return copy;
 }
 

@@ -125,9 +125,7 @@ Tensor EstimatorNetwork::Forward(const Tensor& features, const Tensor& profile,
 EstimatorNetwork Clone(EstimatorNetwork* network) {
   EstimatorNetwork copy;
   copy.channels = network->channels;
-  NamedTensors to = copy.State();
-  const NamedTensors from = network->State();
-  for (size_t i = 0; i < to.size(); ++i) *to[i].second = from[i].second->detach().clone();
+  CopyTensors(network->State(), copy.State());
   return copy;
 }
 

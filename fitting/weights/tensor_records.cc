@@ -13,6 +13,10 @@ constexpr int kMaxChannels = 4096;
 
 }  // namespace
 
+void CopyTensors(const NamedTensors& from, const NamedTensors& to) {
+  for (size_t i = 0; i < to.size(); ++i) *to[i].second = from[i].second->detach().clone();
+}
+
 TensorRecord ToRecord(const std::string& name, const Tensor& tensor, bool bf16) {
   const Tensor t = tensor.detach().to(torch::kFloat32).contiguous();
   return MakeRecord(name, t.sizes().vec(), {t.data_ptr<float>(), static_cast<size_t>(t.numel())},

@@ -15,6 +15,9 @@ namespace glint {
 // A network's tensors with their names in weights files, in a fixed order.
 using NamedTensors = std::vector<std::pair<std::string, torch::Tensor*>>;
 
+// Gives each tensor of `to` storage of its own with the values of the one at its place in `from`.
+void CopyTensors(const NamedTensors& from, const NamedTensors& to);
+
 TensorRecord ToRecord(const std::string& name, const torch::Tensor& tensor, bool bf16);
 
 // Throws std::runtime_error when `file`, read from `path`, lacks the tensor or its shape differs.

@@ -7,6 +7,7 @@
 
 #include "datasets/procedural/blend.h"
 #include "datasets/procedural/material.h"
+#include "tests/datasets/procedural/measures.h"
 
 namespace glint {
 namespace {
@@ -15,19 +16,6 @@ constexpr int kSide = 128;
 
 SvbrdfMaps Make(const std::string& family, uint64_t seed, bool finished) {
   return MakeMaterial(MaterialRecipe{seed, family, "", finished}, kSide, kSide);
-}
-
-double Mean(std::span<const float> plane) {
-  double sum = 0;
-  for (const float v : plane) sum += v;
-  return sum / static_cast<double>(plane.size());
-}
-
-double Spread(std::span<const float> plane) {
-  const double mean = Mean(plane);
-  double square = 0;
-  for (const float v : plane) square += (v - mean) * (v - mean);
-  return std::sqrt(square / static_cast<double>(plane.size()));
 }
 
 // Part of a plane's contrast that neighbours do not share.
@@ -69,25 +57,6 @@ TEST(FinishTest, FinishedSurfacesHaveMoreDetailOfTexelSizeAndLessContrast) {
   EXPECT_GT(Median(OverFamilies(true, detail)), 1.3 * Median(OverFamilies(false, detail)));
   const auto rough = [](const SvbrdfMaps& maps) { return Spread(maps.plane(kRoughness)); };
   EXPECT_LT(Median(OverFamilies(true, rough)), 0.9 * Median(OverFamilies(false, rough)));
-}
-
-double MeanDifference(const SvbrdfMaps& a, const SvbrdfMaps& b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.planes.size(); ++i) sum += std::fabs(a.planes[i] - b.planes[i]);
-  return sum / static_cast<double>(a.planes.size());
-}
-
-SvbrdfMaps Halved(const SvbrdfMaps& fine) {
-  SvbrdfMaps out(fine.width / 2, fine.height / 2);
-  for (int p = 0; p < kSvbrdfPlanes; ++p) {
-    for (int y = 0; y < out.height; ++y) {
-      for (int x = 0; x < out.width; ++x) {
-        out.at(p, y, x) = 0.25f * (fine.at(p, 2 * y, 2 * x) + fine.at(p, 2 * y, 2 * x + 1) +
-                                   fine.at(p, 2 * y + 1, 2 * x) + fine.at(p, 2 * y + 1, 2 * x + 1));
-      }
-    }
-  }
-  return out;
 }
 
 TEST(FinishTest, LargerPicturesShowTheSameMaterial) {

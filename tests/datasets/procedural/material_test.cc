@@ -9,40 +9,12 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/datasets/procedural/measures.h"
+
 namespace glint {
 namespace {
 
 using ::testing::HasSubstr;
-
-double Spread(std::span<const float> plane) {
-  double sum = 0.0, square = 0.0;
-  for (const float v : plane) {
-    sum += v;
-    square += static_cast<double>(v) * v;
-  }
-  const double n = static_cast<double>(plane.size());
-  return std::sqrt(std::max(square / n - (sum / n) * (sum / n), 0.0));
-}
-
-double MeanDifference(const SvbrdfMaps& a, const SvbrdfMaps& b) {
-  double sum = 0.0;
-  for (size_t i = 0; i < a.planes.size(); ++i) sum += std::fabs(a.planes[i] - b.planes[i]);
-  return sum / static_cast<double>(a.planes.size());
-}
-
-SvbrdfMaps Halved(const SvbrdfMaps& fine) {
-  SvbrdfMaps out(fine.width / 2, fine.height / 2);
-  for (int p = 0; p < kSvbrdfPlanes; ++p) {
-    for (int row = 0; row < out.height; ++row) {
-      for (int column = 0; column < out.width; ++column) {
-        out.at(p, row, column) =
-            0.25f * (fine.at(p, 2 * row, 2 * column) + fine.at(p, 2 * row, 2 * column + 1) +
-                     fine.at(p, 2 * row + 1, 2 * column) + fine.at(p, 2 * row + 1, 2 * column + 1));
-      }
-    }
-  }
-  return out;
-}
 
 // The first thing that is out of range, or nothing.
 std::string Fault(const SvbrdfMaps& maps) {

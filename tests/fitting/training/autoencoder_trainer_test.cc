@@ -13,24 +13,10 @@ namespace {
 namespace fs = std::filesystem;
 
 AutoencoderTrainOptions Tiny(std::int64_t steps) {
-  AutoencoderTrainOptions options;
+  auto options = TinyTraining<AutoencoderTrainOptions>(steps);
   options.channels = {8, 12, 16, 24, 32};
-  options.steps = steps;
-  options.batch = 4;
-  options.crop = 32;
-  options.learning_rate = 3e-3;
-  options.warmup_steps = 10;
-  options.render_views = 1;
-  options.pool.material_size = 64;
-  options.pool.window = 32;
-  options.pool.first = 8;
-  options.pool.per_step = 0.2;
-  options.bf16 = false;
   return options;
 }
-
-SvbrdfMaps Toy(std::uint64_t k) { return ToyMaterial(k, 64, 64); }
-SvbrdfMaps Unseen(std::uint64_t k) { return ToyMaterial(k + 1'000'000, 64, 64); }
 
 TEST(Trainer, AShortTrainingTakesASeventhOffTheLossOnUnseenMaterials) {
   const test::TemporaryFolder folder;

@@ -24,8 +24,6 @@ std::vector<float> Batch(MaterialPool* pool, std::int64_t step) {
   return batch;
 }
 
-SvbrdfMaps Toy(std::uint64_t k) { return ToyMaterial(k, 64, 64); }
-
 TEST(MaterialPool, AResumedPoolGivesTheSameSamples) {
   MaterialPool whole(Small(), Toy, 0);
   std::vector<std::vector<float>> batches;

@@ -1,4 +1,4 @@
-// Small materials with structure, so that tests need no generator.
+// Small materials with structure, so that tests need no generator, and a training on them.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/training/random.h"
+#include "fitting/training/train_options.h"
 
 namespace glint {
 
@@ -33,6 +34,28 @@ inline SvbrdfMaps ToyMaterial(std::uint64_t k, int width, int height) {
     }
   }
   return maps;
+}
+
+// Those that tests train on, and those they never train on.
+inline SvbrdfMaps Toy(std::uint64_t k) { return ToyMaterial(k, 64, 64); }
+inline SvbrdfMaps Unseen(std::uint64_t k) { return ToyMaterial(k + 1'000'000, 64, 64); }
+
+// A training of seconds on Toy(); Options: TrainOptions or derived from them.
+template <class Options>
+Options TinyTraining(std::int64_t steps) {
+  Options options;
+  options.steps = steps;
+  options.batch = 4;
+  options.crop = 32;
+  options.learning_rate = 3e-3;
+  options.warmup_steps = 10;
+  options.render_views = 1;
+  options.pool.material_size = 64;
+  options.pool.window = 32;
+  options.pool.first = 8;
+  options.pool.per_step = 0.2;
+  options.bf16 = false;
+  return options;
 }
 
 }  // namespace glint
