@@ -26,7 +26,7 @@ constexpr int kPaperSize = 256;  // texels a side of the paper's materials
 // `procedural_size`.
 SvbrdfMaps ReadAnyMaps(const fs::path& path, int procedural_size) {
   if (path.extension() == ".exr" || path.filename() == "manifest.json") {
-    const FitResult result = ReadFitResult(path);
+    const FittedMaps result = ReadFittedMaps(path);
     return ToUnitWeight(result.maps, result.convention);
   }
   const bool procedural = path.string().starts_with("procedural:");
@@ -83,7 +83,7 @@ int RunViews(int argc, char** argv, const ProgramInfo& info) {
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     const fs::path file = fs::is_directory(set_path) ? set_path / "manifest.json" : set_path;
     const RectifiedSet set = ReadRectifiedSet(file);
-    const FitResult fit = ReadFitResult(fit_path);
+    const FittedMaps fit = ReadFittedMaps(fit_path);
     const auto views = SelectViews(set, only, exclude);
     if (!pairs.empty()) fs::create_directories(pairs);
     ProgramResult result;

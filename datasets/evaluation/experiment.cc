@@ -99,7 +99,7 @@ class Runs {
     *kept = false;
     Run(method);
     const fs::path manifest = ResultManifest(experiment_, material_.name, condition_, method);
-    const FitResult result = ReadFitResult(manifest);
+    const FittedMaps result = ReadFittedMaps(manifest);
     const Table1Row row =
         EvaluateMaps(ToUnitWeight(result.maps, result.convention), material_.maps, common_.threads);
     Json models = models_->UsedBy(manifest.parent_path().parent_path() / "fit" / "manifest.json");

@@ -146,7 +146,7 @@ Image DrawSheet(const Experiment& experiment, int threads) {
         const fs::path file = ResultManifest(experiment, material.name, condition, method);
         SvbrdfMaps maps;
         if (fs::exists(file)) {
-          const FitResult result = ReadFitResult(file);
+          const FittedMaps result = ReadFittedMaps(file);
           maps = ToUnitWeight(result.maps, result.convention);
         }
         sheet.Line(column, row, line++, method.name, maps.texels() > 0 ? &maps : nullptr, threads);

@@ -54,8 +54,8 @@ ViewError CompareView(std::span<const float> rendered, const RectifiedImage& pho
   return error;
 }
 
-FitResult ReadFitResult(const fs::path& path) {
-  FitResult fit;
+FittedMaps ReadFittedMaps(const fs::path& path) {
+  FittedMaps fit;
   if (path.extension() == ".exr") {
     fit.maps = ReadSvbrdf(path, &fit.convention);
     return fit;
@@ -73,7 +73,7 @@ FitResult ReadFitResult(const fs::path& path) {
   return fit;
 }
 
-std::vector<float> RenderFit(const FitResult& fit, const RectifiedSet& set,
+std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
                              const RectifiedView& view, int threads) {
   const bool same_size = fit.maps.width == set.plane.width && fit.maps.height == set.plane.height;
   const SvbrdfMaps maps =

@@ -26,19 +26,18 @@ struct ViewError {
 ViewError CompareView(std::span<const float> rendered, const RectifiedImage& photograph, bool ldr);
 
 // The result of fit or refine: maps, and what the fit found for the light's power.
-struct FitResult {
+struct FittedMaps {
   SvbrdfMaps maps;
   ReflectanceConvention convention;
-  std::array<double, 3> light_scale_rgb{1, 1,
-                                        1};  // data.light_scale_rgb, multiplies every light_rgb
+  std::array<double, 3> light_scale_rgb{1, 1, 1};  // multiplies every light_rgb
 };
 
 // `path`: manifest.json of fit or refine, the folder that holds it, or svbrdf.exr alone (then the
 // scale is 1). Throws UserError.
-FitResult ReadFitResult(const std::filesystem::path& path);
+FittedMaps ReadFittedMaps(const std::filesystem::path& path);
 
 // Renders `view` of `set` from the fit, at the set's size.
-std::vector<float> RenderFit(const FitResult& fit, const RectifiedSet& set,
+std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
                              const RectifiedView& view, int threads);
 
 // Writes FOLDER/NAME.png: photograph, rendering and four times their absolute difference, side by

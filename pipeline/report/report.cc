@@ -58,7 +58,7 @@ ReportInput ReadReportInput(const fs::path& work, const std::string& from) {
     input.manifests.emplace(stage, manifest);
   }
   input.set = ReadRectifiedSet(work / "rectify" / "manifest.json");
-  input.fit = ReadFitResult(work / from / "manifest.json");
+  input.fit = ReadFittedMaps(work / from / "manifest.json");
   input.used_views = UsedViews(input.manifests.at(from), input.set);
   return input;
 }

@@ -31,7 +31,7 @@ struct ReportInput {
   std::filesystem::path work;                 // CAPTURE/glint
   std::map<std::string, Manifest> manifests;  // by stage; those that are there, up to `from`
   RectifiedSet set;
-  FitResult fit;
+  FittedMaps fit;
   std::vector<std::string> used_views;  // by name: those that the maps were fitted to
 
   bool Has(const std::string& stage) const { return manifests.count(stage) > 0; }

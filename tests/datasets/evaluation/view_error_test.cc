@@ -51,7 +51,7 @@ TEST(CompareView, SizesMustAgree) {
   EXPECT_THROW(CompareView(Constant(1, 2, 2).rgb, Constant(1), true), std::invalid_argument);
 }
 
-class FitResultTest : public testing::Test {
+class FittedMapsTest : public testing::Test {
  protected:
   void SetUp() override {
     options_.count = 2;
@@ -75,7 +75,7 @@ class FitResultTest : public testing::Test {
     WriteFileAtomically(fit / "manifest.json", ToJson(manifest).dump());
     return fit;
   }
-  ViewError ErrorOf(const FitResult& fit) const {
+  ViewError ErrorOf(const FittedMaps& fit) const {
     return CompareView(RenderFit(fit, set_, set_.views[1], 1),
                        ReadRectifiedImage(set_, set_.views[1]), false);
   }
@@ -87,13 +87,13 @@ class FitResultTest : public testing::Test {
   RectifiedSet set_;
 };
 
-TEST_F(FitResultTest, TrueMapsReRenderTheViewsExactly) {
-  EXPECT_EQ(ErrorOf(ReadFitResult(capture() / "truth/svbrdf.exr")).mse, 0);
-  EXPECT_EQ(ErrorOf(ReadFitResult(WriteFit("fit", Json::object()))).mse, 0);
+TEST_F(FittedMapsTest, TrueMapsReRenderTheViewsExactly) {
+  EXPECT_EQ(ErrorOf(ReadFittedMaps(capture() / "truth/svbrdf.exr")).mse, 0);
+  EXPECT_EQ(ErrorOf(ReadFittedMaps(WriteFit("fit", Json::object()))).mse, 0);
 }
 
-TEST_F(FitResultTest, LightScaleMultipliesTheRendering) {
-  const FitResult fit = ReadFitResult(WriteFit("refine", {{"light_scale_rgb", {2, 2, 2}}}));
+TEST_F(FittedMapsTest, LightScaleMultipliesTheRendering) {
+  const FittedMaps fit = ReadFittedMaps(WriteFit("refine", {{"light_scale_rgb", {2, 2, 2}}}));
   const auto doubled = RenderFit(fit, set_, set_.views[0], 1);
   const auto image = ReadRectifiedImage(set_, set_.views[0]);
   for (size_t i = 0; i < doubled.size(); ++i) {
@@ -101,10 +101,10 @@ TEST_F(FitResultTest, LightScaleMultipliesTheRendering) {
   }
 }
 
-TEST_F(FitResultTest, OtherStagesAndBrokenScalesAreUserErrors) {
-  EXPECT_THROW(ReadFitResult(capture() / "glint/rectify"), UserError);
-  EXPECT_THROW(ReadFitResult(WriteFit("fit", {{"light_scale_rgb", "bright"}})), UserError);
-  EXPECT_THROW(ReadFitResult(folder_.path() / "nothing"), UserError);
+TEST_F(FittedMapsTest, OtherStagesAndBrokenScalesAreUserErrors) {
+  EXPECT_THROW(ReadFittedMaps(capture() / "glint/rectify"), UserError);
+  EXPECT_THROW(ReadFittedMaps(WriteFit("fit", {{"light_scale_rgb", "bright"}})), UserError);
+  EXPECT_THROW(ReadFittedMaps(folder_.path() / "nothing"), UserError);
 }
 
 }  // namespace
