@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "fitting/refine/texel_albedos.h"
 #include "fitting/refine/texel_solver.h"
 
 namespace glint {

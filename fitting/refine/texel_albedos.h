@@ -1,0 +1,20 @@
+// The albedos of one texel in closed form, its normal and roughness given.
+#pragma once
+
+#include "fitting/refine/texel_kernel.h"
+
+namespace glint {
+
+// Albedos that fit the texel best with its normal and roughness as they are: per channel a 2×2
+// least squares of I + 0.01 relative to itself (the logarithm to first order), held toward the
+// albedos of `toward` by `holds` (weights of squared differences, in the parameters' order), and
+// kept in [0, 1]. Clipped observations do not take part.
+struct AlbedoFit {
+  double before = 0;  // sum of squared (relative) residuals with the albedos given …
+  double after = 0;   // … and with those found
+};
+AlbedoFit FitAlbedos(const KernelOptions& options, const TexelObservations& observations,
+                     const double holds[6], const TexelValues& toward, TexelValues* texel,
+                     KernelRows* rows);
+
+}  // namespace glint
