@@ -18,6 +18,7 @@
 #include "fitting/refine/refine_prior.h"
 #include "fitting/refine/texel_parameters.h"
 #include "fitting/refine/texel_residuals.h"
+#include "fitting/reflectance/texel_at.h"
 
 namespace glint {
 namespace {
@@ -60,15 +61,8 @@ void Photograph(const SvbrdfMaps& truth, Scene* scene) {
   for (const View& view : scene->views) {
     std::vector<float> rgb(3 * texels);
     for (size_t t = 0; t < texels; ++t) {
-      TexelSvbrdf<double> texel;
-      for (int i = 0; i < 3; ++i) {
-        texel.normal[i] = truth.plane(kNormalX + i)[t];
-        texel.diffuse[i] = truth.plane(kDiffuseR + i)[t];
-        texel.specular[i] = truth.plane(kSpecularR + i)[t];
-      }
-      texel.roughness = truth.plane(kRoughness)[t];
       double radiance[3];
-      ShadeRadiance(texel,
+      ShadeRadiance(TexelAt(truth, t),
                     TexelGeometryInView<double>(view, LightFalloff::kNone,
                                                 scene->problem.plane.x_mm(int(t % kSize)),
                                                 scene->problem.plane.y_mm(int(t / kSize))),
@@ -125,27 +119,10 @@ struct ViewResiduals {
 
   template <class T>
   bool operator()(const T* x, T* residuals) const {
-    TexelSvbrdf<T> texel;
     using std::log;
     using std::sqrt;
-    const T length = T(1) / sqrt(T(1) + x[kSlopeX] * x[kSlopeX] + x[kSlopeY] * x[kSlopeY]);
-    texel.normal[0] = x[kSlopeX] * length;
-    texel.normal[1] = x[kSlopeY] * length;
-    texel.normal[2] = length;
-    for (int c = 0; c < 3; ++c) {
-      texel.diffuse[c] = x[DiffuseParameter(c)];
-      texel.specular[c] = x[SpecularParameter(c)];
-    }
-    texel.roughness = x[kRough];
-    TexelGeometry<T> view;
-    for (int i = 0; i < 3; ++i) {
-      view.light[i] = T(geometry.light[i]);
-      view.camera[i] = T(geometry.camera[i]);
-      view.half[i] = T(geometry.half[i]);
-      view.irradiance[i] = T(geometry.irradiance[i]);
-      view.ambient[i] = T(geometry.ambient[i]);
-    }
-    view.fresnel = T(geometry.fresnel);
+    const TexelSvbrdf<T> texel = TexelFromValues(x);
+    const TexelGeometry<T> view = GeometryAs<T>(geometry);
     T radiance[3];
     ShadeRadiance(texel, view, options.diffuse_weight, radiance);
     for (int c = 0; c < 3; ++c) {

@@ -31,6 +31,20 @@ void ToTexelValues(const double variables[kTexelParameters], TexelValues* values
                    TexelValues* derivatives);
 void ToVariables(const TexelValues& values, double variables[kTexelParameters]);
 
+// Values as the reflectance model takes them; T may carry derivatives.
+template <class T>
+TexelSvbrdf<T> TexelFromValues(const T values[kTexelParameters]) {
+  using std::sqrt;
+  const T slope_x = values[kSlopeX], slope_y = values[kSlopeY];
+  const T length = T(1) / sqrt(T(1) + slope_x * slope_x + slope_y * slope_y);
+  TexelSvbrdf<T> texel{{slope_x * length, slope_y * length, length}, {}, {}, values[kRough]};
+  for (int c = 0; c < 3; ++c) {
+    texel.diffuse[c] = values[DiffuseParameter(c)];
+    texel.specular[c] = values[SpecularParameter(c)];
+  }
+  return texel;
+}
+
 // One texel out of the maps and back. Reading clamps to what the variables can express.
 TexelValues ReadTexel(const SvbrdfMaps& maps, size_t texel);
 void WriteTexel(const TexelValues& values, size_t texel, SvbrdfMaps* maps);

@@ -7,19 +7,15 @@
 
 #include "datasets/formats/read_maps.h"
 #include "datasets/import/import_set.h"
-#include "fitting/reflectance/brdf.h"
+#include "fitting/reflectance/texel_at.h"
 #include "pipeline/contract/image.h"
+#include "tests/support/data_folder.h"
 #include "tests/support/process.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path Data() {
-  const char* data = std::getenv("GLINT_DATA");
-  return data != nullptr ? data : fs::path(GLINT_SOURCE_DIR) / "../shared/data";
-}
 
 RectifiedSet Import(const fs::path& source, const fs::path& capture, const ImportOptions& options) {
   const ForeignSet foreign = ReadForeignSet(source);
@@ -67,7 +63,7 @@ double Correlation(const std::vector<double>& a, const std::vector<double>& b) {
 // highlight lies below the camera. So the images' x grows to the right and y upward, and views and
 // positions are paired rightly.
 TEST(RealSets, CardsShowTheirHighlightBelowTheCamera) {
-  const fs::path source = Data() / "captures" / "cards-blue";
+  const fs::path source = test::DataFolder() / "captures" / "cards-blue";
   if (!fs::exists(source)) GTEST_SKIP() << "no real data here";
   const test::TemporaryFolder folder;
   ImportOptions options;
@@ -89,7 +85,7 @@ TEST(RealSets, CardsShowTheirHighlightBelowTheCamera) {
 }
 
 TEST(RealSets, BathTileFramesAreCroppedToTheSample) {
-  const fs::path source = Data() / "captures" / "bath-tile";
+  const fs::path source = test::DataFolder() / "captures" / "bath-tile";
   if (!fs::exists(source)) GTEST_SKIP() << "no real data here";
   const ForeignSet foreign = ReadForeignSet(source);
   EXPECT_EQ(foreign.views.size(), 4u);  // of the nine in parameters.json
@@ -103,7 +99,7 @@ TEST(RealSets, BathTileFramesAreCroppedToTheSample) {
 // DIR's own renderings from DIR's own maps: the strip's layout and encodings, the positions, the
 // plane's orientation and the images' encoding all have to be right at once.
 TEST(RealSets, DirRenderingsFollowFromDirMaps) {
-  const fs::path source = Data() / "golden" / "dir2019" / "example_data";
+  const fs::path source = test::DataFolder() / "golden" / "dir2019" / "example_data";
   if (!fs::exists(source)) GTEST_SKIP() << "no real data here";
   const test::TemporaryFolder folder;
   const RectifiedSet set = Import(source, folder.path(), {});
@@ -116,18 +112,11 @@ TEST(RealSets, DirRenderingsFollowFromDirMaps) {
   for (const size_t v : {0, 1, 7, 19}) {
     const RectifiedImage image = ReadRectifiedImage(set, set.views[v]);
     for (size_t i = 0; i < maps.texels(); i += 7) {
-      TexelSvbrdf<double> texel;
-      for (int c = 0; c < 3; ++c) {
-        texel.normal[c] = maps.plane(kNormalX + c)[i];
-        texel.diffuse[c] = maps.plane(kDiffuseR + c)[i];
-        texel.specular[c] = maps.plane(kSpecularR + c)[i];
-      }
-      texel.roughness = maps.plane(kRoughness)[i];
       const int row = static_cast<int>(i) / maps.width, column = static_cast<int>(i) % maps.width;
       const auto geometry = TexelGeometryInView<double>(
           set.views[v].view, set.convention.falloff, set.plane.x_mm(column), set.plane.y_mm(row));
       double radiance[3];
-      ShadeRadiance(texel, geometry, set.convention.diffuse_weight, radiance);
+      ShadeRadiance(TexelAt(maps, i), geometry, set.convention.diffuse_weight, radiance);
       for (size_t c = 0; c < 3; ++c) {
         const double stored = std::pow(image.rgb[c * maps.texels() + i], 1 / 2.2);
         const double rendered = std::pow(std::clamp(radiance[c], 0.0, 1.0), 1 / 2.2);

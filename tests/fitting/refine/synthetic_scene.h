@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fitting/refine/refine.h"
-#include "fitting/reflectance/brdf.h"
+#include "fitting/reflectance/texel_at.h"
 
 namespace glint::test {
 
@@ -70,16 +70,9 @@ inline SyntheticScene Photograph(const SvbrdfMaps& truth, int views, int bits = 
     scene.views.push_back(DirView(x, y));
     std::vector<float> rgb(3 * truth.texels());
     for (size_t t = 0; t < truth.texels(); ++t) {
-      TexelSvbrdf<double> texel;
-      for (int i = 0; i < 3; ++i) {
-        texel.normal[i] = truth.plane(kNormalX + i)[t];
-        texel.diffuse[i] = truth.plane(kDiffuseR + i)[t];
-        texel.specular[i] = truth.plane(kSpecularR + i)[t];
-      }
-      texel.roughness = truth.plane(kRoughness)[t];
       double radiance[3];
       ShadeRadiance(
-          texel,
+          TexelAt(truth, t),
           TexelGeometryInView<double>(scene.views.back(), scene.convention.falloff,
                                       scene.plane.x_mm(static_cast<int>(t) % truth.width),
                                       scene.plane.y_mm(static_cast<int>(t) / truth.width)),

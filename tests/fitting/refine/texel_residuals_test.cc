@@ -9,6 +9,7 @@
 
 #include "fitting/refine/texel_cost.h"
 #include "fitting/refine/texel_parameters.h"
+#include "fitting/reflectance/texel_at.h"
 
 namespace glint {
 namespace {
@@ -82,29 +83,11 @@ void Fill(const Point& point, TexelObservations* observations) {
 std::vector<Jet> AutodiffResiduals(const Point& point, double* nearest_kink) {
   std::array<Jet, kTexelParameters> x;
   for (int i = 0; i < kTexelParameters; ++i) x[i] = Jet(point.texel[i], i);
-  TexelSvbrdf<Jet> texel;
-  const Jet length = 1.0 / sqrt(1.0 + x[kSlopeX] * x[kSlopeX] + x[kSlopeY] * x[kSlopeY]);
-  texel.normal[0] = x[kSlopeX] * length;
-  texel.normal[1] = x[kSlopeY] * length;
-  texel.normal[2] = length;
-  for (int c = 0; c < 3; ++c) {
-    texel.diffuse[c] = x[DiffuseParameter(c)];
-    texel.specular[c] = x[SpecularParameter(c)];
-  }
-  texel.roughness = x[kRough];
+  const TexelSvbrdf<Jet> texel = TexelFromValues(x.data());
   std::vector<Jet> residuals;
   *nearest_kink = 1.0;
   for (size_t v = 0; v < point.geometry.size(); ++v) {
-    const TexelGeometry<double>& from = point.geometry[v];
-    TexelGeometry<Jet> geometry;
-    for (int i = 0; i < 3; ++i) {
-      geometry.light[i] = Jet(from.light[i]);
-      geometry.camera[i] = Jet(from.camera[i]);
-      geometry.half[i] = Jet(from.half[i]);
-      geometry.irradiance[i] = Jet(from.irradiance[i]);
-      geometry.ambient[i] = Jet(from.ambient[i]);
-    }
-    geometry.fresnel = Jet(from.fresnel);
+    const TexelGeometry<Jet> geometry = GeometryAs<Jet>(point.geometry[v]);
     const double dots[2] = {Dot(texel.normal, geometry.light).a,
                             Dot(texel.normal, geometry.camera).a};
     for (const double dot : dots) *nearest_kink = std::min(*nearest_kink, std::abs(dot));

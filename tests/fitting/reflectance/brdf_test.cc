@@ -9,6 +9,7 @@
 #include <random>
 
 #include "fitting/reflectance/brdf_derivatives.h"
+#include "fitting/reflectance/texel_at.h"
 
 namespace glint {
 namespace {
@@ -170,24 +171,11 @@ TexelSvbrdf<Jet> AsVariables(const TexelSvbrdf<double>& texel) {
   return jets;
 }
 
-TexelGeometry<Jet> AsConstants(const TexelGeometry<double>& geometry) {
-  TexelGeometry<Jet> jets;
-  for (int i = 0; i < 3; ++i) {
-    jets.light[i] = Jet(geometry.light[i]);
-    jets.camera[i] = Jet(geometry.camera[i]);
-    jets.half[i] = Jet(geometry.half[i]);
-    jets.irradiance[i] = Jet(geometry.irradiance[i]);
-    jets.ambient[i] = Jet(geometry.ambient[i]);
-  }
-  jets.fresnel = Jet(geometry.fresnel);
-  return jets;
-}
-
 void ExpectJacobianMatchesAutodiff(const Point& point, DiffuseWeight weight, double tolerance) {
   double radiance[3], jacobian[3 * kSvbrdfPlanes];
   ShadeTexel(point.texel, point.geometry, weight, radiance, jacobian);
   Jet expected[3];
-  ShadeRadiance(AsVariables(point.texel), AsConstants(point.geometry), weight, expected);
+  ShadeRadiance(AsVariables(point.texel), GeometryAs<Jet>(point.geometry), weight, expected);
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(radiance[c], expected[c].a, 1e-12 * std::abs(expected[c].a));
     const double largest = expected[c].v.cwiseAbs().maxCoeff();

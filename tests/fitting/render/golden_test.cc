@@ -14,18 +14,14 @@
 #include <vector>
 
 #include "fitting/render/renderer.h"
+#include "tests/support/data_folder.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path GoldenFolder() {
-  const char* data = std::getenv("GLINT_DATA");
-  const fs::path root =
-      data != nullptr ? fs::path(data) : fs::path(GLINT_SOURCE_DIR).parent_path() / "shared/data";
-  return root / "golden/dir2019/example_data";
-}
+fs::path GoldenFolder() { return test::DataFolder() / "golden/dir2019/example_data"; }
 
 // The maps strip: normal | diffuse (gamma 2.2) | roughness | specular, 8 bit.
 SvbrdfMaps ReadStrip(const fs::path& path) {

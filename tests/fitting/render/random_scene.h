@@ -6,8 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "fitting/reflectance/brdf.h"
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/reflectance/texel_at.h"
 #include "fitting/reflectance/view.h"
 
 namespace glint {
@@ -72,17 +71,6 @@ inline const std::vector<ReflectanceConvention>& AllConventions() {
 
 inline SamplePlane TestPlane(int width, int height, const ReflectanceConvention& convention) {
   return {width, height, 100.0, 80.0, convention.sampling};
-}
-
-inline TexelSvbrdf<double> TexelAt(const SvbrdfMaps& maps, size_t i) {
-  TexelSvbrdf<double> texel;
-  for (int a = 0; a < 3; ++a) {
-    texel.normal[a] = maps.plane(kNormalX + a)[i];
-    texel.diffuse[a] = maps.plane(kDiffuseR + a)[i];
-    texel.specular[a] = maps.plane(kSpecularR + a)[i];
-  }
-  texel.roughness = maps.plane(kRoughness)[i];
-  return texel;
 }
 
 }  // namespace glint
