@@ -47,6 +47,12 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+  std::filesystem::path Write(const std::string& name, const std::string& text) const {
+    WriteAll(path_ / name, text);
+    return path_ / name;
+  }
 
  private:
   std::filesystem::path path_;

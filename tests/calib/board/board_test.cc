@@ -2,11 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
+
+#include "tests/support/data_folder.h"
 
 namespace glint {
 namespace {
@@ -19,11 +20,6 @@ Board Charuco(int x, int y) {
   board.marker_mm = 14;
   board.dictionary = "DICT_5X5_100";
   return board;
-}
-
-std::filesystem::path DataFolder() {
-  if (const char* data = std::getenv("GLINT_DATA")) return data;
-  return std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data";
 }
 
 // The board drawn with `pixels_per_mm`, as OpenCV's detector would see it from straight above.
@@ -137,7 +133,7 @@ TEST(Board, LegacyLayoutDiffersForEvenRowsOnly) {
 }
 
 TEST(Board, OpenCv47sPrintedBoardIsReproduced) {
-  const auto file = DataFolder() / "calib/charuco_phone/ChArUco_Marker.png";
+  const auto file = test::DataFolder() / "calib/charuco_phone/ChArUco_Marker.png";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real data";
   const cv::Mat printed = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
   Board board = Charuco(7, 5);

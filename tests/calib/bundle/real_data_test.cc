@@ -14,16 +14,12 @@
 #include "calib/bundle/bundle.h"
 #include "calib/corners/detector.h"
 #include "pipeline/contract/image.h"
+#include "tests/support/data_folder.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path DataFolder() {
-  if (const char* data = std::getenv("GLINT_DATA")) return data;
-  return fs::path(GLINT_SOURCE_DIR) / "../shared/data";
-}
 
 struct Published {
   std::string name;
@@ -63,7 +59,7 @@ std::vector<double> ReadNumbers(const fs::path& file) {
 // Z. Zhang, "A flexible new technique for camera calibration", table 1: five images. Zhang's own
 // corners, so that only the estimation is compared.
 TEST(RealData, ZhangsResultIsReproduced) {
-  const fs::path folder = DataFolder() / "calib/zhang1998";
+  const fs::path folder = test::DataFolder() / "calib/zhang1998";
   if (!fs::exists(folder)) GTEST_SKIP() << "no real data";
   const auto model = ReadNumbers(folder / "Model.txt");
   ASSERT_EQ(model.size(), 512u);
@@ -138,7 +134,7 @@ class LeftCamera : public ::testing::Test {
       problem_.photos.push_back(photo);
     }
   }
-  fs::path folder_ = DataFolder() / "calib/opencv_left_right";
+  fs::path folder_ = test::DataFolder() / "calib/opencv_left_right";
   BundleProblem problem_;
   BundleOptions options_;
 };

@@ -5,12 +5,12 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <functional>
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "tests/support/data_folder.h"
+#include "tests/support/message_of.h"
 #include "tests/support/process.h"
 
 namespace glint {
@@ -21,20 +21,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr int kSide = 32;
-
-std::string MessageOf(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-fs::path Data() {
-  const char* data = std::getenv("GLINT_DATA");
-  return data != nullptr ? data : fs::path(GLINT_SOURCE_DIR) / "../shared/data";
-}
 
 // Fills tile `index` of a strip (or a whole image) with one colour.
 void Fill(Image* image, int index, std::array<float, 3> color) {
@@ -113,7 +99,7 @@ class MapFolder : public testing::Test {
     Write("Roughness", {0.0f, 0.0f, 0.0f});
   }
   std::string Message() {
-    return MessageOf([&] { ReadMaps(folder_.path()); });
+    return test::MessageOf<UserError>([&] { ReadMaps(folder_.path()); });
   }
   test::TemporaryFolder folder_;
 };
@@ -164,7 +150,9 @@ TEST(ReadMaps, SvbrdfExrByFileAndByFolder) {
 
 TEST(ReadMaps, WhatIsNoMaterialIsRejected) {
   const test::TemporaryFolder folder;
-  const auto message = [&](const fs::path& path) { return MessageOf([&] { ReadMaps(path); }); };
+  const auto message = [&](const fs::path& path) {
+    return test::MessageOf<UserError>([&] { ReadMaps(path); });
+  };
   EXPECT_THAT(message(folder.path() / "absent"), HasSubstr("no such file"));
   EXPECT_THAT(message(folder.path()), HasSubstr("no maps that are known"));
   WritePng(folder.path() / "square.png", Image(64, 64, {"R", "G", "B"}), 8);
@@ -181,7 +169,7 @@ TEST(ReadMaps, WhatIsNoMaterialIsRejected) {
 
 // All normals of real materials point up, on the whole, and every value is in its range.
 TEST(ReadMaps, RealMaterialsAreInRange) {
-  const fs::path materials = Data() / "materials" / "validation";
+  const fs::path materials = test::DataFolder() / "materials" / "validation";
   if (!fs::exists(materials)) GTEST_SKIP() << "no real data here";
   int read = 0;
   for (const auto& entry : fs::directory_iterator(materials)) {

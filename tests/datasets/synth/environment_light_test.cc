@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
 #include "datasets/procedural/material.h"
 #include "fitting/reflectance/brdf.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
+#include "tests/support/data_folder.h"
 #include "tests/support/process.h"
 
 namespace glint {
@@ -102,9 +102,7 @@ TEST(ReadEnvironment, WrongMapsAreUserErrors) {
 }
 
 TEST(ReadEnvironment, RealMapsAreReadAndPrecise) {
-  const char* given = std::getenv("GLINT_DATA");
-  const fs::path data =
-      given != nullptr ? fs::path(given) : fs::path(GLINT_SOURCE_DIR).parent_path() / "shared/data";
+  const fs::path data = test::DataFolder();
   if (!fs::exists(data / "env")) GTEST_SKIP() << "no environment maps";
   const SvbrdfMaps maps = MakeMaterial("leather", 12, 32, 32);
   for (const std::string name : {"city.hdr", "lobby.hdr", "photo_studio_loft_hall_1k.exr"}) {

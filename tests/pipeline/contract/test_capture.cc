@@ -3,7 +3,8 @@
 
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/errors.h"
-#include "tests/pipeline/contract/temp_folder.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -42,13 +43,13 @@ class CaptureTest : public ::testing::Test {
     return ReadCapture(folder_.path());
   }
   std::string Complaint(const std::string& text) {
-    return MessageOf<UserError>([&] { Read(text); });
+    return test::MessageOf<UserError>([&] { Read(text); });
   }
   std::string Replaced(const std::string& what, const std::string& with) {
     std::string text = kGood;
     return text.replace(text.find(what), what.size(), with);
   }
-  TempFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(CaptureTest, ReadsEveryTable) {
@@ -63,7 +64,7 @@ TEST_F(CaptureTest, ReadsEveryTable) {
 }
 
 TEST_F(CaptureTest, MissingFileSaysHowToWriteOne) {
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadCapture(folder_.path()); }),
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadCapture(folder_.path()); }),
               AllOf(HasSubstr("capture.toml"), HasSubstr("glint init")));
 }
 

@@ -8,7 +8,8 @@
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/jpeg_end.h"
-#include "tests/pipeline/contract/temp_folder.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -24,7 +25,7 @@ Image Gradient(int width, int height, std::vector<std::string> channels) {
 }
 
 TEST(Exr, RoundTripKeepsEverySampleAndAttribute) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const Image image = Gradient(37, 21, {"R", "G", "B", "mask.Y"});
   WriteExr(folder / "a.exr", image, {{"note", "value"}});
   std::map<std::string, std::string> attributes;
@@ -41,7 +42,7 @@ TEST(Exr, RoundTripKeepsEverySampleAndAttribute) {
 }
 
 TEST(Exr, IdenticalImagesGiveIdenticalBytes) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const Image image = Gradient(64, 64, {"R", "G", "B"});
   WriteExr(folder / "a.exr", image);
   ::usleep(1100 * 1000);  // a time stamp would have a resolution of one second
@@ -50,7 +51,7 @@ TEST(Exr, IdenticalImagesGiveIdenticalBytes) {
 }
 
 TEST(Photo, EightBitPngKeepsItsValues) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   WritePng(folder / "a.png", Gradient(32, 32, {"R", "G", "B"}), 8);
   const Photo photo = ReadPhoto(folder / "a.png");
   EXPECT_EQ(photo.bits, 8);
@@ -61,9 +62,9 @@ TEST(Photo, EightBitPngKeepsItsValues) {
 }
 
 TEST(Photo, BadFilesAreNamed) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const auto complaint = [&](const std::string& name) {
-    return MessageOf<UserError>([&] { ReadPhoto(folder / name); });
+    return test::MessageOf<UserError>([&] { ReadPhoto(folder / name); });
   };
   EXPECT_THAT(complaint("missing.jpg"), HasSubstr("no such file"));
   folder.Write("empty.jpg", "");
@@ -93,11 +94,12 @@ TEST(Photo, JpegIsCompleteUpToItsOwnEndMarker) {
 }
 
 TEST(Photo, TruncatedPngIsRefused) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   WritePng(folder / "whole.png", Gradient(256, 256, {"R", "G", "B"}), 16);
   const std::string bytes = ReadTextFile(folder / "whole.png");
   folder.Write("cut.png", bytes.substr(0, bytes.size() / 2));
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadPhoto(folder / "cut.png"); }), HasSubstr("cut.png"));
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadPhoto(folder / "cut.png"); }),
+              HasSubstr("cut.png"));
 }
 
 }  // namespace

@@ -4,7 +4,8 @@
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
 #include "pipeline/contract/manifest.h"
-#include "tests/pipeline/contract/temp_folder.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -26,9 +27,9 @@ class ManifestTest : public ::testing::Test {
   std::filesystem::path Write() { return folder_.Write("manifest.json", json_.dump()); }
   std::string Complaint() {
     const auto file = Write();
-    return MessageOf<UserError>([&] { VerifyOutputs(file, ReadManifest(file, "demo")); });
+    return test::MessageOf<UserError>([&] { VerifyOutputs(file, ReadManifest(file, "demo")); });
   }
-  TempFolder folder_;
+  test::TemporaryFolder folder_;
   Manifest manifest_;
   Json json_;
 };
@@ -70,7 +71,7 @@ TEST_F(ManifestTest, AbsolutePathsAreRefused) {
 
 TEST_F(ManifestTest, TextThatIsNoJsonIsRefused) {
   const auto file = folder_.Write("manifest.json", "{ not json");
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadManifest(file); }), HasSubstr("not JSON"));
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadManifest(file); }), HasSubstr("not JSON"));
 }
 
 }  // namespace

@@ -5,7 +5,8 @@
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/options.h"
-#include "tests/pipeline/contract/temp_folder.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -37,12 +38,12 @@ class OptionsTest : public ::testing::Test {
     options_.LoadToml(folder_.Write("capture.toml", "[fit]\n" + table), "fit");
   }
   std::string Complaint(const std::string& table) {
-    return MessageOf<UserError>([&] { Load(table); });
+    return test::MessageOf<UserError>([&] { Load(table); });
   }
   Sample sample_;
   OptionSet options_;
   CLI::App app_;
-  TempFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(OptionsTest, CommandLineWinsOverTheFile) {

@@ -4,7 +4,8 @@
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/stage.h"
-#include "tests/pipeline/contract/temp_folder.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -28,7 +29,7 @@ class StageTest : public ::testing::Test {
   }
   std::string Result() const { return ReadTextFile(folder_ / "glint/demo/out.txt"); }
 
-  TempFolder folder_;
+  test::TemporaryFolder folder_;
   OptionSet options_;
   CommonOptions common_;
   double alpha_ = 1;
@@ -73,7 +74,7 @@ TEST_F(StageTest, CommitReplacesTheWholeResult) {
 
 TEST_F(StageTest, TwoAtOnceAreRefused) {
   const Stage first = Make();
-  EXPECT_THAT(MessageOf<UserError>([&] { Make(); }), HasSubstr("another process"));
+  EXPECT_THAT(test::MessageOf<UserError>([&] { Make(); }), HasSubstr("another process"));
 }
 
 TEST_F(StageTest, ManifestIsFreeOfThePlace) {
@@ -84,7 +85,7 @@ TEST_F(StageTest, ManifestIsFreeOfThePlace) {
 }
 
 TEST_F(StageTest, AnInputOutsideTheCaptureIsKnownByNameAndContent) {
-  const TempFolder elsewhere;
+  const test::TemporaryFolder elsewhere;
   elsewhere.Write("weights.bin", "1");
   const auto make = [&] {
     return Stage(folder_ / "wood/glint/demo", {"demo", 1}, options_, common_,

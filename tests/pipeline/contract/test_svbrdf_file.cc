@@ -6,7 +6,8 @@
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/svbrdf_file.h"
-#include "tests/pipeline/contract/temp_folder.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -27,7 +28,7 @@ SvbrdfMaps Ramp(int width, int height) {
 }
 
 TEST(SvbrdfFile, RoundTripKeepsMapsAndConvention) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const SvbrdfMaps maps = Ramp(24, 16);
   WriteSvbrdf(folder / "s.exr", maps, ReflectanceConvention::Dir2019());
   ReflectanceConvention convention;
@@ -36,13 +37,14 @@ TEST(SvbrdfFile, RoundTripKeepsMapsAndConvention) {
 }
 
 TEST(SvbrdfFile, MissingChannelsAndWildValuesAreNamed) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   WriteExr(folder / "rgb.exr", Image(4, 4, {"R", "G", "B"}));
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadSvbrdf(folder / "rgb.exr"); }), HasSubstr("normal.X"));
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadSvbrdf(folder / "rgb.exr"); }),
+              HasSubstr("normal.X"));
   SvbrdfMaps maps = Ramp(4, 4);
   maps.at(kRoughness, 1, 1) = 7;
   WriteSvbrdf(folder / "wild.exr", maps, {});
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadSvbrdf(folder / "wild.exr"); }),
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadSvbrdf(folder / "wild.exr"); }),
               HasSubstr("roughness.Y"));
 }
 

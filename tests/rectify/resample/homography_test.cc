@@ -3,21 +3,16 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "rectify/resample/resample.h"
+#include "tests/support/data_folder.h"
 
 namespace glint {
 namespace {
 
-std::filesystem::path GraffitiFolder() {
-  const char* data = std::getenv("GLINT_DATA");
-  const std::filesystem::path root =
-      data != nullptr ? data : std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data";
-  return root / "homography" / "oxford_graf";
-}
+std::filesystem::path GraffitiFolder() { return test::DataFolder() / "homography/oxford_graf"; }
 
 Eigen::Matrix3d ReadHomography(const std::filesystem::path& file) {
   std::ifstream stream(file);
