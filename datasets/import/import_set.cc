@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -109,21 +108,6 @@ void RequireSize(const LinearPhoto& photo, const ForeignView& view, PixelSize wa
   throw UserError(view.image, "size", fmt::format("{}x{}", photo.width(), photo.height()),
                   fmt::format("{} is {}x{}; give all images one size", first.filename().string(),
                               wanted.width, wanted.height));
-}
-
-std::string ViewName(size_t index) {
-  char name[32];
-  std::snprintf(name, sizeof(name), "view_%03zu", index);
-  return name;
-}
-
-// Replaces the light by a guess where the source gives none.
-void GuessLight(const LightGuess& guess, RectifiedSet* set) {
-  std::vector<View> views;
-  for (const RectifiedView& view : set->views) views.push_back(view.view);
-  const double power = guess.Power(views);
-  if (!(power > 0)) return;
-  for (RectifiedView& view : set->views) view.view.light_rgb = {power, power, power};
 }
 
 }  // namespace
@@ -237,7 +221,7 @@ ImportSummary ImportSet(const ForeignSet& foreign, const ImportOptions& options,
     set.views.push_back(std::move(view));
     progress.Advance(1, source.name);
   }
-  if (!foreign.light_power_given) GuessLight(guess, &set);
+  if (!foreign.light_power_given) GiveLight(guess, &set);
   stage->Commit(ToJson(set), summary.metrics);
   set.manifest_file = stage->manifest_file();
   return summary;

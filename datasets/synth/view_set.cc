@@ -101,7 +101,7 @@ RectifiedSet SetOf(const PlannedViews& planned, bool is_float) {
   set.convention = planned.convention;
   for (size_t i = 0; i < planned.views.size(); ++i) {
     RectifiedView view;
-    view.name = fmt::format("view_{:03}", i);
+    view.name = ViewName(i);
     view.file = view.name + ".exr";
     view.photo = PhotoName(static_cast<int>(i), is_float);
     view.ldr = !is_float;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "pipeline/contract/errors.h"
@@ -70,6 +71,12 @@ bool Names(const RectifiedView& view, const std::string& name) {
 }
 
 }  // namespace
+
+std::string ViewName(size_t index) {
+  char name[32];
+  std::snprintf(name, sizeof(name), "view_%03zu", index);
+  return name;
+}
 
 Json ToJson(const RectifiedSet& set) {
   Json data;

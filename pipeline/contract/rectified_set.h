@@ -29,6 +29,9 @@ struct RectifiedSet {
   std::vector<RectifiedView> views;
 };
 
+// What views are called that have no better name: "view_007".
+std::string ViewName(size_t index);
+
 // Values of one view: `rgb` planar [3·H·W], linear; `mask` [H·W], 1 = usable.
 struct RectifiedImage {
   int width = 0, height = 0;

@@ -74,4 +74,12 @@ double LightGuess::Power(const std::vector<View>& views) const {
   return std::max(median / kMedianAlbedo, bright / kBrightAlbedo);
 }
 
+void GiveLight(const LightGuess& guess, RectifiedSet* set) {
+  std::vector<View> views;
+  for (const RectifiedView& view : set->views) views.push_back(view.view);
+  const double power = guess.Power(views);
+  if (!(power > 0)) return;
+  for (RectifiedView& view : set->views) view.view.light_rgb = {power, power, power};
+}
+
 }  // namespace glint

@@ -32,4 +32,8 @@ class LightGuess {
   std::vector<std::vector<float>> radiance_;  // per view and point; negative: not usable
 };
 
+// Gives the views the power that `guess` ends with, white; without one they stay as they are.
+// Ambient light is in the views' own units and stays.
+void GiveLight(const LightGuess& guess, RectifiedSet* set);
+
 }  // namespace glint

@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
@@ -19,12 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kWorthAWarning = 0.01;  // of the texels
-
-std::string ViewName(size_t index) {
-  char name[32];
-  std::snprintf(name, sizeof(name), "view_%03zu", index);
-  return name;
-}
 
 void CheckSize(const fs::path& file, const Camera& camera) {
   const auto [width, height] = PhotoSize(file);
@@ -50,15 +43,6 @@ void SetExposures(const std::vector<double>& by_exif, const RectifyOptions& opti
                      std::all_of(by_exif.begin(), by_exif.end(), [](double e) { return e > 0; });
   if (!known) return;
   for (size_t i = 0; i < views->size(); ++i) (*views)[i].view.exposure = by_exif[i] / by_exif[0];
-}
-
-// Puts a guess where calib had nothing to go by. Ambient light is in the same units, so it stays.
-void GuessLight(const LightGuess& guess, RectifiedSet* set) {
-  std::vector<View> views;
-  for (const RectifiedView& view : set->views) views.push_back(view.view);
-  const double power = guess.Power(views);
-  if (!(power > 0)) return;
-  for (RectifiedView& view : set->views) view.view.light_rgb = {power, power, power};
 }
 
 void Warn(const fs::path& file, const ViewCounts& counts) {
@@ -141,7 +125,7 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     progress.Advance(1, calibrated.photo);
   }
   SetExposures(exposures, options, &set.views);
-  if (!set.light_power_known) GuessLight(guess, &set);
+  if (!set.light_power_known) GiveLight(guess, &set);
   stage->Commit(ToJson(set), summary.metrics);
   set.manifest_file = stage->manifest_file();
   return summary;
