@@ -88,7 +88,7 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info, OptionSet* option
   app.add_flag("--json", common.json, "write the result to stdout as JSON")->group("Common");
   app.add_flag("--force", common.force, "compute although the result is up to date")
       ->group("Common");
-  app.add_flag("--check", common.check, "only say whether the result is up to date")
+  app.add_flag("--status", common.check, "only say whether the result is up to date")
       ->group("Common");
   try {
     app.parse(argc, argv);

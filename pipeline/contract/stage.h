@@ -27,7 +27,7 @@ struct StageInfo {
   int version = 1;   // raised whenever the same inputs give other bytes
 };
 
-// Thrown by Stage's constructor under --check; the front end prints it and ends with exit code 0.
+// Thrown by Stage's constructor under --status; the front end prints it and ends with exit code 0.
 struct StageCheck {
   std::string stage;
   std::string why_stale;  // empty: up to date
@@ -38,7 +38,7 @@ Json ToJson(const StageCheck& check);
 class Stage {
  public:
   // `inputs`: every file the result depends on (hashed here). Takes the stage folder's lock.
-  // With `force` (or --force) the result is never up to date; under --check throws StageCheck and
+  // With `force` (or --force) the result is never up to date; under --status throws StageCheck and
   // touches nothing.
   Stage(std::filesystem::path folder, StageInfo info, const OptionSet& options,
         const CommonOptions& common, std::vector<std::filesystem::path> inputs, bool force = false);

@@ -72,7 +72,7 @@ void AskProgram(const Capture& capture, const StageStep& step, StageStatus* stat
   ChildProcess child;
   child.arguments = {RequireGlintProgram("glint-" + step.stage).string(), capture.folder.string()};
   child.arguments.insert(child.arguments.end(), step.arguments.begin(), step.arguments.end());
-  child.arguments.insert(child.arguments.end(), {"--check", "--json", "--log-level", "off"});
+  child.arguments.insert(child.arguments.end(), {"--status", "--json", "--log-level", "off"});
   std::string text;
   child.on_line = [&text](const std::string& line) { text += line + "\n"; };
   const int code = RunChild(child);
@@ -83,7 +83,7 @@ void AskProgram(const Capture& capture, const StageStep& step, StageStatus* stat
   }
   const Json answer = Json::parse(text, nullptr, false);
   if (!answer.is_object() || !answer.contains("up_to_date")) {
-    status->why = "glint-" + step.stage + " does not answer --check";
+    status->why = "glint-" + step.stage + " does not answer --status";
     return;
   }
   if (answer["up_to_date"] == true) {

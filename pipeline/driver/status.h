@@ -29,7 +29,7 @@ struct CaptureStatus {
   Json ToJson() const;
 };
 
-// Asks each stage's program (glint-<stage> --check), with the options of `steps`. Writes nothing.
+// Asks each stage's program (glint-<stage> --status), with the options of `steps`. Writes nothing.
 // A stage that reads a stale result is stale; its program is not asked.
 CaptureStatus LookAtCapture(const Capture& capture, const std::vector<StageStep>& steps);
 

@@ -90,7 +90,7 @@ TEST_F(ProgramsTest, WrongUsageEndsWithTwoAndSaysWhy) {
   expect(Eval({"table1"}), "work");
   expect(Eval({"count", "--counts", "1.5", "--work", Path("w")}), "whole numbers");
   expect(Eval({"table1", "--methods", "luck", "--work", Path("w")}), "luck");
-  expect(Eval({"count", "--check", "--work", Path("w")}), "check");
+  expect(Eval({"count", "--status", "--work", Path("w")}), "status");
   expect(Eval({"ablation", "--work", Path("w")}), "NAME=FILE");
   EXPECT_TRUE(fs::is_empty(folder_.path()));
 }

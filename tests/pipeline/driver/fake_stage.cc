@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
   options.Add("sleep", &o.sleep_s, "seconds", glint::Invalidates::kNo);
   CLI::App app;
   options.Register(&app);
-  app.add_flag("--check", o.check);
+  app.add_flag("--status", o.check);
   app.add_flag("--force", o.force);
   app.add_flag("--json", o.json);
   app.add_option("--log-level", o.log_level);
