@@ -1,0 +1,24 @@
+// The sentences of a verdict. Each has a topic, by which tests and programs know it:
+//   unseen      part of the sample is in no photograph
+//   focal       the focal length is assumed, or known poorly
+//   few         more photographs lower the errors
+//   tilted      all photographs look straight down
+//   sides       tilted photographs come from one side
+//   top         no photograph near the top
+//   highlight   part of the sample never shows a highlight
+//   clipped     too much of the sample is clipped in some photographs
+//   resolution  a texel is smaller than a pixel
+//   left_out    photographs that are not used
+//   cut         photographs that show part of the sample only
+#pragma once
+
+#include <vector>
+
+#include "calib/guidance/verdict.h"
+
+namespace glint {
+
+// Of a verdict whose figures are filled; sorted by importance, within it in the order above.
+std::vector<Advice> AdviceFor(const GuidanceInput& input, const Verdict& verdict);
+
+}  // namespace glint

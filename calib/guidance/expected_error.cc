@@ -1,0 +1,31 @@
+#include "calib/guidance/expected_error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+struct Row {
+  double photos, maps, render;
+};
+constexpr std::array<Row, 4> kTable{
+    {{1, .01357, .00515}, {2, .01212, .00482}, {5, .00857, .00131}, {20, .00636, .00005}}};
+
+double Between(double low, double high, double part) {
+  return std::exp(std::log(low) + part * (std::log(high) - std::log(low)));
+}
+
+}  // namespace
+
+ExpectedError ErrorForPhotos(double photos) {
+  const double n = std::clamp(photos, kTable.front().photos, kTable.back().photos);
+  size_t i = 0;
+  while (i + 2 < kTable.size() && n > kTable[i + 1].photos) ++i;
+  const Row &a = kTable[i], &b = kTable[i + 1];
+  const double part = std::log(n / a.photos) / std::log(b.photos / a.photos);
+  return {Between(a.maps, b.maps, part), Between(a.render, b.render, part)};
+}
+
+}  // namespace glint
