@@ -1,5 +1,10 @@
 // glint-calib: photographs of a sample on a board to cameras, poses and the light's power.
+#include <fmt/format.h>
+
+#include <chrono>
+
 #include "calib/capture/calibrate_capture.h"
+#include "calib/capture/guide_capture.h"
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/program.h"
@@ -7,8 +12,20 @@
 namespace glint {
 namespace {
 
+ProgramResult Check(const Capture& capture, const CalibOptions& options,
+                    const CommonOptions& common) {
+  const auto start = std::chrono::steady_clock::now();
+  const CalibSummary summary = CheckCapture(capture, options, common);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return {TextOf(summary.guidance) + fmt::format("checked in {:.1f} s\n", seconds),
+          {{"capture", capture.folder.string()},
+           {"seconds", seconds},
+           {"guidance", ToJson(summary.guidance)}}};
+}
+
 ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOptions* options,
-                  const CommonOptions& common) {
+                  bool check, const CommonOptions& common) {
   const Capture capture = ReadCapture(folder);
   set->LoadToml(capture.file, "calib");
   if (!capture.has_board) {
@@ -20,6 +37,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOpti
     throw UserError(capture.file, "photos", "no photographs",
                     "give files = [\"photos/*.jpg\"] in [photos]");
   }
+  if (check) return Check(capture, *options, common);
   CalibTask task = ResolveTask(capture);
   AddTask(set, &task);
   Stage stage(capture.work() / "calib", {"calib", kCalibVersion}, *set, common,
@@ -42,12 +60,18 @@ int main(int argc, char** argv) {
   glint::OptionSet set;
   set.AddPositional("capture", &folder, "the capture's folder", false);
   glint::AddCalibOptions(&set, &options);
+  bool check = false;
+  set.Add("check", &check,
+          "look at the photographs quickly and say what is missing while the sample still lies on "
+          "the table; writes nothing",
+          glint::Invalidates::kNo);
   const glint::ProgramInfo info{
       "glint-calib",
       "Finds the board in each photograph and estimates intrinsics, poses and the flash's power.",
       GLINT_VERSION,
-      "Examples:\n  glint calib wood\n  glint calib wood --model RADIAL --cameras one"};
+      "Examples:\n  glint calib wood\n  glint calib wood --model RADIAL --cameras one\n"
+      "  glint calib wood --check"};
   return glint::RunProgram(argc, argv, info, &set, [&](const glint::CommonOptions& common) {
-    return glint::Run(folder, &set, &options, common);
+    return glint::Run(folder, &set, &options, check, common);
   });
 }

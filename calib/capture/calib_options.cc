@@ -64,6 +64,8 @@ CalibTask ResolveTask(const Capture& capture) {
   task.light_offset_mm.assign(capture.light_offset_mm.begin(), capture.light_offset_mm.end());
   task.light_power.assign(capture.light_power.begin(), capture.light_power.end());
   task.ambient.assign(capture.ambient.begin(), capture.ambient.end());
+  task.sample_mm.assign(capture.sample_size_mm.begin(), capture.sample_size_mm.end());
+  task.resolution_px.assign(capture.resolution_px.begin(), capture.resolution_px.end());
   return task;
 }
 
@@ -74,6 +76,8 @@ void AddTask(OptionSet* set, CalibTask* task) {
   set->Add("light-offset-mm", &task->light_offset_mm, "from [light]");
   set->Add("light-power", &task->light_power, "from [light]");
   set->Add("ambient", &task->ambient, "from [light]");
+  set->Add("sample-mm", &task->sample_mm, "from [sample] size_mm");
+  set->Add("resolution-px", &task->resolution_px, "from [sample]");
 }
 
 }  // namespace glint

@@ -21,6 +21,7 @@ struct CalibOptions {
   int min_corners = 6;
   int detect_px = 1600;             // boards are looked for in a copy of this size
   double paper_reflectance = 0.85;  // of the board's white, for the light's power
+  int quick_px = 0;  // no option: read photographs reduced to this for a quick look; 0: whole
 };
 
 void AddCalibOptions(OptionSet* set, CalibOptions* options);
@@ -33,6 +34,7 @@ struct CalibTask {
   std::vector<double> board_centre_mm;
   std::string encoding;
   std::vector<double> light_offset_mm, light_power, ambient;
+  std::vector<double> sample_mm, resolution_px;  // of the guidance
 };
 
 CalibTask ResolveTask(const Capture& capture);

@@ -9,6 +9,9 @@
 
 #include "calib/bundle/residual_picture.h"
 #include "calib/camera/orientation.h"
+#include "calib/capture/guide_capture.h"
+#include "calib/guidance/coverage_picture.h"
+#include "calib/guidance/polar_picture.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 
@@ -193,6 +196,8 @@ void WriteOutputs(const CalibSummary& summary, Stage* stage) {
              ResidualPicture(summary.bundle, static_cast<int>(c)));
   }
   WriteFileAtomically(stage->Output("residuals.json"), ResidualsOf(summary).dump(1) + "\n");
+  WriteFileAtomically(stage->Output("guidance_views.svg"), PolarPictureSvg(summary.guidance));
+  WritePng(stage->Output("guidance_coverage.png"), CoveragePicture(summary.guidance));
 }
 
 }  // namespace
@@ -211,17 +216,30 @@ std::vector<std::filesystem::path> CalibInputs(const Capture& capture,
   return inputs;
 }
 
-CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& options,
-                              const CommonOptions& common, Stage* stage) {
+CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, int threads) {
   CalibSummary summary;
-  summary.photos = DetectPhotos(capture, options, common.threads);
+  summary.photos = DetectPhotos(capture, options, threads);
   summary.groups = GroupCameras(capture.file, options.cameras, summary.photos);
   RequireBoard(capture, options, summary.photos);
-  const BundleProblem problem = MakeProblem(summary.photos, summary.groups, &summary.photo_index);
-  summary.bundle = Adjust(capture, options, problem);
-  WarnOfUncertainty(summary.bundle);
-  FillPhotos(capture, &summary);
-  FillLight(capture, options, &summary);
+  return summary;
+}
+
+void SolveCapture(const Capture& capture, const CalibOptions& options,
+                  const std::vector<Camera>& assumed, CalibSummary* summary) {
+  summary->photo_index.clear();
+  BundleProblem problem = MakeProblem(summary->photos, summary->groups, &summary->photo_index);
+  for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
+  summary->bundle = Adjust(capture, options, std::move(problem));
+  WarnOfUncertainty(summary->bundle);
+  FillPhotos(capture, summary);
+  FillLight(capture, options, summary);
+  summary->guidance = Judge(GuidanceInputOf(capture, *summary, !assumed.empty()));
+}
+
+CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& options,
+                              const CommonOptions& common, Stage* stage) {
+  CalibSummary summary = DetectCapture(capture, options, common.threads);
+  SolveCapture(capture, options, {}, &summary);
   WriteOutputs(summary, stage);
   stage->Commit(ToJson(summary.calibration), MetricsOf(summary));
   return summary;

@@ -8,6 +8,7 @@
 #include "calib/capture/calib_options.h"
 #include "calib/capture/camera_groups.h"
 #include "calib/capture/detect_photos.h"
+#include "calib/guidance/verdict.h"
 #include "calib/light/power.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/program.h"
@@ -15,7 +16,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 1;
+inline constexpr int kCalibVersion = 2;
 
 struct RejectedPhoto {
   std::string name, reason;
@@ -30,6 +31,7 @@ struct CalibSummary {
   std::vector<RejectedPhoto> rejected;
   PowerEstimate power;       // photo_power as calibration.photos
   std::string power_source;  // "capture.toml", "board" or "guess"
+  Verdict guidance;
 
   // Index into bundle.photos of a detected photograph; −1: it has no corners.
   int BundleIndex(size_t photo) const;
@@ -42,6 +44,12 @@ std::vector<std::filesystem::path> CalibInputs(const Capture& capture, const Cal
 // Throws UserError and ComputationError as its parts do.
 CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& options,
                               const CommonOptions& common, Stage* stage);
+
+// Its steps. Corners and cameras; then all but what is written. `assumed`: intrinsics to take as
+// they are, one per camera, or none at all.
+CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, int threads);
+void SolveCapture(const Capture& capture, const CalibOptions& options,
+                  const std::vector<Camera>& assumed, CalibSummary* summary);
 
 // report.cc
 Json MetricsOf(const CalibSummary& summary);

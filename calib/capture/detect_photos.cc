@@ -4,19 +4,33 @@
 
 #include <algorithm>
 #include <opencv2/core.hpp>
+#include <tuple>
 
 #include "base/parallel/parallel.h"
+#include "calib/capture/reduced_photo.h"
 #include "calib/corners/markers.h"
+#include "calib/guidance/clipping.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/progress.h"
 
 namespace glint {
 namespace {
 
+// From a reduced copy to the photograph itself.
+void Enlarge(int reduction, std::pair<int, int> size, DetectedPhoto* photo) {
+  std::tie(photo->width_px, photo->height_px) = size;
+  for (CornerObservation& corner : photo->detection.corners) {
+    corner.point_px *= reduction;
+    corner.sigma_px *= reduction;
+  }
+}
+
 DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
                         const std::string& name, bool board_photo) {
   const std::filesystem::path file = capture.folder / name;
-  const Photo photo = ReadPhoto(file);
+  int reduction = 1;
+  const Photo photo =
+      options.quick_px > 0 ? ReadReducedPhoto(file, options.quick_px, &reduction) : ReadPhoto(file);
   DetectedPhoto detected;
   detected.name = name;
   detected.board_photo = board_photo;
@@ -35,7 +49,10 @@ DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
   if (!board_photo && !detected.detection.corners.empty()) {
     const Encoding encoding = ResolveEncoding(capture.encoding, file, photo.bits);
     detected.paper = SamplePaper(photo, encoding, capture.board, detected.detection.corners);
+    detected.sample_clipped_share =
+        ClippedShareOfSample(photo, detected.detection.corners, capture.sample_size_mm);
   }
+  if (reduction > 1) Enlarge(reduction, PhotoSize(file), &detected);
   return detected;
 }
 

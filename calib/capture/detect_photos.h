@@ -19,8 +19,9 @@ struct DetectedPhoto {
   double focal_length_35mm = 0;     // EXIF; 0: not told
   double exposure = 0;              // time · ISO / f-number²; 0: not told
   std::string camera_model;
-  BoardDetection detection;        // corners in the upright picture
-  std::vector<PaperSample> paper;  // of flash photographs
+  BoardDetection detection;         // corners in the upright picture
+  std::vector<PaperSample> paper;   // of flash photographs
+  double sample_clipped_share = 0;  // see guidance/clipping.h
 };
 
 // In the capture's order, flash photographs first. At most `threads` photographs are in memory at a

@@ -95,6 +95,7 @@ Json MetricsOf(const CalibSummary& summary) {
     metrics["rejected_photos"].push_back({{"photo", photo.name}, {"reason", photo.reason}});
   }
   metrics["light"] = LightMetrics(summary);
+  metrics["guidance"] = ToJson(summary.guidance);
   return metrics;
 }
 
@@ -137,7 +138,7 @@ std::string TextOf(const CalibSummary& summary) {
     text += fmt::format(", {} spots of paper, spread over photos {:.1f} %", summary.power.samples,
                         100 * summary.power.spread);
   }
-  return text + ")\n";
+  return text + ")\n" + TextOf(summary.guidance);
 }
 
 }  // namespace glint

@@ -8,6 +8,7 @@
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/jpeg_end.h"
 #include "pipeline/contract/oiio.h"
+#include "pipeline/contract/photo_header.h"
 
 namespace glint {
 namespace {
@@ -136,6 +137,18 @@ Photo ReadPhoto(const std::filesystem::path& file) {
   }
   ReadExif(spec, &photo);
   return photo;
+}
+
+PhotoHeader ReadPhotoHeader(const std::filesystem::path& file) {
+  const OIIO::ImageSpec configuration = Configuration();
+  const auto input = OpenImage(file, &configuration);
+  const OIIO::ImageSpec& spec = input->spec();
+  PhotoHeader header;
+  header.is_jpeg = std::string_view(input->format_name()) == "jpeg";
+  header.stored_width = spec.width;
+  header.stored_height = spec.height;
+  ReadExif(spec, &header.photo);
+  return header;
 }
 
 std::pair<int, int> PhotoSize(const std::filesystem::path& file) {

@@ -1,0 +1,92 @@
+#include "calib/capture/guide_capture.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/camera/orientation.h"
+#include "pipeline/contract/errors.h"
+
+namespace glint {
+namespace {
+
+constexpr int kQuick_px = 2100;           // 12 megapixels at half, 50 at a quarter of their size
+constexpr double kPhoneFocal_mm = 26;     // 35 mm equivalent
+constexpr double kFullFrame_mm = 43.267;  // diagonal
+
+const DetectedPhoto& FindPhoto(const CalibSummary& summary, const std::string& name) {
+  return *std::find_if(summary.photos.begin(), summary.photos.end(),
+                       [&](const DetectedPhoto& photo) { return photo.name == name; });
+}
+
+// Of a picture with the stored size of the group, without distortion.
+Camera AssumedCamera(const CalibSummary& summary, const CameraGroup& group, CameraModel model) {
+  double focal_mm = summary.photos[group.photos.front()].focal_length_35mm;
+  if (!(focal_mm > 0)) focal_mm = kPhoneFocal_mm;
+  const double focal_px = focal_mm / kFullFrame_mm * std::hypot(group.width_px, group.height_px);
+  Camera camera{model, group.width_px, group.height_px, {}};
+  for (const std::string& name : CameraParameterNames(model)) {
+    const double value = name[0] == 'f' ? focal_px
+                         : name == "cx" ? 0.5 * group.width_px
+                         : name == "cy" ? 0.5 * group.height_px
+                                        : 0;
+    camera.parameters.push_back(value);
+  }
+  return camera;
+}
+
+}  // namespace
+
+GuidanceInput GuidanceInputOf(const Capture& capture, const CalibSummary& summary,
+                              bool focal_assumed) {
+  GuidanceInput input;
+  input.sample_size_mm = capture.sample_size_mm;
+  input.resolution_px = capture.resolution_px;
+  input.focal_assumed = focal_assumed;
+  for (const CalibratedPhoto& photo : summary.calibration.photos) {
+    const Rigid3 sample_from_camera = Inverse(photo.camera_from_sample);
+    GuidancePhoto one;
+    one.name = photo.photo;
+    one.camera_in_sample_mm = sample_from_camera.translation;
+    one.light_in_sample_mm = sample_from_camera * photo.light_in_camera_mm;
+    one.posed = {summary.calibration.cameras[photo.camera], photo.camera_from_sample};
+    one.clipped_share = FindPhoto(summary, photo.photo).sample_clipped_share;
+    input.photos.push_back(one);
+  }
+  for (const RejectedPhoto& photo : summary.rejected) {
+    if (FindPhoto(summary, photo.name).board_photo) continue;
+    input.left_out.push_back({photo.name, photo.reason});
+  }
+  for (const CameraEstimate& estimate : summary.bundle.cameras) {
+    if (estimate.photos == 0) continue;
+    const double sigma = estimate.sigma[0] / estimate.camera.focal_length_x();
+    input.focal_sigma = std::max(input.focal_sigma, std::isfinite(sigma) ? sigma : 1.0);
+  }
+  return input;
+}
+
+CalibSummary CheckCapture(const Capture& capture, const CalibOptions& given,
+                          const CommonOptions& common) {
+  CalibOptions options = given;
+  options.quick_px = kQuick_px;
+  CalibSummary summary = DetectCapture(capture, options, common.threads);
+  try {
+    SolveCapture(capture, options, {}, &summary);
+    return summary;
+  } catch (const Error& error) {
+    if (!options.fix_intrinsics.empty()) throw;
+    spdlog::debug("assuming the focal length: {}", error.what());
+  }
+  const CameraModel model = CameraModelFromName(options.model).value_or(CameraModel::kOpenCv);
+  std::vector<Camera> assumed;
+  for (const CameraGroup& group : summary.groups.groups) {
+    assumed.push_back(AssumedCamera(summary, group, model));
+  }
+  summary.calibration = Calibration();
+  summary.rejected.clear();
+  SolveCapture(capture, options, assumed, &summary);
+  return summary;
+}
+
+}  // namespace glint
