@@ -133,6 +133,7 @@ std::string RegionName(const CoverageGrid& grid, const std::vector<bool>& cells)
     ++count;
   }
   if (count == 0) return "none of it";
+  if (count == static_cast<double>(grid.cells())) return "all of it";
   if (count > 0.6 * static_cast<double>(grid.cells())) return "most of it";
   mean /= count;
   constexpr double kAside = 0.3;  // of half the sample

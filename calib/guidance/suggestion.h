@@ -36,7 +36,7 @@ std::string InWords(const Direction& direction);
 std::string SideName(double azimuth_deg);
 
 // What part of the sample the cells marked in `cells` are: "the right edge", "the top left corner",
-// "the rim", "the middle", "most of it".
+// "the rim", "the middle", "most of it", "all of it".
 std::string RegionName(const CoverageGrid& grid, const std::vector<bool>& cells);
 
 }  // namespace glint

@@ -92,6 +92,7 @@ TEST(Words, NameTheRegionThatIsMarked) {
   EXPECT_EQ(region([](const P& p) { return p.norm() > 45; }), "the rim");
   EXPECT_EQ(region([](const P& p) { return p.norm() < 20; }), "the middle");
   EXPECT_EQ(region([](const P& p) { return p.x() > -40; }), "most of it");
+  EXPECT_EQ(region([](const P&) { return true; }), "all of it");
 }
 
 TEST(ExpectedError, MeetsTheTableAndFallsBetween) {
