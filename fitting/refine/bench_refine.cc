@@ -256,7 +256,8 @@ double Median(std::vector<double> values) {
 int Main() {
   Scene scene;
   MakeScene(&scene);
-  const RefineOptions options;
+  RefineOptions options;
+  options.pooling_passes = 0;  // one refinement against one solve
   const KernelOptions kernel{scene.problem.convention.diffuse_weight, options.robust_scale};
   // The three in turn, several times: what disturbs one round disturbs all three alike.
   std::vector<double> ratios, kernel_ratios;

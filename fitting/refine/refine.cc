@@ -13,6 +13,7 @@
 #include "base/parallel/parallel.h"
 #include "fitting/refine/confidence.h"
 #include "fitting/refine/gather.h"
+#include "fitting/refine/highlight_pool.h"
 #include "fitting/refine/refine_prior.h"
 #include "fitting/refine/texel_parameters.h"
 #include "fitting/refine/texel_search.h"
@@ -81,6 +82,7 @@ class Refiner {
   size_t SumColumns() const { return 1 + 2 * problem_.views.size(); }
 
   void ForEachTexel(const std::function<void(size_t texel, Worker* worker)>& visit);
+  PriorWeights WeightsAt(size_t texel) const;
   TexelSolution Current(size_t texel, const TexelPrior& prior, Worker* worker);
   void Keep(size_t texel, const TexelSolution& solution);
 
@@ -175,6 +177,16 @@ void Refiner::EstimateNoise() {
   weights_ = HoldToStart(options_.prior, summary.residual_sigma, summary.distinct_views, {});
 }
 
+PriorWeights Refiner::WeightsAt(size_t texel) const {
+  PriorWeights weights = weights_;
+  if (!problem_.roughness_error.empty()) {
+    weights.errors.roughness = problem_.roughness_error[texel];
+    weights.errors.specular = problem_.specular_error[texel];
+    weights.errors.specular_relative = 0;
+  }
+  return weights;
+}
+
 TexelSolution Refiner::Current(size_t texel, const TexelPrior& prior, Worker* worker) {
   TexelSolution solution;
   solution.values = ReadTexel(result_.maps, texel);
@@ -198,7 +210,7 @@ void Refiner::SolveFromStarts() {
       return;
     }
     const TexelValues start = ReadTexel(start_, texel);
-    const TexelPrior prior(weights_, start);
+    const TexelPrior prior(WeightsAt(texel), start);
     const TexelSearch::Found found = worker->search.FromStart(worker->observations, prior, start);
     start_costs_[texel / kTexelsPerPiece] += found.start_cost;
     if (found.other_start) origin_[texel] |= kOtherStart;
@@ -234,7 +246,7 @@ void Refiner::SolveFromNeighbours(int half_pass) {
     add(row + 1, column);
     if (!any_change) return;
     GatherObservations(problem_, texel, &worker->observations);
-    const TexelPrior prior(weights_, ReadTexel(start_, texel));
+    const TexelPrior prior(WeightsAt(texel), ReadTexel(start_, texel));
     const TexelSolution current = Current(texel, prior, worker);
     const TexelSearch::Found found = worker->search.FromNeighbours(
         worker->observations, prior, current, std::span(neighbours).first(count));
@@ -264,7 +276,7 @@ void Refiner::ConcludeTexel(size_t texel, Worker* worker) {
   for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];
 
   double* sum = &sums_[texel / kTexelsPerPiece * SumColumns()];
-  sum[0] += 0.5 * (squares + TexelPrior(weights_, start).SquaredNorm(values));
+  sum[0] += 0.5 * (squares + TexelPrior(WeightsAt(texel), start).SquaredNorm(values));
   const KernelRows& rows = worker->search.solver().rows();
   const int usable = worker->observations.views();
   std::vector<double>& differences = worker->differences;
@@ -323,6 +335,7 @@ RefineResult Refiner::Run() {
 std::string RefineOptions::Check() const {
   if (iterations < 1) return "iterations must be at least 1";
   if (starts < 1) return "starts must be at least 1";
+  if (pooling_passes < 0) return "pooling passes must be at least 0";
   if (neighbour_passes < 0) return "neighbour passes must be at least 0";
   if (!(prior >= 0.0)) return "the prior's weight must be at least 0";
   if (!(robust_scale > 0.0)) return "the robust scale must be above 0";
@@ -345,7 +358,23 @@ RefineResult Refine(const RefineProblem& problem, const SvbrdfMaps& start,
   const std::string wrong = options.Check();
   if (!wrong.empty()) throw std::invalid_argument("refine: " + wrong);
   CheckProblem(problem, start);
-  return Refiner(problem, start, options, threads, progress).Run();
+  // Progress of all passes as of one long one.
+  const int passes = DistinctViews(problem) < kPoolingViews ? 0 : options.pooling_passes;
+  int pass = 0;
+  const auto report = [&](std::int64_t done, std::int64_t total) {
+    if (progress) progress(pass * total + done, (passes + 1) * total);
+  };
+  RefineResult result = Refiner(problem, start, options, threads, report).Run();
+  const double start_cost = result.summary.start_cost;
+  for (pass = 1; pass <= passes; ++pass) {
+    const HighlightPool pool = PoolHighlights(result, {}, threads);
+    RefineProblem pooled = problem;
+    pooled.roughness_error = pool.roughness_error;
+    pooled.specular_error = pool.specular_error;
+    result = Refiner(pooled, pool.start, options, threads, report).Run();
+  }
+  result.summary.start_cost = start_cost;
+  return result;
 }
 
 }  // namespace glint

@@ -10,6 +10,10 @@
 //      (Gao et al. 2019, Fig. 16) that more photographs do not cure.
 //   3. Every texel tries the solutions of its neighbours, in checkerboard order.
 //   4. Standard deviations from the final normal equations.
+//   5. All again, `pooling_passes` times, from a start in which each texel's highlight is what its
+//      neighbours of like colour know of it (highlight_pool.h): one that no photograph shows near
+//      its highlight learns from those that were seen. Not with fewer distinct views than
+//      kPoolingViews, which leave highlights too open for anyone to learn from.
 // Texels are independent within a step, so the result does not depend on the number of threads.
 #pragma once
 
@@ -37,12 +41,18 @@ struct RefineProblem {
   SamplePlane plane;
   ReflectanceConvention convention;
   std::vector<RefineView> views;
+  // H·W each: errors expected of the start's roughness and specular albedo, texel by texel; empty:
+  // those of texel_prior.h.
+  std::span<const float> roughness_error, specular_error;
 };
+
+inline constexpr double kPoolingViews = 2.5;
 
 struct RefineOptions {
   int iterations = 40;        // most Levenberg–Marquardt steps of one solve
   int starts = 2;             // solves per texel: 1: the start alone; more: so many roughnesses
   int neighbour_passes = 2;   // how often a texel tries its neighbours' solutions
+  int pooling_passes = 2;     // refinements again from a start pooled over neighbours
   double prior = 1.0;         // factor on the prior's weight; 0: none
   double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
 

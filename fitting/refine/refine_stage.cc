@@ -135,6 +135,8 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "solves per texel: the start, and so many less one of other roughness");
   set->AddRange("neighbour-passes", &refine->neighbour_passes, 0, 16,
                 "how often a texel tries its neighbours' solutions");
+  set->AddRange("pooling-passes", &refine->pooling_passes, 0, 16,
+                "refinements again from highlights pooled over neighbours of like colour");
   set->AddRange("prior", &refine->prior, 0, 1e6,
                 "factor on the weight that holds texels to their start; 0: none");
   set->AddRange("robust-scale", &refine->robust_scale, 1e-3, 100,

@@ -13,7 +13,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 2;
+inline constexpr int kRefineVersion = 3;
 
 struct RefineStageOptions {
   RefineOptions refine;

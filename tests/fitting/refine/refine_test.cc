@@ -120,8 +120,15 @@ TEST(Refine, KeepsTheStartWhereNothingIsSeen) {
   SyntheticScene scene = Photograph(QuarteredMaps(8, 12), 2, 8);
   for (auto& mask : scene.masks) mask[5] = 0.0f;
   const SvbrdfMaps start = DisturbedMaps(scene.truth, 1.0f, 13);
-  const RefineResult result = Refine(scene.Problem(), start, {}, 1);
+  RefineOptions alone;
+  alone.pooling_passes = 0;
+  const RefineResult result = Refine(scene.Problem(), start, alone, 1);
   for (int p = 0; p < kSvbrdfPlanes; ++p) EXPECT_EQ(result.maps.plane(p)[5], start.plane(p)[5]);
+  // What it learns from its neighbours is its highlight alone.
+  const RefineResult pooled = Refine(scene.Problem(), start, {}, 1);
+  for (int p = kNormalX; p <= kDiffuseB; ++p) {
+    EXPECT_EQ(pooled.maps.plane(p)[5], start.plane(p)[5]);
+  }
   const StartErrors errors;
   EXPECT_NEAR(result.confidence[kSigmaRoughness * start.texels() + 5], errors.roughness, 0.01);
   EXPECT_LT(result.confidence[kSigmaDiffuseR * start.texels() + 6], 0.9 * errors.diffuse);
@@ -211,7 +218,9 @@ TEST(Refine, TakesClippedPhotographsAsLowerBounds) {
     }
   }
   ASSERT_GT(clipped, all / 10);
-  const RefineResult at_truth = Refine(scene.Problem(), scene.truth, {}, 1);
+  RefineOptions alone;
+  alone.pooling_passes = 0;
+  const RefineResult at_truth = Refine(scene.Problem(), scene.truth, alone, 1);
   EXPECT_LT(at_truth.summary.start_cost, 1e-8);
   // Its cost at the truth is nothing, so nothing draws the truth away from itself.
   EXPECT_LT(MeanSquare(at_truth.maps, scene.truth, kNormalX, kRoughness), 1e-8);
