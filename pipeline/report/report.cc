@@ -1,6 +1,7 @@
 #include "pipeline/report/report.h"
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/report/guidance_section.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/sections.h"
 
@@ -69,6 +70,7 @@ Report MakeReport(const ReportInput& input, const ReportOptions& options, int th
   const std::string views = ViewsSection(input, options, threads, &report.metrics);
   std::string body = OverviewSection(input, report.metrics);
   body += MapsSection(input, options);
+  body += GuidanceSection(input);
   body += views;
   body += GeometrySection(input);
   for (const std::string& stage : StagesShown(options.from)) {

@@ -17,7 +17,7 @@
 
 namespace glint {
 
-inline constexpr int kReportVersion = 1;
+inline constexpr int kReportVersion = 2;
 
 struct ReportOptions {
   std::string from = "refine";  // stage whose maps are shown: refine, fit

@@ -5,6 +5,7 @@
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/report/figure.h"
+#include "pipeline/report/guidance_section.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/metrics_html.h"
 #include "pipeline/report/picture.h"
@@ -236,11 +237,14 @@ std::string GeometrySection(const ReportInput& input) {
 std::string StageSection(const ReportInput& input, const std::string& stage) {
   const Manifest& manifest = input.manifests.at(stage);
   const std::string link = ManifestLink(stage);
-  std::string body = MetricsHtml(manifest.metrics, {link, "metrics"});
+  Json metrics = manifest.metrics;
+  metrics.erase("guidance");
+  std::string body = MetricsHtml(metrics, {link, "metrics"});
   std::string pictures;
   for (const ManifestOutput& output : manifest.outputs) {
     const std::string extension = fs::path(output.path).extension();
     if (extension != ".png" && extension != ".jpg") continue;
+    if (output.path.compare(0, sizeof(kGuidancePrefix) - 1, kGuidancePrefix) == 0) continue;
     const Photo photo = ReadPhoto(input.work / stage / output.path);
     pictures += Figure(PngUri(Shrunk(photo.image, kStagePicture_px)), output.path, "wide");
   }

@@ -9,6 +9,8 @@
 
 #include "fitting/render/renderer.h"
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
+#include "pipeline/contract/image.h"
 #include "pipeline/contract/stage.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/report/chart.h"
@@ -138,6 +140,28 @@ TEST_F(ReportTest, NamesFromOutsideAreEscaped) {
   const std::string html = Make().html;
   EXPECT_THAT(html, HasSubstr("photos/&lt;2&gt;.jpg"));
   EXPECT_THAT(html, Not(HasSubstr("photos/<2>.jpg")));
+}
+
+TEST_F(ReportTest, ShowsWhatCalibAdvisesOnceWithItsPictures) {
+  EXPECT_THAT(Make().html, Not(HasSubstr("Capture:")));
+  OptionSet options;
+  Stage stage(work() / "calib", {"calib", 1}, options, CommonOptions(), {folder_.path() / "input"});
+  WriteFileAtomically(stage.Output("guidance_views.svg"), "<svg/>");
+  WritePng(stage.Output("guidance_coverage.png"), Image(16, 16, {"R", "G", "B"}));
+  Json guidance = {{"verdict", "usable"}, {"summary", "2 photographs"}};
+  guidance["advice"] = {{{"topic", "top"}, {"text", "take one <straight> from above"}}};
+  guidance["views"] = {{{"photo", "a.jpg"}, {"tilt_deg", 12.5}}};
+  stage.Commit(Json::object(), {{"guidance", guidance}});
+  const std::string html = Make().html;
+  EXPECT_THAT(html, HasSubstr("metrics.guidance.verdict\">usable<"));
+  EXPECT_THAT(html,
+              HasSubstr("metrics.guidance.advice[0].text\">take one &lt;straight&gt; from above<"));
+  EXPECT_THAT(html, HasSubstr("metrics.guidance.views[0].tilt_deg\">12.5<"));
+  EXPECT_THAT(html, HasSubstr("data:image/svg+xml;base64,PHN2Zy8+"));
+  const std::string caption = "where a highlight fell";
+  ASSERT_THAT(html, HasSubstr(caption));
+  EXPECT_THAT(html, Not(HasSubstr("<figcaption>guidance_coverage.png")));
+  EXPECT_THAT(html, Not(HasSubstr("<h3>guidance")));
 }
 
 TEST_F(ReportTest, ADamagedResultIsRefused) {
