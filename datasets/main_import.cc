@@ -1,6 +1,7 @@
 // glint-import: views that another program rectified become a capture that starts at fit.
 #include <fmt/format.h>
 
+#include "calib/guidance/rectified_guidance.h"
 #include "datasets/import/import_set.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
@@ -39,11 +40,14 @@ ProgramResult Summarise(const fs::path& folder, const ForeignSet& foreign,
                     set.views[i].photo, 100 * metrics["usable"].get<double>(),
                     100 * metrics["saturated"].get<double>());
   }
+  const Verdict verdict = JudgeRectifiedSet(set);
+  result.text += TextOf(verdict);
   result.text += "go on with: glint run " + folder.string() + "\n";
   result.json = {{"stage", "rectify"},
                  {"up_to_date", false},
                  {"manifest", set.manifest_file.string()},
-                 {"metrics", summary.metrics}};
+                 {"metrics", summary.metrics},
+                 {"guidance", ToJson(verdict)}};
   return result;
 }
 
