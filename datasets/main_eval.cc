@@ -5,6 +5,7 @@
 
 #include "datasets/evaluation/calibration_error.h"
 #include "datasets/evaluation/experiment_verbs.h"
+#include "datasets/evaluation/light_verb.h"
 #include "datasets/evaluation/map_error.h"
 #include "datasets/evaluation/view_error.h"
 #include "datasets/synth/material_source.h"
@@ -178,6 +179,7 @@ int main(int argc, char** argv) {
        RunViews},
       {"cameras", "Compares a calibration with the truth of a synthetic capture.",
        "Example: glint-eval cameras demo/truth demo/glint/calib/manifest.json", RunCameras}};
+  verbs.push_back(LightVerb());
   for (const Verb& verb : ExperimentVerbs()) verbs.push_back(verb);
   return RunVerb(argc, argv,
                  {"glint-eval", "Measures results: maps, renderings, cameras, the paper's tables.",

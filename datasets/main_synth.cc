@@ -161,6 +161,13 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   options.Add("flash-offset-mm", &flash_mm, "flash in the camera frame: right,down,forward");
   options.Add("flash-tint", &tint, "colour of the flash: r,g,b in (0, 1]");
   options.AddRange("ambient", &plan.ambient, 0, 10, "room light relative to the flash's");
+  options.AddRange("vignetting", &plan.vignetting, 0, 0.8, "light lost in the picture's corners");
+  options.AddRange("exposure-ev", &plan.exposure_ev, 0, 4,
+                   "exposures spread over plus and minus this many stops");
+  options.AddRange("exif-error", &plan.exif_error, 0, 0.5,
+                   "relative standard deviation of the exposures that EXIF tells");
+  options.AddRange("jpeg-quality", &capture.jpeg_quality, 1, 100, "of .jpg photographs");
+  options.Add("tell-flash", &capture.tell_flash, "capture.toml gives the flash's offset");
   options.AddRange("paper-level", &plan.paper_level, 1e-3, 4,
                    "radiance of the brightest paper; the sensor clips at 1");
   options.AddRange("noise", &capture.noise.scale, 0, 100, "sensor noise; 0: none, 1: a phone's");

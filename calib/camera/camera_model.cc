@@ -1,6 +1,7 @@
 #include "calib/camera/camera_model.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -93,6 +94,20 @@ std::optional<Eigen::Vector2d> NormalizedFromImage(const Camera& camera,
   }
   if (Residual(camera, uv, point_px).norm() > 1e-9) return std::nullopt;
   return uv;
+}
+
+double VignettingRadius2(const Camera& camera, const Eigen::Vector2d& point_px) {
+  const Eigen::Vector2d half(0.5 * camera.width_px, 0.5 * camera.height_px);
+  const size_t centre = CameraParameterNames(camera.model)[0] == "f" ? 1 : 2;
+  const Eigen::Vector2d axis_px(camera.parameters[centre], camera.parameters[centre + 1]);
+  return (point_px - axis_px).squaredNorm() / half.squaredNorm();
+}
+
+double Vignetting(const Camera& camera, const Eigen::Vector2d& point_px) {
+  constexpr double kLeast = 0.05;
+  const auto& v = camera.vignetting;
+  const double r2 = VignettingRadius2(camera, point_px);
+  return std::max(kLeast, 1 + r2 * (v[0] + r2 * (v[1] + r2 * v[2])));
 }
 
 Camera ScaledCamera(const Camera& camera, double factor) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,6 +29,8 @@ struct Camera {
   int width_px = 0;
   int height_px = 0;
   std::vector<double> parameters;
+  // The lens's fall-off (v1, v2, v3), see Vignetting(); zeros: none, or not known.
+  std::array<double, 3> vignetting{0, 0, 0};
 
   double focal_length_x() const { return parameters[0]; }
   double focal_length_y() const;
@@ -73,6 +76,12 @@ void ImageFromNormalized(CameraModel model, const T* p, const T& u, const T& v, 
 
 // Image point of a point in the camera frame; z must be positive.
 Eigen::Vector2d ImageFromCamera(const Camera& camera, const Eigen::Vector3d& point_in_camera);
+
+// Square of a pixel's distance from the principal point, in half diagonals of the picture.
+double VignettingRadius2(const Camera& camera, const Eigen::Vector2d& point_px);
+// Share of the light that reaches a pixel at that distance: 1 + v1·r² + v2·r⁴ + v3·r⁶, at least
+// 0.05 so that dividing by it is safe.
+double Vignetting(const Camera& camera, const Eigen::Vector2d& point_px);
 
 // Normalised point (u, v) that projects to `point_px`, by Newton's iteration on the distortion.
 // nullopt where the distortion has no inverse there (outside its monotone range).

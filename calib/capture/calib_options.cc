@@ -41,6 +41,10 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   set->AddRange("detect-px", &options->detect_px, 200, 20000,
                 "boards are looked for in a copy whose longer side is at most this; their corners "
                 "are placed in the photo itself");
+  set->AddChoice("light", &options->light, {"board", "camera"},
+                 "board: flash position, lens fall-off, exposures and room light from the board's "
+                 "white paper; camera: the light at the lens or at [light] offset_mm, exposures by "
+                 "EXIF");
   set->AddRange("paper-reflectance", &options->paper_reflectance, 0.05, 1,
                 "of the board's white, from which the light's power is estimated");
 }

@@ -20,6 +20,7 @@ struct CalibOptions {
   double min_reject_px = 0.5;
   int min_corners = 6;
   int detect_px = 1600;             // boards are looked for in a copy of this size
+  std::string light = "board";      // or camera, see capture_light.h
   double paper_reflectance = 0.85;  // of the board's white, for the light's power
   int quick_px = 0;  // no option: read photographs reduced to this for a quick look; 0: whole
 };

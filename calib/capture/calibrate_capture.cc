@@ -9,6 +9,7 @@
 
 #include "calib/bundle/residual_picture.h"
 #include "calib/camera/orientation.h"
+#include "calib/capture/capture_light.h"
 #include "calib/capture/guide_capture.h"
 #include "calib/guidance/coverage_picture.h"
 #include "calib/guidance/polar_picture.h"
@@ -133,68 +134,13 @@ void FillPhotos(const Capture& capture, CalibSummary* summary) {
                          ": no flash photograph could be calibrated:" + reasons);
 }
 
-// Exposures relative to the first calibrated photograph, by the rule of `rectify`: from EXIF where
-// all photographs have it, else all equal.
-std::vector<double> RelativeExposures(const CalibSummary& summary) {
-  std::vector<double> exposures;
-  for (const CalibratedPhoto& photo : summary.calibration.photos) {
-    const auto found = std::find_if(summary.photos.begin(), summary.photos.end(),
-                                    [&](const DetectedPhoto& p) { return p.name == photo.photo; });
-    exposures.push_back(found->exposure);
-  }
-  const bool known =
-      std::all_of(exposures.begin(), exposures.end(), [](double e) { return e > 0; });
-  const double first = exposures[0];
-  for (double& exposure : exposures) exposure = known ? exposure / first : 1;
-  return exposures;
-}
-
-// Without paper to go by: the power that makes a white surface below the camera reach 0.8.
-double GuessedPower(const Calibration& calibration) {
-  const CalibratedPhoto& photo = calibration.photos[0];
-  const Eigen::Vector3d light = Inverse(photo.camera_from_sample) * photo.light_in_camera_mm;
-  return 0.8 * 3.14159265358979 * light.squaredNorm();
-}
-
-void FillLight(const Capture& capture, const CalibOptions& options, CalibSummary* summary) {
-  Calibration& calibration = summary->calibration;
-  const std::vector<double> exposures = RelativeExposures(*summary);
-  std::vector<LitPaper> papers;
-  for (size_t i = 0; i < calibration.photos.size(); ++i) {
-    const CalibratedPhoto& photo = calibration.photos[i];
-    const auto found = std::find_if(summary->photos.begin(), summary->photos.end(),
-                                    [&](const DetectedPhoto& p) { return p.name == photo.photo; });
-    papers.push_back(
-        {photo.camera_from_sample, photo.light_in_camera_mm, exposures[i], found->paper});
-  }
-  PowerOptions power;
-  power.paper_reflectance = options.paper_reflectance;
-  power.ambient = Eigen::Vector3d(capture.ambient.data());
-  summary->power = EstimatePower(papers, power);
-  const Eigen::Vector3d given(capture.light_power.data());
-  calibration.light_power_known = true;
-  if (given.maxCoeff() > 0) {
-    calibration.light_rgb = given;
-    summary->power_source = "capture.toml";
-  } else if (summary->power.known) {
-    calibration.light_rgb = summary->power.light_rgb;
-    summary->power_source = "board";
-  } else {
-    calibration.light_rgb.setConstant(GuessedPower(calibration));
-    calibration.light_power_known = false;
-    summary->power_source = "guess";
-    spdlog::warn(
-        "no paper of the board is seen unclipped and large enough; the light's power is a "
-        "guess, which later stages refine");
-  }
-}
-
 void WriteOutputs(const CalibSummary& summary, Stage* stage) {
   for (size_t c = 0; c < summary.bundle.cameras.size(); ++c) {
     if (summary.bundle.cameras[c].photos == 0) continue;
     WritePng(stage->Output(fmt::format("residuals_camera{}.png", c)),
              ResidualPicture(summary.bundle, static_cast<int>(c)));
   }
+  WriteLightPicture(summary, stage);
   WriteFileAtomically(stage->Output("residuals.json"), ResidualsOf(summary).dump(1) + "\n");
   WriteFileAtomically(stage->Output("guidance_views.svg"), PolarPictureSvg(summary.guidance));
   WritePng(stage->Output("guidance_coverage.png"), CoveragePicture(summary.guidance));

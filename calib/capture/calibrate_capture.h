@@ -9,6 +9,7 @@
 #include "calib/capture/camera_groups.h"
 #include "calib/capture/detect_photos.h"
 #include "calib/guidance/verdict.h"
+#include "calib/light/light.h"
 #include "calib/light/power.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/program.h"
@@ -29,8 +30,9 @@ struct CalibSummary {
   BundleResult bundle;              // of the stored pictures
   std::vector<size_t> photo_index;  // which of `photos` each photo of `bundle` is
   std::vector<RejectedPhoto> rejected;
-  PowerEstimate power;       // photo_power as calibration.photos
-  std::string power_source;  // "capture.toml", "board" or "guess"
+  LightEstimate light;       // photos as calibration.photos; known: the board told it
+  PowerEstimate power;       // otherwise; photo_power as calibration.photos
+  std::string power_source;  // "capture.toml", "board", "board, light at the lens" or "guess"
   Verdict guidance;
 
   // Index into bundle.photos of a detected photograph; −1: it has no corners.

@@ -26,7 +26,8 @@ void Enlarge(int reduction, std::pair<int, int> size, DetectedPhoto* photo) {
 }
 
 DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
-                        const std::string& name, bool board_photo) {
+                        const std::vector<PaperSpot>& spots, const std::string& name,
+                        bool board_photo) {
   const std::filesystem::path file = capture.folder / name;
   int reduction = 1;
   const Photo photo =
@@ -39,6 +40,7 @@ DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
   detected.orientation = photo.orientation;
   detected.focal_length_35mm = photo.focal_length_35mm;
   detected.camera_model = photo.camera_model;
+  detected.clips = !photo.is_float();
   if (photo.exposure_time_s > 0 && photo.iso > 0 && photo.f_number > 0) {
     detected.exposure = photo.exposure_time_s * photo.iso / (photo.f_number * photo.f_number);
   }
@@ -48,7 +50,7 @@ DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
   detected.detection = DetectBoard(GrayFromPhoto(photo), capture.board, detector);
   if (!board_photo && !detected.detection.corners.empty()) {
     const Encoding encoding = ResolveEncoding(capture.encoding, file, photo.bits);
-    detected.paper = SamplePaper(photo, encoding, capture.board, detected.detection.corners);
+    detected.paper = SamplePaper(photo, encoding, capture.board, spots, detected.detection.corners);
     detected.sample_clipped_share =
         ClippedShareOfSample(photo, detected.detection.corners, capture.sample_size_mm);
   }
@@ -83,12 +85,13 @@ std::vector<DetectedPhoto> DetectPhotos(const Capture& capture, const CalibOptio
                                         int threads) {
   cv::setNumThreads(1);  // photographs are what is shared out
   const size_t flash = capture.photos.size(), all = flash + capture.board_photos.size();
+  const std::vector<PaperSpot> spots = PaperSpots(capture.board);
   std::vector<DetectedPhoto> photos(all);
   Progress progress("corners", static_cast<std::int64_t>(all));
   ForEachPiece(static_cast<int>(all), threads, [&](int piece) {
     const size_t i = static_cast<size_t>(piece);
     const std::string& name = i < flash ? capture.photos[i] : capture.board_photos[i - flash];
-    photos[i] = DetectOne(capture, options, name, i >= flash);
+    photos[i] = DetectOne(capture, options, spots, name, i >= flash);
     progress.Advance(1, name);
   });
   return photos;

@@ -18,6 +18,7 @@ struct DetectedPhoto {
   int orientation = 1;              // EXIF
   double focal_length_35mm = 0;     // EXIF; 0: not told
   double exposure = 0;              // time · ISO / f-number²; 0: not told
+  bool clips = true;                // 8 or 16 bit: at radiance 1
   std::string camera_model;
   BoardDetection detection;         // corners in the upright picture
   std::vector<PaperSample> paper;   // of flash photographs

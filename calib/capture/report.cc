@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calib/capture/calibrate_capture.h"
+#include "calib/capture/capture_light.h"
 
 namespace glint {
 namespace {
@@ -57,19 +58,6 @@ Json PhotoMetrics(const CalibSummary& summary, size_t index) {
     json["rejected_corners"].push_back({{"id", corner.id},
                                         {"point_px", List(corner.point_px)},
                                         {"residual_px", List(corner.residual_px)}});
-  }
-  return json;
-}
-
-Json LightMetrics(const CalibSummary& summary) {
-  Json json;
-  json["power"] = List(summary.calibration.light_rgb);
-  json["source"] = summary.power_source;
-  json["by_board"] = summary.power.known ? Json(List(summary.power.light_rgb)) : Json(nullptr);
-  json["spread"] = summary.power.spread;
-  json["paper_samples"] = summary.power.samples;
-  for (size_t i = 0; i < summary.calibration.photos.size(); ++i) {
-    json["by_photo"][summary.calibration.photos[i].photo] = summary.power.photo_power[i];
   }
   return json;
 }
@@ -131,14 +119,7 @@ std::string TextOf(const CalibSummary& summary) {
   for (const RejectedPhoto& photo : summary.rejected) {
     text += fmt::format("  left out: {}: {}\n", photo.name, photo.reason);
   }
-  const Eigen::Vector3d& power = summary.calibration.light_rgb;
-  text += fmt::format("light: power [{:.4g}, {:.4g}, {:.4g}] (from {}", power.x(), power.y(),
-                      power.z(), summary.power_source);
-  if (summary.power_source == "board") {
-    text += fmt::format(", {} spots of paper, spread over photos {:.1f} %", summary.power.samples,
-                        100 * summary.power.spread);
-  }
-  return text + ")\n" + TextOf(summary.guidance);
+  return text + LightText(summary) + TextOf(summary.guidance);
 }
 
 }  // namespace glint

@@ -12,35 +12,14 @@ namespace {
 constexpr float kClipped = 0.985f;       // stored value
 constexpr double kLeastRadius_px = 1.5;  // of plain paper round a spot, blur taken off
 
-struct Spot {
-  Eigen::Vector2d squares;  // board coordinates
-  double radius_squares;    // of plain paper
+struct Mean {
+  Eigen::Vector3d radiance;
+  int pixels;
 };
 
-std::vector<Spot> Spots(const Board& board) {
-  std::vector<Spot> spots;
-  const bool markers = board.kind == BoardKind::kCharuco;
-  const double gap = markers ? 0.5 * (1 - board.marker_mm / board.square_mm) : 0;
-  for (int row = 0; row < board.squares_y; ++row) {
-    for (int column = 0; column < board.squares_x; ++column) {
-      if (!SquareExists(board, column, row) || SquareIsBlack(board, column, row)) continue;
-      if (!markers) {
-        spots.push_back({{column + 0.5, row + 0.5}, 0.5});
-        continue;
-      }
-      for (const double x : {0.5 * gap, 1 - 0.5 * gap}) {
-        for (const double y : {0.5 * gap, 1 - 0.5 * gap}) {
-          spots.push_back({{column + x, row + y}, 0.5 * gap});
-        }
-      }
-    }
-  }
-  return spots;
-}
-
 // Mean linear radiance over a disc; nullopt: not wholly in the picture, or clipped.
-std::optional<Eigen::Vector3d> DiscMean(const Photo& photo, Encoding encoding,
-                                        const Eigen::Vector2d& centre_px, double radius_px) {
+std::optional<Mean> DiscMean(const Photo& photo, Encoding encoding,
+                             const Eigen::Vector2d& centre_px, double radius_px) {
   const Image& image = photo.image;
   const int x0 = static_cast<int>(std::floor(centre_px.x() - radius_px));
   const int x1 = static_cast<int>(std::floor(centre_px.x() + radius_px));
@@ -61,19 +40,20 @@ std::optional<Eigen::Vector3d> DiscMean(const Photo& photo, Encoding encoding,
     }
   }
   if (count == 0) return std::nullopt;
-  return Eigen::Vector3d(sum / count);
+  return Mean{sum / count, count};
 }
 
 }  // namespace
 
 std::vector<PaperSample> SamplePaper(const Photo& photo, Encoding encoding, const Board& board,
+                                     const std::vector<PaperSpot>& spots,
                                      const std::vector<CornerObservation>& corners) {
   std::vector<PlanePoint> points;
   for (const CornerObservation& corner : corners) {
     points.push_back({SquaresFromSample(board, corner.position_in_sample_mm), corner.point_px});
   }
   std::vector<PaperSample> samples;
-  for (const Spot& spot : Spots(board)) {
+  for (const PaperSpot& spot : spots) {
     const bool near = std::any_of(points.begin(), points.end(), [&](const PlanePoint& point) {
       return (point.board - spot.squares).norm() <= 1;
     });
@@ -88,8 +68,9 @@ std::vector<PaperSample> SamplePaper(const Photo& photo, Encoding encoding, cons
     const double plain_px = std::min((*right - *at).norm(), (*down - *at).norm());
     if (plain_px < 2 * kLeastRadius_px) continue;
     const double radius_px = std::min(12.0, std::max(kLeastRadius_px, plain_px / 3));
-    if (const auto radiance = DiscMean(photo, encoding, *at, radius_px)) {
-      samples.push_back({GridPointInSample(board, spot.squares.x(), spot.squares.y()), *radiance});
+    if (const auto mean = DiscMean(photo, encoding, *at, radius_px)) {
+      samples.push_back({GridPointInSample(board, spot.squares.x(), spot.squares.y()),
+                         mean->radiance, spot.square, mean->pixels});
     }
   }
   return samples;

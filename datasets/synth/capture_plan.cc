@@ -1,5 +1,6 @@
 #include "datasets/synth/capture_plan.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,7 +21,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kGoldenAngle = 2.399963229728653;
 
 // Streams of random numbers that must not follow each other's length.
-enum Stream : std::uint64_t { kLensStream = 1, kPoseStream = 2 };
+enum Stream : std::uint64_t { kLensStream = 1, kPoseStream = 2, kExposureStream = 3 };
 
 Rng StreamOf(std::uint64_t seed, Stream stream) {
   return Rng(procedural::Mix64(seed) ^ (0x5eed0000ull + stream));
@@ -40,6 +41,9 @@ void CheckOptions(const CapturePlanOptions& o) {
   require(o.largest_tilt_deg >= 0 && o.largest_tilt_deg <= 65, "tilt-deg: use 0 to 65");
   require(o.paper_level > 0 && o.paper_level <= 4, "paper-level: use a number in (0, 4]");
   require(o.ambient >= 0 && o.ambient <= 10, "ambient: use 0 to 10");
+  require(o.vignetting >= 0 && o.vignetting <= 0.8, "vignetting: use 0 to 0.8");
+  require(o.exposure_ev >= 0 && o.exposure_ev <= 4, "exposure-ev: use 0 to 4");
+  require(o.exif_error >= 0 && o.exif_error <= 0.5, "exif-error: use 0 to 0.5");
   for (const double tint : o.flash_tint) {
     require(tint > 0 && tint <= 1, "flash-tint: each channel must lie in (0, 1]");
   }
@@ -134,8 +138,50 @@ double LightGeometry(const Vector3d& light_mm, double x_mm, double y_mm) {
   return to_light.z() / (distance * distance * distance);
 }
 
-// Fixed exposure for the whole capture: the brightest piece of paper reaches `paper_level`.
-void SetExposure(CapturePlan* plan) {
+// Exposures from −ev to +ev in even steps, shuffled, relative to the first photo's.
+void DrawExposures(CapturePlan* plan) {
+  const CapturePlanOptions& options = plan->options;
+  if (options.exposure_ev <= 0 && options.exif_error <= 0) return;
+  Rng rng = StreamOf(options.seed, kExposureStream);
+  const size_t count = plan->photos.size();
+  std::vector<double> stops(count, 0.0);
+  for (size_t i = 0; i < count && count > 1; ++i) {
+    stops[i] = options.exposure_ev * (2.0 * static_cast<double>(i) / (count - 1.0) - 1.0);
+  }
+  for (size_t i = count; i > 1; --i) {
+    std::swap(stops[i - 1], stops[std::min(i - 1, static_cast<size_t>(rng.Unit() * i))]);
+  }
+  for (size_t i = 0; i < count; ++i) {
+    PlannedPhoto& photo = plan->photos[i];
+    // Four uniform numbers: close to normal, with a bound.
+    const double normal =
+        (rng.Unit() + rng.Unit() + rng.Unit() + rng.Unit() - 2.0) * std::numbers::sqrt3;
+    photo.exposure = std::exp2(stops[i] - stops[0]);
+    photo.exif_exposure = photo.exposure * (1.0 + options.exif_error * normal);
+  }
+}
+
+// The strength t of LensFalloff at which the corners, a half diagonal away, lose `share`.
+double FalloffStrength(double share) { return 1.0 / std::sqrt(1.0 - share) - 1.0; }
+
+// The polynomial of Camera::vignetting nearest to the lens's fall-off, over equal areas.
+std::array<double, 3> NearestPolynomial(double strength) {
+  constexpr int kPoints = 200;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Vector3d right = Vector3d::Zero();
+  for (int i = 0; i < kPoints; ++i) {
+    const double r2 = (i + 0.5) / kPoints;
+    const Vector3d powers(r2, r2 * r2, r2 * r2 * r2);
+    const double value = 1.0 / ((1.0 + strength * r2) * (1.0 + strength * r2)) - 1.0;
+    normal += powers * powers.transpose();
+    right += powers * value;
+  }
+  const Vector3d v = normal.ldlt().solve(right);
+  return {v.x(), v.y(), v.z()};
+}
+
+// One power for the whole capture: the brightest piece of paper reaches `paper_level`.
+void SetPower(CapturePlan* plan) {
   const double half_x = 0.5 * plan->board.squares_x * plan->board.square_mm;
   const double half_y = 0.5 * plan->board.squares_y * plan->board.square_mm;
   double brightest = 0;
@@ -143,12 +189,15 @@ void SetExposure(CapturePlan* plan) {
     // The foot of the flash, moved onto the sheet, is where the paper is brightest.
     const double x = std::clamp(photo.light_in_sample_mm.x(), -half_x, half_x);
     const double y = std::clamp(photo.light_in_sample_mm.y(), -half_y, half_y);
-    brightest = std::max(brightest, LightGeometry(photo.light_in_sample_mm, x, y));
+    brightest = std::max(brightest, photo.exposure * LightGeometry(photo.light_in_sample_mm, x, y));
   }
   const CapturePlanOptions& options = plan->options;
   const double room =
       options.ambient * LightGeometry(plan->photos.front().light_in_sample_mm, 0, 0);
-  const double power = options.paper_level * std::numbers::pi / (kPaperAlbedo * (brightest + room));
+  double longest = 0;
+  for (const PlannedPhoto& photo : plan->photos) longest = std::max(longest, photo.exposure);
+  const double power =
+      options.paper_level * std::numbers::pi / (kPaperAlbedo * (brightest + longest * room));
   plan->light_rgb = power * Vector3d(options.flash_tint.data());
   plan->ambient_rgb.setConstant(power * room);
 }
@@ -189,6 +238,13 @@ Camera PhoneCamera(double megapixels, std::uint64_t seed) {
   return camera;
 }
 
+double LensFalloff(const CapturePlan& plan, const Vector2d& point_px) {
+  if (plan.options.vignetting <= 0) return 1;
+  const double strength = FalloffStrength(plan.options.vignetting);
+  const double denominator = 1.0 + strength * VignettingRadius2(plan.camera, point_px);
+  return 1.0 / (denominator * denominator);
+}
+
 CapturePlan PlanCapture(const CapturePlanOptions& options) {
   CheckOptions(options);
   CapturePlan plan;
@@ -196,12 +252,16 @@ CapturePlan PlanCapture(const CapturePlanOptions& options) {
   plan.board = FrameBoard(options.sample_mm);
   plan.margin_mm = plan.board.square_mm;
   plan.camera = PhoneCamera(options.megapixels, options.seed);
+  if (options.vignetting > 0) {
+    plan.camera.vignetting = NearestPolynomial(FalloffStrength(options.vignetting));
+  }
   Rng rng = StreamOf(options.seed, kPoseStream);
   const double first_azimuth = 2.0 * std::numbers::pi * rng.Unit();
   for (int i = 0; i < options.photos; ++i) {
     plan.photos.push_back(PlacePhoto(plan, i, DrawPose(options, i, first_azimuth, rng)));
   }
-  SetExposure(&plan);
+  DrawExposures(&plan);
+  SetPower(&plan);
   return plan;
 }
 

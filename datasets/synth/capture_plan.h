@@ -25,6 +25,9 @@ struct CapturePlanOptions {
   std::array<double, 3> flash_tint{1, 1, 1};  // colour of the flash, largest channel 1
   double ambient = 0;         // room's irradiance relative to the flash's in the first photo
   double paper_level = 0.78;  // brightest paper of the capture, relative to clipping
+  double vignetting = 0;      // share of the light that the picture's corners lose
+  double exposure_ev = 0;     // exposures spread evenly over ± this, in random order
+  double exif_error = 0;      // standard deviation of the exposures in EXIF, relative
 };
 
 // Reflectance factors of what surrounds the sample, Lambertian.
@@ -35,6 +38,8 @@ inline constexpr std::array<double, 3> kTableAlbedo{0.22, 0.17, 0.13};
 struct PlannedPhoto {
   Rigid3 camera_from_sample;
   Eigen::Vector3d light_in_sample_mm;
+  double exposure = 1;       // relative to the first photo's
+  double exif_exposure = 1;  // what EXIF says of it
 };
 
 struct CapturePlan {
@@ -46,6 +51,11 @@ struct CapturePlan {
   Eigen::Vector3d light_rgb{1, 1, 1};    // power, radiance·mm² where the sensor clips at 1
   Eigen::Vector3d ambient_rgb{0, 0, 0};  // irradiance
 };
+
+// Share of the light that the lens passes at a pixel: (1 + t·r²)⁻², the cosine-to-the-fourth law
+// with a strength t of its own; r as in VignettingRadius2. Of purpose not the polynomial that calib
+// fits; the camera's `vignetting` is that polynomial's nearest.
+double LensFalloff(const CapturePlan& plan, const Eigen::Vector2d& point_px);
 
 // A ChArUco frame on A4 across: 18 × 14 squares with a window of 8 × 8 in the middle, scaled so
 // that a sample of `sample_mm` leaves 2 % of the window's side free all round.

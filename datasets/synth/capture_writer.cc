@@ -52,6 +52,7 @@ std::string CaptureToml(const CapturePlan& plan, const SyntheticCaptureOptions& 
       board.window->rows);
   text += fmt::format("[radiometry]\nencoding = \"{}\"\n\n",
                       options.format == "exr" ? "linear" : options.encoding);
+  if (!options.tell_flash) return text;
   text += "[light]\noffset_mm = " + List(plan.options.flash_offset_mm) + "\n";
   return text;
 }
@@ -61,11 +62,13 @@ Calibration TrueCalibration(const CapturePlan& plan, const std::string& format) 
   calibration.cameras = {plan.camera};
   calibration.light_rgb = plan.light_rgb;
   calibration.light_power_known = true;
+  calibration.ambient_rgb = plan.ambient_rgb;
   for (size_t i = 0; i < plan.photos.size(); ++i) {
     CalibratedPhoto photo;
     photo.photo = PhotoName(static_cast<int>(i), format);
     photo.camera_from_sample = plan.photos[i].camera_from_sample;
     photo.light_in_camera_mm = photo.camera_from_sample * plan.photos[i].light_in_sample_mm;
+    photo.exposure = plan.photos[i].exposure;
     calibration.photos.push_back(photo);
   }
   return calibration;
@@ -101,16 +104,17 @@ void WriteTruth(const fs::path& folder, const CapturePlan& plan, const MaterialS
   WriteFileAtomically(folder / "truth.json", TruthFacts(plan, material, options).dump(2) + "\n");
 }
 
-PhotoFacts FactsOf(const CapturePlan& plan) {
+PhotoFacts FactsOf(const CapturePlan& plan, int index, int jpeg_quality) {
   constexpr double kFullFrameDiagonal_mm = 43.267, kSensorDiagonal_mm = 12.2;
   const double diagonal_px = std::hypot(plan.camera.width_px, plan.camera.height_px);
   const double diagonals = plan.camera.focal_length_x() / diagonal_px;
   PhotoFacts facts;
   facts.focal_length_35mm = diagonals * kFullFrameDiagonal_mm;
   facts.focal_length_mm = diagonals * kSensorDiagonal_mm;
-  facts.exposure_time_s = 1.0 / 60;
+  facts.exposure_time_s = plan.photos[index].exif_exposure / 60;
   facts.iso = 50;
   facts.f_number = 1.8;
+  facts.jpeg_quality = jpeg_quality;
   return facts;
 }
 
@@ -140,7 +144,7 @@ class PhotoShoot {
     if (linear) {
       WriteExr(file, image_);
     } else {
-      WritePhoto(file, width, height, bytes_, FactsOf(plan_));
+      WritePhoto(file, width, height, bytes_, FactsOf(plan_, index, options_.jpeg_quality));
     }
     return static_cast<double>(clipped) / (static_cast<double>(width) * height);
   }

@@ -28,7 +28,9 @@ struct SyntheticCaptureOptions {
   double lens_blur_px =
       0.5;  // standard deviation of the lens's point spread, on top of the pixel's box
   int resolution_px = 1024;  // [sample] resolution_px of capture.toml
-  bool overwrite = false;    // replace a capture that is there
+  int jpeg_quality = 95;
+  bool tell_flash = true;  // capture.toml gives the flash's offset
+  bool overwrite = false;  // replace a capture that is there
 };
 
 struct SyntheticCaptureSummary {

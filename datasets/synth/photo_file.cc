@@ -40,7 +40,7 @@ void AddExif(const PhotoFacts& facts, OIIO::ImageSpec* spec) {
 void WritePhoto(const std::filesystem::path& file, int width, int height,
                 const std::vector<unsigned char>& rgb, const PhotoFacts& facts) {
   OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("CompressionQuality", 95);
+  spec.attribute("CompressionQuality", facts.jpeg_quality);
   spec.attribute("jpeg:subsampling", "4:2:0");
   AddExif(facts, &spec);
   const auto output = OIIO::ImageOutput::create(file.string());

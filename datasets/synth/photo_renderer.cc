@@ -187,13 +187,16 @@ PhotoRenderer::Rgb PhotoRenderer::ShadePixel(const PhotoGeometry& geometry, cons
 
 void PhotoRenderer::RenderRows(int photo, int first_row, int rows, std::span<float> rgb) const {
   const PhotoGeometry& geometry = geometry_[photo];
+  const double exposure = plan_.photos[photo].exposure;
   CornerRow above, below;
   FillCorners(geometry, first_row, &above);
   float* out = rgb.data();
   for (int row = first_row; row < first_row + rows; ++row) {
     FillCorners(geometry, row + 1, &below);
     for (int column = 0; column < plan_.camera.width_px; ++column) {
-      const Rgb value = ShadePixel(geometry, above, below, column);
+      Rgb value = ShadePixel(geometry, above, below, column);
+      const double seen = exposure * LensFalloff(plan_, Vector2d(column + 0.5, row + 0.5));
+      for (float& v : value) v = static_cast<float>(seen * v);
       out = std::copy(value.begin(), value.end(), out);
     }
     std::swap(above, below);

@@ -1,5 +1,6 @@
 #include "pipeline/contract/calibration.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/contract/errors.h"
@@ -26,6 +27,10 @@ Camera ReadCamera(const std::filesystem::path& file, const Json& json, const std
   if (camera.focal_length_x() <= 0 || camera.focal_length_y() <= 0 || camera.width_px < 1 ||
       camera.height_px < 1) {
     throw UserError(file, name, "a focal length or size that is not positive", "run calib again");
+  }
+  if (json.contains("vignetting")) {
+    const auto vignetting = RequireNumbers(file, json, name, "vignetting", 3);
+    std::copy(vignetting.begin(), vignetting.end(), camera.vignetting.begin());
   }
   return camera;
 }
@@ -54,6 +59,13 @@ CalibratedPhoto ReadPhoto(const std::filesystem::path& file, const Json& json,
   }
   const auto light = RequireNumbers(file, json, name, "light_in_camera_mm", 3);
   photo.light_in_camera_mm = Eigen::Map<const Eigen::Vector3d>(light.data());
+  if (json.contains("exposure")) {
+    photo.exposure = RequireNumber(file, json, name, "exposure");
+    if (photo.exposure <= 0) {
+      throw UserError(file, name + ".exposure", std::to_string(photo.exposure),
+                      "it must be positive; run calib again");
+    }
+  }
   photo.rms_px = RequireNumber(file, json, name, "rms_px");
   photo.corners = static_cast<int>(RequireNumber(file, json, name, "corners"));
   photo.inliers = static_cast<int>(RequireNumber(file, json, name, "inliers"));
@@ -69,10 +81,12 @@ Json ToJson(const Calibration& calibration) {
     data["cameras"].push_back({{"model", std::string(CameraModelName(camera.model))},
                                {"width_px", camera.width_px},
                                {"height_px", camera.height_px},
-                               {"parameters", camera.parameters}});
+                               {"parameters", camera.parameters},
+                               {"vignetting", camera.vignetting}});
   }
   data["light_rgb"] = List(calibration.light_rgb);
   data["light_power_known"] = calibration.light_power_known;
+  if (calibration.ambient_rgb) data["ambient_rgb"] = List(*calibration.ambient_rgb);
   data["photos"] = Json::array();
   for (const CalibratedPhoto& photo : calibration.photos) {
     std::vector<double> rotation;
@@ -86,6 +100,7 @@ Json ToJson(const Calibration& calibration) {
          {"rms_px", photo.rms_px},
          {"corners", photo.corners},
          {"inliers", photo.inliers}});
+    if (photo.exposure > 0) data["photos"].back()["exposure"] = photo.exposure;
   }
   return data;
 }
@@ -107,6 +122,10 @@ Calibration ReadCalibration(const std::filesystem::path& manifest_file) {
                     "true or false is expected");
   }
   calibration.light_power_known = known.get<bool>();
+  if (manifest.data.contains("ambient_rgb")) {
+    const auto ambient = RequireNumbers(manifest_file, manifest.data, "data", "ambient_rgb", 3);
+    calibration.ambient_rgb = Eigen::Map<const Eigen::Vector3d>(ambient.data());
+  }
   const Json& photos = RequireField(manifest_file, manifest.data, "data", "photos");
   for (size_t i = 0; i < photos.size(); ++i) {
     calibration.photos.push_back(ReadPhoto(manifest_file, photos[i],

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct CalibratedPhoto {
   int camera = 0;     // index into Calibration::cameras
   Rigid3 camera_from_sample;
   Eigen::Vector3d light_in_camera_mm{0, 0, 0};  // flash position in the camera frame
+  double exposure = 0;                          // relative to the first photo's; 0: not estimated
   double rms_px = 0;                            // reprojection error of its inlier corners
   int corners = 0, inliers = 0;
 };
@@ -26,6 +28,8 @@ struct Calibration {
   std::vector<CalibratedPhoto> photos;  // accepted flash photographs, in capture order
   Eigen::Vector3d light_rgb{1, 1, 1};  // power, radiance·mm² in units where the sensor clips at 1
   bool light_power_known = false;      // false: light_rgb is a first guess
+  // Irradiance of the room, times the exposure of the first photo; nullopt: not told.
+  std::optional<Eigen::Vector3d> ambient_rgb;
 };
 
 Json ToJson(const Calibration& calibration);

@@ -144,8 +144,14 @@ class Resampler {
     // Only a picture smaller than the kernel's lobes can leave no weight.
     if (!(sum.weight > 1e-3)) return TexelStatus::kOutside;
     const size_t texels = view_->status.size();
+    double gain = 1, ceiling = std::numeric_limits<double>::infinity();
+    if (options_.vignetting && !sum.saturated) {
+      gain = 1 / Vignetting(*options_.vignetting, centre);
+      if (!photo_.is_float()) ceiling = 1;
+    }
     for (int c = 0; c < 3; ++c) {
-      view_->rgb[c * texels + texel] = static_cast<float>(std::max(sum.rgb[c] / sum.weight, 0.0));
+      const double value = gain * std::max(sum.rgb[c] / sum.weight, 0.0);
+      view_->rgb[c * texels + texel] = static_cast<float>(std::min(value, ceiling));
     }
     return sum.saturated ? TexelStatus::kSaturated : TexelStatus::kUsable;
   }

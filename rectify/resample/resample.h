@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "calib/camera/camera_model.h"
 #include "fitting/reflectance/view.h"
 #include "rectify/linearize/linear_photo.h"
 #include "rectify/resample/filter_kernel.h"
@@ -17,6 +19,8 @@ struct ResampleOptions {
   // inside.
   double border_px = 1e-3;
   int threads = 1;  // never changes a value
+  // The lens's fall-off, which is divided out; its principal point and size are those of the photo.
+  std::optional<Camera> vignetting;
 };
 
 enum class TexelStatus : uint8_t {
@@ -38,6 +42,9 @@ struct ResampledView {
 // photo is finer than the texels, at any tilt; interpolates when it is coarser. Weights are
 // normalised, so that constants stay constants; negative results (the kernel's lobes beside a
 // highlight) become 0. Threaded by tiles; the result does not depend on the number of threads.
+// With `vignetting` the value is what reached the lens; a photo of 8 or 16 bit keeps 1 as its
+// ceiling (what clips says "at least 1", and later stages compare with renderings clamped to 1), so
+// values above it become 1, and saturated texels stay as they are.
 // Texels marked kMasked in `status_before` (empty, or [H·W]) are passed over.
 ResampledView ResampleToPlane(const LinearPhoto& photo, const PlaneProjection& projection,
                               const SamplePlane& plane, const ResampleOptions& options,

@@ -36,13 +36,20 @@ std::vector<TexelStatus> FrameStatus(const RectifyTask& task, const RectifyOptio
   return MaskFrame(plane, opening, options.frame_height_mm, options.frame_margin_mm, view);
 }
 
-// Exposures relative to the first photograph's, where EXIF gives them for all.
-void SetExposures(const std::vector<double>& by_exif, const RectifyOptions& options,
-                  std::vector<RectifiedView>* views) {
-  const bool known = options.exposure == "exif" &&
-                     std::all_of(by_exif.begin(), by_exif.end(), [](double e) { return e > 0; });
-  if (!known) return;
-  for (size_t i = 0; i < views->size(); ++i) (*views)[i].view.exposure = by_exif[i] / by_exif[0];
+// Exposures relative to the first photograph's: as calib found them or else, where EXIF gives them
+// for all, from there.
+void SetExposures(const Calibration& calibration, const std::vector<double>& by_exif,
+                  const RectifyOptions& options, std::vector<RectifiedView>* views) {
+  std::vector<double> exposures;
+  for (const CalibratedPhoto& photo : calibration.photos) exposures.push_back(photo.exposure);
+  const auto known = [](const std::vector<double>& all) {
+    return std::all_of(all.begin(), all.end(), [](double e) { return e > 0; });
+  };
+  if (options.exposure != "calib" || !known(exposures)) exposures = by_exif;
+  if (options.exposure == "equal" || !known(exposures)) return;
+  for (size_t i = 0; i < views->size(); ++i) {
+    (*views)[i].view.exposure = exposures[i] / exposures[0];
+  }
 }
 
 void Warn(const fs::path& file, const ViewCounts& counts) {
@@ -107,11 +114,13 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     view.ldr = photo.ldr;
     view.view =
         ViewOf(calibration, calibrated, task.ambient, capture.work() / "calib" / "manifest.json");
-    const CameraProjection projection(calibration.cameras[static_cast<size_t>(calibrated.camera)],
-                                      calibrated.camera_from_sample);
+    const Camera& camera = calibration.cameras[static_cast<size_t>(calibrated.camera)];
+    const CameraProjection projection(camera, calibrated.camera_from_sample);
+    ResampleOptions resample = ResampleOptionsOf(options, common.threads);
+    if (camera.vignetting != std::array<double, 3>{}) resample.vignetting = camera;
     ViewCounts counts;
     const RectifiedImage image =
-        RectifyPhoto(photo.photo, projection, set.plane, ResampleOptionsOf(options, common.threads),
+        RectifyPhoto(photo.photo, projection, set.plane, resample,
                      FrameStatus(task, options, set.plane, view.view), files[i], &counts);
     Warn(files[i], counts);
     WriteRectifiedImage(stage->Output(view.file), image, set);
@@ -124,7 +133,7 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     set.views.push_back(std::move(view));
     progress.Advance(1, calibrated.photo);
   }
-  SetExposures(exposures, options, &set.views);
+  SetExposures(calibration, exposures, options, &set.views);
   if (!set.light_power_known) GiveLight(guess, &set);
   stage->Commit(ToJson(set), summary.metrics);
   set.manifest_file = stage->manifest_file();

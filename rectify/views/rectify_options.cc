@@ -22,8 +22,9 @@ void AddRectifyOptions(OptionSet* set, RectifyOptions* options) {
                 "above 1: none does");
   set->AddRange("float-saturation-level", &options->float_saturation_level, 0, 1e9,
                 "the same for float photos; 0: they never clip");
-  set->AddChoice("exposure", &options->exposure, {"exif", "equal"},
-                 "relative exposure of the photos: from EXIF where all have it, or all equal");
+  set->AddChoice("exposure", &options->exposure, {"calib", "exif", "equal"},
+                 "relative exposure of the photos: as calib found it (where it did not, as exif), "
+                 "from EXIF where all have it, or all equal");
   set->AddRange("frame-height-mm", &options->frame_height_mm, 0, 100,
                 "thickness of the board round the sample: what it shades or hides is masked");
   set->AddRange("frame-margin-mm", &options->frame_margin_mm, 0, 1000,

@@ -17,8 +17,7 @@ struct RectifyOptions {
   std::string filter = "sharp";       // sharp, soft, lanczos: see filter_kernel.h
   double saturation_level = 0.995;    // stored value from which 8/16 bit and RAW count as clipped
   double float_saturation_level = 0;  // the same for float photographs; 0: they never clip
-  std::string exposure =
-      "exif";                  // exif: relative exposures from EXIF where all photos have it; equal
+  std::string exposure = "calib";     // as calib found it; exif: where all photos have it; equal
   double frame_height_mm = 0;  // the board frame's thickness: it shades and hides the sample's rim
   double frame_margin_mm = 0;  // this near to the frame nothing is used
 };

@@ -90,6 +90,9 @@ View ViewOf(const Calibration& calibration, const CalibratedPhoto& photo,
   view.light_rgb = {calibration.light_rgb.x(), calibration.light_rgb.y(),
                     calibration.light_rgb.z()};
   view.ambient_rgb = {ambient[0], ambient[1], ambient[2]};
+  if (calibration.ambient_rgb) {
+    for (int c = 0; c < 3; ++c) view.ambient_rgb[c] = (*calibration.ambient_rgb)[c];
+  }
   return view;
 }
 

@@ -22,7 +22,8 @@ struct ViewCounts {
 Json ToJson(const ViewCounts& counts);
 
 // Camera and light of a calibrated photo in the sample frame, with the calibration's power and an
-// exposure of 1. Throws UserError when either lies behind the sample.
+// exposure of 1. `ambient` holds where the calibration tells none. Throws UserError when either
+// lies behind the sample.
 View ViewOf(const Calibration& calibration, const CalibratedPhoto& photo,
             const std::vector<double>& ambient, const std::filesystem::path& calibration_file);
 

@@ -84,7 +84,8 @@ TEST(SamplePaper, FindsWhitePaperAndLeavesOutWhatClips) {
       for (int c = 0; c < 3; ++c) photo.image.channel(c)[i] = gray.samples[i] / 255.0f;
     }
     const auto detection = DetectBoard(gray, board);
-    const auto samples = SamplePaper(photo, Encoding::kGamma22, board, detection.corners);
+    const auto samples =
+        SamplePaper(photo, Encoding::kGamma22, board, PaperSpots(board), detection.corners);
     if (peak > 1) {
       EXPECT_TRUE(samples.empty());
       continue;

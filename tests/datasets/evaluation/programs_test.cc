@@ -47,6 +47,24 @@ TEST_F(ProgramsTest, MaterialIsWrittenListedAndCompared) {
   EXPECT_GT(Json::parse(other.out)["map_average"].get<double>(), 1e-4);
 }
 
+// A small version of the 20 captures of docs/real-captures.md.
+TEST_F(ProgramsTest, LightOfAPhoneCaptureIsFoundAndKept) {
+  const std::vector<std::string> arguments = {
+      "light", "--work",       Path("light"), "--seeds",      "1",  "--photos",
+      "8",     "--megapixels", "2",           "--resolution", "32", "--json"};
+  const Outcome light = Eval(arguments);
+  ASSERT_EQ(light.code, 0) << light.err;
+  const Json summary = Json::parse(light.out)["summary"];
+  EXPECT_LT(summary["flash"]["largest"].get<double>(), 2.5);
+  EXPECT_LT(summary["vignetting"]["largest"].get<double>(), 1.5);
+  EXPECT_LT(summary["exposure"]["largest"].get<double>(), 1.0);
+  EXPECT_LT(summary["ambient"]["largest"].get<double>(), 35);
+  EXPECT_GT(summary["within_3_sigma_percent"].get<double>(), 85);
+  fs::remove_all(Path("light/seed_000/capture"));
+  const Outcome again = Eval(arguments);
+  EXPECT_EQ(again.out, light.out) << again.err;
+}
+
 TEST_F(ProgramsTest, TruthOfACaptureHasNoError) {
   const Outcome capture = Synth({"capture", Path("c"), "--photos", "2", "--megapixels", "0.1",
                                  "--texels", "32", "--seed", "5", "--json"});

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -67,6 +68,43 @@ TEST(PlanCapture, SampleIsInEveryPictureAndUpright) {
       EXPECT_LT(pixel(0, 50).y(), pixel(0, -50).y());  // +y of the sample is up
       EXPECT_LT(pixel(-50, 0).x(), pixel(50, 0).x());
     }
+  }
+}
+
+TEST(PlanCapture, ExposuresSpreadOverTheStopsAndTheBrightestPaperKeepsItsLevel) {
+  CapturePlanOptions options;
+  options.exposure_ev = 1;
+  options.exif_error = 0.03;
+  options.seed = 3;
+  const CapturePlan plan = PlanCapture(options);
+  EXPECT_EQ(plan.photos[0].exposure, 1);
+  double least = 1e9, most = 0, brightest = 0, deviation = 0;
+  for (const PlannedPhoto& photo : plan.photos) {
+    least = std::min(least, photo.exposure);
+    most = std::max(most, photo.exposure);
+    const Vector3d& light = photo.light_in_sample_mm;
+    const double falloff = 1 / (light.z() * light.z());
+    brightest = std::max(
+        brightest, photo.exposure * plan.light_rgb.x() * falloff * kPaperAlbedo / std::numbers::pi);
+    deviation = std::max(deviation, std::abs(photo.exif_exposure / photo.exposure - 1));
+  }
+  EXPECT_NEAR(most / least, 4, 1e-9);
+  EXPECT_NEAR(brightest, options.paper_level, 0.05);
+  EXPECT_GT(deviation, 0.005);
+  EXPECT_LT(deviation, 0.12);
+}
+
+TEST(PlanCapture, CornersLoseWhatVignettingSaysAndTheTruthsPolynomialFollows) {
+  CapturePlanOptions options;
+  options.vignetting = 0.3;
+  const CapturePlan plan = PlanCapture(options);
+  const Camera& camera = plan.camera;
+  const Vector2d centre(camera.parameters[1], camera.parameters[2]);
+  const Vector2d half(0.5 * camera.width_px, 0.5 * camera.height_px);
+  EXPECT_EQ(LensFalloff(plan, centre), 1);
+  EXPECT_NEAR(LensFalloff(plan, centre + half), 0.7, 1e-12);
+  for (double r = 0; r <= 1; r += 0.05) {
+    EXPECT_NEAR(Vignetting(camera, centre + r * half), LensFalloff(plan, centre + r * half), 3e-4);
   }
 }
 

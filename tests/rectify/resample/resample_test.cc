@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -55,6 +56,34 @@ TEST(Resample, ConstantsStayConstants) {
       }
     }
   }
+}
+
+// A white wall through a lens that darkens the corners is white again; 8-bit photos keep 1 as their
+// ceiling, and clipped texels what they showed.
+TEST(Resample, DividesTheLensesFalloffOut) {
+  Camera camera = TestCamera(400, 420, -0.05, 0.01);
+  camera.vignetting = {-0.5, 0.12, -0.03};
+  const CameraProjection projection(camera, LookAtSample(100, 20, 20));
+  ResampleOptions options;
+  options.vignetting = camera;
+  for (const float wall : {0.6f, 1.5f}) {
+    Photo photo = FlatPhoto(400, 400, 0, 32);
+    for (size_t i = 0; i < photo.image.samples.size(); ++i) {
+      const size_t pixel = i % photo.image.pixels();
+      photo.image.samples[i] =
+          static_cast<float>(wall * Vignetting(camera, {pixel % 400 + 0.5, pixel / 400 + 0.5}));
+    }
+    const ResampledView view =
+        ResampleToPlane(LinearPhoto(photo, Encoding::kLinear), projection, Plane(64, 50), options);
+    for (const float value : view.rgb) ASSERT_NEAR(value, wall, 2e-4);
+  }
+  const LinearPhoto dark(FlatPhoto(400, 400, 250 / 255.0f, 8), Encoding::kLinear);
+  const ResampledView bright = ResampleToPlane(dark, projection, Plane(64, 80), options);
+  EXPECT_EQ(*std::max_element(bright.rgb.begin(), bright.rgb.end()), 1.0f);
+  const LinearPhoto clipped(FlatPhoto(400, 400, 254 / 255.0f, 8), Encoding::kLinear);
+  const ResampledView view = ResampleToPlane(clipped, projection, Plane(64, 80), options);
+  EXPECT_EQ(view.status[0], TexelStatus::kSaturated);
+  for (const float value : view.rgb) ASSERT_NEAR(value, 254 / 255.0f, 2e-5);
 }
 
 // Centres of mass of Gaussian blobs come out where they were painted, to a tenth of a texel, under

@@ -1,0 +1,226 @@
+#include "calib/capture/capture_light.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/camera/orientation.h"
+#include "calib/light/light_picture.h"
+#include "pipeline/contract/files.h"
+
+namespace glint {
+namespace {
+
+size_t DetectedIndex(const CalibSummary& summary, const CalibratedPhoto& photo) {
+  const auto found = std::find_if(summary.photos.begin(), summary.photos.end(),
+                                  [&](const DetectedPhoto& p) { return p.name == photo.photo; });
+  return static_cast<size_t>(found - summary.photos.begin());
+}
+
+// Exposures relative to the first calibrated photograph, by EXIF where all photographs have it,
+// else all equal.
+std::vector<double> ExifExposures(const CalibSummary& summary) {
+  std::vector<double> exposures;
+  for (const CalibratedPhoto& photo : summary.calibration.photos) {
+    exposures.push_back(summary.photos[DetectedIndex(summary, photo)].exposure);
+  }
+  const bool known =
+      std::all_of(exposures.begin(), exposures.end(), [](double e) { return e > 0; });
+  const double first = exposures[0];
+  for (double& exposure : exposures) exposure = known ? exposure / first : 1;
+  return exposures;
+}
+
+// Without paper to go by: the power that makes a white surface below the camera reach 0.8.
+double GuessedPower(const Calibration& calibration) {
+  const CalibratedPhoto& photo = calibration.photos[0];
+  const Eigen::Vector3d light = Inverse(photo.camera_from_sample) * photo.light_in_camera_mm;
+  return 0.8 * 3.14159265358979 * light.squaredNorm();
+}
+
+Eigen::Vector3d Values(const std::array<Estimate, 3>& estimates) {
+  return {estimates[0].value, estimates[1].value, estimates[2].value};
+}
+
+LightProblem ProblemOf(const CalibSummary& summary) {
+  LightProblem problem;
+  for (const CameraEstimate& camera : summary.bundle.cameras) {
+    problem.cameras.push_back(camera.camera);
+  }
+  for (const CalibratedPhoto& photo : summary.calibration.photos) {
+    const size_t detected = DetectedIndex(summary, photo);
+    LightPhoto& added = problem.photos.emplace_back();
+    added.name = photo.photo;
+    added.camera = summary.groups.group[detected];
+    added.camera_from_sample =
+        summary.bundle.photos[summary.BundleIndex(detected)].camera_from_sample;
+    added.exposure = summary.photos[detected].exposure;
+    added.clips = summary.photos[detected].clips;
+    added.samples = summary.photos[detected].paper;
+  }
+  return problem;
+}
+
+LightEstimate EstimateFromBoard(const Capture& capture, const CalibOptions& options,
+                                const CalibSummary& summary) {
+  LightOptions light;
+  light.paper_reflectance = options.paper_reflectance;
+  light.offset_mm = Eigen::Vector3d(capture.light_offset_mm.data());
+  light.power = Eigen::Vector3d(capture.light_power.data());
+  const Eigen::Vector3d ambient(capture.ambient.data());
+  if (ambient.maxCoeff() > 0) light.ambient = ambient;
+  return EstimateLight(ProblemOf(summary), light);
+}
+
+// Exposures of photographs whose paper said nothing: by EXIF, relative to one whose did.
+void FillExposures(const CalibSummary& summary, Calibration* calibration) {
+  const std::vector<double> exif = ExifExposures(summary);
+  const std::vector<LightOfPhoto>& photos = summary.light.photos;
+  const auto used = std::find_if(photos.begin(), photos.end(),
+                                 [](const LightOfPhoto& photo) { return photo.used; });
+  const size_t first = static_cast<size_t>(used - photos.begin());
+  for (size_t i = 0; i < photos.size(); ++i) {
+    calibration->photos[i].exposure =
+        photos[i].used ? photos[i].exposure.value : exif[i] / exif[first];
+    if (photos[i].used) continue;
+    spdlog::warn("{}: too little unclipped white paper; its exposure is taken from EXIF",
+                 photos[i].name);
+  }
+  // The first photograph's exposure is 1 in everything that follows.
+  const double gauge = calibration->photos[0].exposure;
+  for (CalibratedPhoto& photo : calibration->photos) photo.exposure /= gauge;
+  calibration->light_rgb *= gauge;
+  *calibration->ambient_rgb *= gauge;
+}
+
+void TakeEstimate(CalibSummary* summary) {
+  const LightEstimate& light = summary->light;
+  Calibration& calibration = summary->calibration;
+  calibration.light_rgb = Values(light.power_rgb);
+  calibration.ambient_rgb = Values(light.ambient_rgb);
+  calibration.light_power_known = true;
+  for (CalibratedPhoto& photo : calibration.photos) {
+    const size_t detected = DetectedIndex(*summary, photo);
+    photo.light_in_camera_mm =
+        TurnedCameraPoint(Values(light.flash_in_camera_mm), summary->groups.turns[detected]);
+    const auto& v = light.vignetting[summary->groups.group[detected]];
+    calibration.cameras[photo.camera].vignetting = {v[0].value, v[1].value, v[2].value};
+  }
+  FillExposures(*summary, &calibration);
+}
+
+// The paper's assumption: the light at the lens, or where capture.toml puts it; all photographs'
+// exposures as EXIF says; no fall-off.
+void FillSimpleLight(const Capture& capture, const CalibOptions& options, CalibSummary* summary) {
+  Calibration& calibration = summary->calibration;
+  const std::vector<double> exposures = ExifExposures(*summary);
+  std::vector<LitPaper> papers;
+  for (size_t i = 0; i < calibration.photos.size(); ++i) {
+    const CalibratedPhoto& photo = calibration.photos[i];
+    papers.push_back({photo.camera_from_sample, photo.light_in_camera_mm, exposures[i],
+                      summary->photos[DetectedIndex(*summary, photo)].paper});
+  }
+  PowerOptions power;
+  power.paper_reflectance = options.paper_reflectance;
+  power.ambient = Eigen::Vector3d(capture.ambient.data());
+  calibration.ambient_rgb = power.ambient;
+  summary->power = EstimatePower(papers, power);
+  const Eigen::Vector3d given(capture.light_power.data());
+  calibration.light_power_known = true;
+  if (given.maxCoeff() > 0) {
+    calibration.light_rgb = given;
+    summary->power_source = "capture.toml";
+  } else if (summary->power.known) {
+    calibration.light_rgb = summary->power.light_rgb;
+    summary->power_source = "board, light at the lens";
+  } else {
+    calibration.light_rgb.setConstant(GuessedPower(calibration));
+    calibration.light_power_known = false;
+    summary->power_source = "guess";
+    spdlog::warn(
+        "no paper of the board is seen unclipped and large enough; the light's power is a "
+        "guess, which later stages refine");
+  }
+}
+
+}  // namespace
+
+void FillLight(const Capture& capture, const CalibOptions& options, CalibSummary* summary) {
+  if (options.light == "board") {
+    summary->light = EstimateFromBoard(capture, options, *summary);
+    if (summary->light.known) {
+      summary->power_source =
+          Eigen::Vector3d(capture.light_power.data()).maxCoeff() > 0 ? "capture.toml" : "board";
+      TakeEstimate(summary);
+      for (const std::string& word : summary->light.held) spdlog::warn("light: {}", word);
+      return;
+    }
+    spdlog::warn("{}; the light is taken to stand at the lens, or where capture.toml puts it",
+                 summary->light.problem);
+  }
+  FillSimpleLight(capture, options, summary);
+}
+
+void WriteLightPicture(const CalibSummary& summary, Stage* stage) {
+  if (!summary.light.known) return;
+  WritePng(stage->Output("light_residuals.png"), LightPicture(ProblemOf(summary), summary.light));
+  Json json;
+  json["about"] =
+      "per photo and spot of white paper [x_px, y_px, seen / predicted - 1 of r, g, b, inlier], in "
+      "the stored picture; the centre of the top-left pixel is (0.5, 0.5)";
+  json["photos"] = Json::object();
+  for (const LightOfPhoto& photo : summary.light.photos) {
+    Json spots = Json::array();
+    for (const LightOfPhoto::Spot& spot : photo.spots) {
+      spots.push_back({spot.point_px.x(), spot.point_px.y(), spot.relative.x(), spot.relative.y(),
+                       spot.relative.z(), spot.inlier});
+    }
+    json["photos"][photo.name] = spots;
+  }
+  WriteFileAtomically(stage->Output("light_residuals.json"), json.dump(1) + "\n");
+}
+
+std::vector<std::string> LightAdvice(const CalibSummary& summary) {
+  const LightEstimate& light = summary.light;
+  std::vector<std::string> advice = light.held;
+  if (!light.known) return advice;
+  constexpr double kFlash_mm = 2, kAmbientOfFlash = 0.01, kVignetting = 0.01, kResidual = 3;
+  double flash = 0;
+  for (const Estimate& estimate : light.flash_in_camera_mm) flash = std::max(flash, estimate.sigma);
+  if (flash > kFlash_mm) {
+    advice.push_back(fmt::format(
+        "the flash's place is uncertain by {:.1f} mm; photographs tilted by 20 to 40 degrees in "
+        "several directions mend that",
+        flash));
+  }
+  const auto& first = summary.calibration.photos[0];
+  const double height = Inverse(first.camera_from_sample).translation.norm();
+  for (int c = 0; c < 3; ++c) {
+    const double share =
+        light.ambient_rgb[c].sigma * height * height / std::max(1e-9, light.power_rgb[c].value);
+    if (share <= kAmbientOfFlash) continue;
+    advice.push_back(
+        fmt::format("the room's light is uncertain by {:.1f} % of the flash's; photographs from "
+                    "more heights mend that, or a darker room makes it needless",
+                    100 * share));
+    break;
+  }
+  for (const double sigma : light.vignetting_sigma) {
+    if (sigma <= kVignetting) continue;
+    advice.push_back(fmt::format(
+        "the lens's fall-off is uncertain by {:.1f} %; photographs with the board at the picture's "
+        "rim mend that",
+        100 * sigma));
+  }
+  if (light.rms_percent > kResidual) {
+    advice.push_back(fmt::format(
+        "the paper's brightness differs from the light found by {:.1f} %: see light_residuals.png "
+        "for shadows, a lamp, a curled sheet, or another tone curve ([radiometry] encoding)",
+        light.rms_percent));
+  }
+  return advice;
+}
+
+}  // namespace glint

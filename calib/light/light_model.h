@@ -1,0 +1,67 @@
+// Radiance of a spot of paper, for values and for Ceres' derivatives. See light.h.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace glint::light {
+
+// What of a spot no unknown changes.
+struct SpotGeometry {
+  Eigen::Vector3d spot_in_camera_mm;
+  Eigen::Vector3d normal_in_camera;  // of the board, toward the viewer
+  double r2 = 0;                     // see VignettingRadius2
+};
+
+inline constexpr double kGlossRoughness = 0.6;
+inline constexpr double kPi = 3.14159265358979323846;
+
+// π·D·G/(4·NoL·NoV) of the lobe, times NoL-free: the gloss over a white Lambertian reflection, for
+// a reflectance of 1 at normal incidence. Fresnel's rise is left out: it needs grazing light.
+template <class T>
+T GlossOverWhite(const T& n_dot_l, const T& n_dot_v, const T& n_dot_h) {
+  const double alpha = kGlossRoughness * kGlossRoughness, k = alpha / 2;
+  const T d = T(alpha) / (n_dot_h * n_dot_h * T(alpha * alpha - 1) + T(1));
+  const T smith = (n_dot_l * T(1 - k) + T(k)) * (n_dot_v * T(1 - k) + T(k));
+  return d * d / (T(4) * smith);
+}
+
+// cosθ/d² · (1 + g) per unit of q; false where the flash is behind the board.
+template <class T>
+bool FlashOnSpot(const SpotGeometry& geometry, const T* flash_mm, const T& gloss, T* value) {
+  using Vector = Eigen::Matrix<T, 3, 1>;
+  const Vector spot = geometry.spot_in_camera_mm.cast<T>();
+  const Vector normal = geometry.normal_in_camera.cast<T>();
+  const Vector way = Vector(flash_mm[0], flash_mm[1], flash_mm[2]) - spot;
+  const T d2 = way.squaredNorm();
+  const Vector to_light = way / sqrt(d2), to_camera = -spot / sqrt(spot.squaredNorm());
+  const T n_dot_l = normal.dot(to_light), n_dot_v = normal.dot(to_camera);
+  if (n_dot_l <= T(0) || n_dot_v <= T(0)) return false;
+  const Vector half = to_light + to_camera;
+  const T n_dot_h = normal.dot(half) / sqrt(half.squaredNorm());
+  *value = n_dot_l / d2 * (T(1) + gloss * GlossOverWhite(n_dot_l, n_dot_v, n_dot_h));
+  return true;
+}
+
+template <class T>
+T Falloff(const SpotGeometry& geometry, const T* v) {
+  const double r2 = geometry.r2;
+  return T(1) + T(r2) * (v[0] + T(r2) * (v[1] + T(r2) * v[2]));
+}
+
+// Parameter blocks: flash_mm[3], log_q[3], ambient[3] (a · reference), vignetting[3], gloss[1],
+// log_exposure[1]. `reference` (1/mm²) brings a to the size of 1.
+template <class T>
+bool Predict(const SpotGeometry& geometry, double reference, const T* flash_mm, const T* log_q,
+             const T* ambient, const T* vignetting, const T* gloss, const T* log_exposure,
+             T* radiance) {
+  T flash;
+  if (!FlashOnSpot(geometry, flash_mm, gloss[0], &flash)) return false;
+  const T seen = exp(log_exposure[0]) * Falloff(geometry, vignetting);
+  for (int c = 0; c < 3; ++c) {
+    radiance[c] = seen * exp(log_q[c]) * (flash + ambient[c] * T(reference));
+  }
+  return true;
+}
+
+}  // namespace glint::light

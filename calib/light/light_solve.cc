@@ -1,0 +1,135 @@
+#include <ceres/ceres.h>
+
+#include <memory>
+
+#include "calib/light/light_cost.h"
+
+namespace glint::light {
+namespace {
+
+class SpotCost {
+ public:
+  SpotCost(const Spot& spot, double reference, double scale)
+      : spot_(spot), reference_(reference), scale_(scale) {}
+  template <class T>
+  bool operator()(const T* flash, const T* log_q, const T* ambient, const T* vignetting,
+                  const T* gloss, const T* log_exposure, T* residual) const {
+    T radiance[3];
+    if (!Predict(spot_.geometry, reference_, flash, log_q, ambient, vignetting, gloss, log_exposure,
+                 radiance)) {
+      return false;
+    }
+    for (int c = 0; c < 3; ++c) {
+      residual[c] = (T(spot_.seen[c]) - radiance[c]) / T(spot_.sigma[c] * scale_);
+    }
+    return true;
+  }
+
+ private:
+  const Spot& spot_;
+  double reference_, scale_;
+};
+
+// (value − expected) / σ of each of N numbers.
+template <int N>
+class PriorCost {
+ public:
+  PriorCost(const Eigen::Matrix<double, N, 1>& expected, const Eigen::Matrix<double, N, 1>& sigma)
+      : expected_(expected), sigma_(sigma) {}
+  template <class T>
+  bool operator()(const T* value, T* residual) const {
+    for (int i = 0; i < N; ++i) residual[i] = (value[i] - T(expected_[i])) / T(sigma_[i]);
+    return true;
+  }
+
+ private:
+  Eigen::Matrix<double, N, 1> expected_, sigma_;
+};
+
+// Light that falls off like (1 + t·r²)⁻² = 1 − 2t·r² + 3t²·r⁴ − 4t³·r⁶ + …
+struct FalloffPrior {
+  template <class T>
+  bool operator()(const T* v, T* residual) const {
+    residual[0] = v[0] / T(kPrior.vignetting);
+    residual[1] = (v[1] - T(0.75) * v[0] * v[0]) / T(kPrior.vignetting_form);
+    residual[2] = (v[2] - T(0.5) * v[0] * v[0] * v[0]) / T(kPrior.vignetting_form);
+    return true;
+  }
+};
+
+template <int N>
+void AddPrior(const Eigen::Matrix<double, N, 1>& expected, const Eigen::Matrix<double, N, 1>& sigma,
+              double* block, ceres::Problem* problem) {
+  problem->AddResidualBlock(
+      new ceres::AutoDiffCostFunction<PriorCost<N>, N, N>(new PriorCost<N>(expected, sigma)),
+      nullptr, block);
+}
+
+using Vector1 = Eigen::Matrix<double, 1, 1>;
+
+}  // namespace
+
+void AddSpots(bool robust, State* state, ceres::Problem* problem) {
+  for (PhotoState& photo : state->photos) {
+    if (!photo.used) continue;
+    for (const Spot& spot : photo.spots) {
+      if (!spot.inlier) continue;
+      problem->AddResidualBlock(new ceres::AutoDiffCostFunction<SpotCost, 3, 3, 3, 3, 3, 1, 1>(
+                                    new SpotCost(spot, state->reference, state->scale)),
+                                robust ? new ceres::CauchyLoss(2.0) : nullptr,
+                                state->flash_mm.data(), state->log_q.data(), state->ambient.data(),
+                                state->vignetting[photo.camera].data(), &state->gloss,
+                                &photo.log_exposure);
+    }
+  }
+}
+
+void AddPriors(const LightOptions& options, State* state, ceres::Problem* problem) {
+  const double along = state->flash_along_free ? kPrior.flash_free_mm : kPrior.flash_along_mm;
+  AddPrior<3>(options.offset_mm, {kPrior.flash_across_mm, kPrior.flash_across_mm, along},
+              state->flash_mm.data(), problem);
+  AddPrior<3>(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(kPrior.ambient),
+              state->ambient.data(), problem);
+  AddPrior<1>(Vector1::Zero(), Vector1::Constant(kPrior.gloss), &state->gloss, problem);
+  for (size_t c = 0; c < state->vignetting.size(); ++c) {
+    if (!problem->HasParameterBlock(state->vignetting[c].data())) continue;
+    problem->AddResidualBlock(new ceres::AutoDiffCostFunction<FalloffPrior, 3, 3>(new FalloffPrior),
+                              nullptr, state->vignetting[c].data());
+  }
+  for (PhotoState& photo : state->photos) {
+    if (!photo.used || photo.exif <= 0) continue;
+    AddPrior<1>(Vector1(std::log(photo.exif)), Vector1::Constant(kPrior.exif), &photo.log_exposure,
+                problem);
+  }
+}
+
+void HoldBlocks(State* state, ceres::Problem* problem) {
+  const auto hold = [problem](double* block) {
+    if (problem->HasParameterBlock(block)) problem->SetParameterBlockConstant(block);
+  };
+  if (state->hold_flash) hold(state->flash_mm.data());
+  if (state->hold_ambient) hold(state->ambient.data());
+  if (state->hold_gloss) hold(&state->gloss);
+  for (size_t c = 0; c < state->vignetting.size(); ++c) {
+    if (state->hold_vignetting[c]) hold(state->vignetting[c].data());
+  }
+  hold(&state->photos[state->first].log_exposure);
+}
+
+void Solve(const LightOptions& options, bool robust, State* state) {
+  ceres::Problem problem;
+  AddSpots(robust, state, &problem);
+  AddPriors(options, state, &problem);
+  HoldBlocks(state, &problem);
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;  // the same bits for the same input
+  solver.num_threads = 1;
+  solver.max_num_iterations = 100;
+  solver.function_tolerance = 1e-10;
+  solver.parameter_tolerance = 1e-10;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+}
+
+}  // namespace glint::light

@@ -1,0 +1,83 @@
+// What the parts of the light's solution share.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "calib/light/light.h"
+#include "calib/light/light_model.h"
+
+namespace glint::light {
+
+struct Spot {
+  SpotGeometry geometry;
+  Eigen::Vector3d seen;
+  Eigen::Vector2d point_px;
+  int cluster = 0;  // square of a photo
+  int pixels = 1;
+  bool inlier = true;
+  double sigma[3] = {1, 1, 1};  // of `seen`, by the current prediction
+};
+
+struct PhotoState {
+  bool used = false;
+  int camera = 0;
+  bool clips = true;
+  double exif = 0;
+  double log_exposure = 0;
+  std::vector<Spot> spots;
+};
+
+// Values of the parameter blocks, and which are held.
+struct State {
+  Eigen::Vector3d flash_mm{0, 0, 0};
+  Eigen::Vector3d log_q{0, 0, 0};
+  Eigen::Vector3d ambient{0, 0, 0};  // a / reference
+  double gloss = 0;                  // lobe's reflectance over the paper's
+  std::vector<Eigen::Vector3d> vignetting;
+  std::vector<PhotoState> photos;
+  double reference = 1;  // 1/mm²: median of cosθ/d²
+  int first = 0;         // the photo of exposure 1
+  bool flash_along_free = false;
+  bool hold_flash = false, hold_ambient = false, hold_gloss = false;
+  std::vector<bool> hold_vignetting;
+  double scale = 1;  // standard deviation of residuals in units of Spot::sigma
+
+  std::vector<double> Prediction(const PhotoState& photo, const Spot& spot) const;  // empty: none
+};
+
+// Weak knowledge that keeps what is nearly undetermined within reason; standard deviations.
+struct Prior {
+  double flash_across_mm = 50;
+  double flash_along_mm = 2;      // a phone's flash lies in the lens's plane, or where told …
+  double flash_free_mm = 50;      // … unless the paper contradicts that
+  double vignetting = 1;          // v1; v2 and v3 about those of (1 + t·r²)⁻² with its v1:
+  double vignetting_form = 0.02;  // the cosine-to-the-fourth law with a strength of its own
+  double ambient = 0.5, gloss = 0.05, exif = 0.1;
+};
+inline constexpr Prior kPrior;
+
+// Free scalar parameters in order, for the covariance.
+struct Layout {
+  int flash = -1, log_q = -1, ambient = -1, gloss = -1;  // first column; −1: held
+  std::vector<int> vignetting, exposure;                 // per camera; per photo
+  int columns = 0;
+};
+Layout LayoutOf(const State& state);
+
+// One Ceres solve from the state on. `robust`: Cauchy's loss.
+void Solve(const LightOptions& options, bool robust, State* state);
+
+// Covariance of the layout's columns, see light.h.
+Eigen::MatrixXd Covariance(const LightOptions& options, const State& state, const Layout& layout);
+
+// Holds, in `held`, the least important of the terms that are too uncertain to be of use, and says
+// why. False: none is.
+bool HoldOne(const State& state, const Layout& layout, const Eigen::MatrixXd& covariance,
+             State* held, std::vector<std::string>* words);
+
+void FillEstimate(const LightProblem& problem, const LightOptions& options, const State& state,
+                  const Layout& layout, const Eigen::MatrixXd& covariance, LightEstimate* estimate);
+
+}  // namespace glint::light

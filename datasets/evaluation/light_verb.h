@@ -1,0 +1,10 @@
+// The verb of glint-eval that measures the light calibration.
+#pragma once
+
+#include "pipeline/contract/verbs.h"
+
+namespace glint {
+
+Verb LightVerb();
+
+}  // namespace glint
