@@ -11,10 +11,10 @@
 // (reflectance/brdf.h's formula). Unknown are the flash's position in the camera's frame, q, a, v,
 // g's strength and every e: one least squares problem. Outliers (covered or shaded spots, gloss of
 // ink, what clips) are found with Cauchy's loss and rejected; the final solution is plain least
-// squares on the rest. Its covariance is the sandwich (JᵀJ)⁻¹ (Σ gₛgₛᵀ) (JᵀJ)⁻¹ over the squares s
-// of all photos, gₛ the gradient of a square's spots: errors that the spots of a square share count
-// as one. Only the product of power and reflectance shows; the paper's reflectance is taken as
-// known.
+// squares on the rest. Its covariance is the sandwich (JᵀJ)⁻¹ (Σ gₛgₛᵀ) (JᵀJ)⁻¹ over blocks s
+// of 3 × 3 squares of each photo, gₛ the gradient of a block's spots: errors that neighbours share
+// (blur of the ink, JPEG, a crease) count as one. Only the product of power and reflectance shows;
+// the paper's reflectance is taken as known.
 #pragma once
 
 #include <Eigen/Core>

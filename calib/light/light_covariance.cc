@@ -24,7 +24,7 @@ std::vector<double*> BlocksOf(const Layout& layout, State* state) {
   return blocks;
 }
 
-// Σ rows of one square: its gradient.
+// Sums over all rows; gradients of one block's.
 struct Sums {
   Eigen::MatrixXd normal;     // JᵀJ
   Eigen::MatrixXd gradients;  // Σ gₛgₛᵀ

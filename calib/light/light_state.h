@@ -14,7 +14,7 @@ struct Spot {
   SpotGeometry geometry;
   Eigen::Vector3d seen;
   Eigen::Vector2d point_px;
-  int cluster = 0;  // square of a photo
+  int cluster = 0;  // block of squares of a photo
   int pixels = 1;
   bool inlier = true;
   double sigma[3] = {1, 1, 1};  // of `seen`, by the current prediction

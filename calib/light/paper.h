@@ -14,7 +14,7 @@ namespace glint {
 struct PaperSample {
   Eigen::Vector2d position_in_sample_mm;
   Eigen::Vector3d radiance;  // linear, R G B; the sensor clips at 1
-  int square = 0;            // row · squares_x + column of the white square it lies on
+  int block = 0;             // of 3 × 3 squares, in which it lies
   int pixels = 1;            // of which `radiance` is the mean
 };
 
@@ -22,7 +22,7 @@ struct PaperSample {
 struct PaperSpot {
   Eigen::Vector2d squares;    // board coordinates: column to the right, row down
   double radius_squares = 0;  // of plain paper
-  int square = 0;             // row · squares_x + column
+  int block = 0;              // of 3 × 3 squares, in which it lies
 };
 
 // The places of the board that are farthest from ink, window and border, the largest first: discs

@@ -8,6 +8,7 @@ namespace glint {
 namespace {
 
 constexpr int kCells = 56;            // of a square's side, in the raster
+constexpr int kBlock = 3;             // squares a side, see light.h
 constexpr double kLeastShare = 0.45;  // of the largest disc's radius
 constexpr double kLargest = 0.3;      // squares: beyond, several discs tell more than one
 
@@ -54,12 +55,13 @@ std::vector<PaperSpot> PaperSpots(const Board& board) {
     cv::circle(taken, {place.x, place.y}, static_cast<int>(std::ceil(1.5f * place.radius)),
                cv::Scalar(255), cv::FILLED);
     const Eigen::Vector2d squares((place.x - 0.5) / kCells, (place.y - 0.5) / kCells);
-    const int column = std::min(static_cast<int>(squares.x()), board.squares_x - 1);
-    const int row = std::min(static_cast<int>(squares.y()), board.squares_y - 1);
-    spots.push_back({squares, place.radius / kCells, row * board.squares_x + column});
+    const int across = (board.squares_x + kBlock - 1) / kBlock;
+    const int block =
+        static_cast<int>(squares.y()) / kBlock * across + static_cast<int>(squares.x()) / kBlock;
+    spots.push_back({squares, place.radius / kCells, block});
   }
   std::stable_sort(spots.begin(), spots.end(),
-                   [](const PaperSpot& a, const PaperSpot& b) { return a.square < b.square; });
+                   [](const PaperSpot& a, const PaperSpot& b) { return a.block < b.block; });
   return spots;
 }
 

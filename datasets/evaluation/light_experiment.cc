@@ -211,6 +211,8 @@ std::string MapTable(const std::vector<LightSeedResult>& seeds) {
 SyntheticCaptureOptions PhoneCapture() {
   SyntheticCaptureOptions capture;
   capture.plan.megapixels = 3;
+  capture.plan.nearest_mm = 210;  // the frame fills the picture
+  capture.plan.farthest_mm = 270;
   capture.plan.flash_offset_mm = {15, 0, 0};
   capture.plan.vignetting = 0.3;
   capture.plan.exposure_ev = 1;
