@@ -13,7 +13,7 @@ namespace light {
 namespace {
 
 constexpr double kBrightest = 0.9;  // predicted radiance beyond which a sample may have clipped
-constexpr int kMostRounds = 12;
+constexpr int kMostRounds = 6;
 
 double Median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -235,7 +235,7 @@ LightEstimate EstimateLight(const LightProblem& problem, const LightOptions& opt
       continue;
     }
     const light::Layout layout = light::LayoutOf(state);
-    const Eigen::MatrixXd covariance = light::Covariance(options, state, layout);
+    const Eigen::MatrixXd covariance = light::Covariance(problem, options, state, layout);
     if (light::HoldOne(state, layout, covariance, &start, &estimate.held)) continue;
     estimate.known = true;
     light::FillEstimate(problem, options, state, layout, covariance, &estimate);

@@ -1,12 +1,19 @@
 #include <ceres/ceres.h>
 
 #include <Eigen/Dense>
-#include <map>
+#include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "calib/light/light_cost.h"
 
 namespace glint::light {
 namespace {
+
+// Smooth errors that residuals hardly show (ink's blur, JPEG, the tone curve): this share of the
+// radiance, in every photograph of its own and in all of them alike, per mode.
+constexpr double kSmoothError = 0.0005;
+constexpr int kModes = 5;
 
 // Blocks in the layout's order: columns of the evaluated Jacobian.
 std::vector<double*> BlocksOf(const Layout& layout, State* state) {
@@ -60,6 +67,40 @@ Sums Accumulate(const ceres::CRSMatrix& jacobian, const std::vector<double>& res
   return sums;
 }
 
+// Smooth relative errors of 1 at a spot, in the picture and over the tones.
+std::array<double, kModes> ModesAt(const Camera& camera, const Spot& spot) {
+  const double x = 2 * spot.point_px.x() / camera.width_px - 1;
+  const double y = 2 * spot.point_px.y() / camera.height_px - 1;
+  return {1, x, y, 2 * spot.geometry.r2 - 0.5, std::log(std::max(0.01, spot.seen.y())) + 1};
+}
+
+// Σ over photographs and over all of them together of what smooth errors do to the gradient.
+Eigen::MatrixXd SystematicGradients(const LightProblem& problem, const State& state,
+                                    const ceres::CRSMatrix& jacobian, int columns) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns, columns);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(columns, kModes);
+  int row = 0;
+  for (const PhotoState& photo : state.photos) {
+    if (!photo.used) continue;
+    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(columns, kModes);
+    for (const Spot& spot : photo.spots) {
+      if (!spot.inlier) continue;
+      const auto modes = ModesAt(problem.cameras[photo.camera], spot);
+      for (int c = 0; c < 3; ++c, ++row) {
+        const double weight = spot.seen[c] / (spot.sigma[c] * state.scale);
+        for (int a = jacobian.rows[row]; a < jacobian.rows[row + 1]; ++a) {
+          for (int m = 0; m < kModes; ++m) {
+            own(jacobian.cols[a], m) += weight * modes[m] * jacobian.values[a];
+          }
+        }
+      }
+    }
+    sum += own * own.transpose();
+    all += own;
+  }
+  return kSmoothError * kSmoothError * (sum + all * all.transpose());
+}
+
 }  // namespace
 
 Layout LayoutOf(const State& state) {
@@ -86,7 +127,8 @@ Layout LayoutOf(const State& state) {
   return layout;
 }
 
-Eigen::MatrixXd Covariance(const LightOptions& options, const State& fixed, const Layout& layout) {
+Eigen::MatrixXd Covariance(const LightProblem& problem_given, const LightOptions& options,
+                           const State& fixed, const Layout& layout) {
   State state = fixed;
   ceres::Problem problem;
   AddSpots(false, &state, &problem);
@@ -114,7 +156,9 @@ Eigen::MatrixXd Covariance(const LightOptions& options, const State& fixed, cons
   const double finite = sums.clusters > n ? static_cast<double>(sums.clusters) /
                                                 static_cast<double>(sums.clusters - n)
                                           : 1e6;
-  return finite * (inverse * sums.gradients * inverse);
+  const Eigen::MatrixXd gradients =
+      finite * sums.gradients + SystematicGradients(problem_given, state, jacobian, n);
+  return inverse * gradients * inverse;
 }
 
 }  // namespace glint::light

@@ -127,7 +127,7 @@ void FillGeometry(const State& state, const Layout& layout, const Eigen::MatrixX
 
 bool HoldOne(const State& state, const Layout& layout, const Eigen::MatrixXd& covariance,
              State* held, std::vector<std::string>* words) {
-  constexpr double kGloss = 0.04, kAmbient = 0.03, kVignetting = 0.03, kFlash_mm = 8;
+  constexpr double kGloss = 0.02, kAmbient = 0.03, kVignetting = 0.03, kFlash_mm = 8;
   const auto sigma = [&](int column) { return std::sqrt(covariance(column, column)); };
   if (layout.gloss >= 0 && sigma(layout.gloss) > kGloss) {
     held->hold_gloss = true;

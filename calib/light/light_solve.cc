@@ -124,8 +124,8 @@ void Solve(const LightOptions& options, bool robust, State* state) {
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;  // the same bits for the same input
   solver.num_threads = 1;
-  solver.max_num_iterations = 100;
-  solver.function_tolerance = 1e-10;
+  solver.max_num_iterations = 30;
+  solver.function_tolerance = robust ? 1e-6 : 1e-10;
   solver.parameter_tolerance = 1e-10;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;

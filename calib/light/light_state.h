@@ -70,7 +70,8 @@ Layout LayoutOf(const State& state);
 void Solve(const LightOptions& options, bool robust, State* state);
 
 // Covariance of the layout's columns, see light.h.
-Eigen::MatrixXd Covariance(const LightOptions& options, const State& state, const Layout& layout);
+Eigen::MatrixXd Covariance(const LightProblem& problem, const LightOptions& options,
+                           const State& state, const Layout& layout);
 
 // Holds, in `held`, the least important of the terms that are too uncertain to be of use, and says
 // why. False: none is.
