@@ -125,7 +125,7 @@ class SeedRun {
     Run("glint-rectify", capture_, log, threads_, {});
     Run("glint-fit", capture_, log, threads_, options_.fit_arguments);
     Run("glint-refine", capture_, log, threads_, options_.refine_arguments);
-    const FitResult fit = ReadFitResult(capture_ / "glint/refine");
+    const FittedMaps fit = ReadFittedMaps(capture_ / "glint/refine");
     const SvbrdfMaps truth = ReadSvbrdf(capture_ / "truth/svbrdf.exr");
     const SvbrdfMaps estimate = ToUnitWeight(fit.maps, fit.convention);
     return EvaluateMaps(ResampleSvbrdf(estimate, truth.width, truth.height), truth, threads_);
