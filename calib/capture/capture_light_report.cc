@@ -30,6 +30,7 @@ Json BoardLight(const LightEstimate& light) {
   json["ambient_rgb"] = JsonOf(light.ambient_rgb);
   json["paper_rgb"] = JsonOf(light.paper_rgb);
   json["paper_gloss"] = JsonOf(light.gloss);
+  json["ink_smear"] = JsonOf(light.smear);
   json["vignetting"] = Json::array();
   for (size_t c = 0; c < light.vignetting.size(); ++c) {
     Json v = JsonOf(light.vignetting[c]);

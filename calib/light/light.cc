@@ -45,6 +45,7 @@ PhotoState StateOf(const LightPhoto& photo, const Camera& camera, int* next_clus
     spot.geometry.r2 = VignettingRadius2(camera, spot.point_px);
     spot.seen = sample.radiance;
     spot.pixels = std::max(1, sample.pixels);
+    spot.geometry.smear = SmearOf(sample.ink_px);
     const auto [cluster, added] = clusters.insert({sample.block, *next_cluster});
     *next_cluster += added;
     spot.cluster = cluster->second;
@@ -207,7 +208,8 @@ State StartState(const LightProblem& problem, const LightOptions& options) {
 std::vector<double> State::Prediction(const PhotoState& photo, const Spot& spot) const {
   std::vector<double> radiance(3);
   if (!Predict(spot.geometry, reference, flash_mm.data(), log_q.data(), ambient.data(),
-               vignetting[photo.camera].data(), &gloss, &photo.log_exposure, radiance.data())) {
+               vignetting[photo.camera].data(), &gloss, &smear, &photo.log_exposure,
+               radiance.data())) {
     return {};
   }
   return radiance;

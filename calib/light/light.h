@@ -9,13 +9,14 @@
 // q = power · reflectance/π per channel, a = ambient irradiance / power per channel, and g the
 // paper's gloss over its diffuse reflection: a GGX lobe of roughness 0.6 and one unknown strength
 // (reflectance/brdf.h's formula). Unknown are the flash's position in the camera's frame, q, a, v,
-// g's strength and every e: one least squares problem. Outliers (covered or shaded spots, gloss of
-// ink, what clips) are found with Cauchy's loss and rejected; the final solution is plain least
-// squares on the rest. Its covariance is the sandwich (JᵀJ)⁻¹ (Σ gₛgₛᵀ) (JᵀJ)⁻¹ over blocks s
-// of 3 × 3 squares of each photo, gₛ the gradient of a block's spots: errors that neighbours share
-// (blur of the ink, JPEG, a crease) count as one; to
-// it come smooth errors of 0.05 % (light_covariance.cc), which residuals do not show. Only the
-// product of power and reflectance shows; the paper's reflectance is taken as known.
+// g's strength, every e, and how much of the ink's blur (lens, JPEG) reaches spots near it: one
+// least squares problem. Outliers (covered or shaded spots, gloss of ink, what clips) are found
+// with Cauchy's loss and rejected; the final solution is plain least squares on the rest. Its
+// covariance is the sandwich (JᵀJ)⁻¹ (Σ gₛgₛᵀ) (JᵀJ)⁻¹ over blocks s of 3 × 3 squares of each
+// photo, gₛ the gradient of a block's spots: errors that neighbours share (blur of the ink, JPEG, a
+// crease) count as one; to it come smooth errors of 0.05 % (light_covariance.cc), which residuals
+// do not show. Only the product of power and reflectance shows; the paper's reflectance is taken as
+// known.
 #pragma once
 
 #include <Eigen/Core>
@@ -79,7 +80,8 @@ struct LightEstimate {
   std::array<Estimate, 3> power_rgb;    // σ without that of the paper's reflectance
   std::array<Estimate, 3> ambient_rgb;  // irradiance; never negative
   std::array<Estimate, 3> paper_rgb;    // reflectance; σ 0 unless the power is given
-  Estimate gloss;                       // the lobe's reflectance at normal incidence
+  Estimate smear;  // share of its light that paper beside ink loses to blur and JPEG
+  Estimate gloss;  // the lobe's reflectance at normal incidence
   // Per camera: v1, v2, v3, and the largest σ of V(r) up to the farthest spot that was seen.
   std::vector<std::array<Estimate, 3>> vignetting;
   std::vector<double> vignetting_sigma;

@@ -22,6 +22,7 @@ std::vector<double*> BlocksOf(const Layout& layout, State* state) {
   blocks.push_back(state->log_q.data());
   if (layout.ambient >= 0) blocks.push_back(state->ambient.data());
   if (layout.gloss >= 0) blocks.push_back(&state->gloss);
+  blocks.push_back(&state->smear);
   for (size_t c = 0; c < layout.vignetting.size(); ++c) {
     if (layout.vignetting[c] >= 0) blocks.push_back(state->vignetting[c].data());
   }
@@ -114,6 +115,7 @@ Layout LayoutOf(const State& state) {
   layout.log_q = take(false, 3);
   layout.ambient = take(state.hold_ambient, 3);
   layout.gloss = take(state.hold_gloss, 1);
+  layout.smear = take(false, 1);
   std::vector<bool> seen(state.vignetting.size(), false);
   for (const PhotoState& photo : state.photos) {
     if (photo.used) seen[photo.camera] = true;

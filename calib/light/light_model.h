@@ -11,7 +11,12 @@ struct SpotGeometry {
   Eigen::Vector3d spot_in_camera_mm;
   Eigen::Vector3d normal_in_camera;  // of the board, toward the viewer
   double r2 = 0;                     // see VignettingRadius2
+  double smear = 0;                  // see SmearOf
 };
+
+// How much of the ink's blur and of JPEG's ringing reaches a spot, relative to one beside ink: a
+// JPEG block is 8 pixels wide, a lens's point spread narrower.
+inline double SmearOf(double ink_px) { return std::exp(-ink_px / 4); }
 
 inline constexpr double kGlossRoughness = 0.6;
 inline constexpr double kPi = 3.14159265358979323846;
@@ -50,14 +55,16 @@ T Falloff(const SpotGeometry& geometry, const T* v) {
 }
 
 // Parameter blocks: flash_mm[3], log_q[3], ambient[3] (a · reference), vignetting[3], gloss[1],
-// log_exposure[1]. `reference` (1/mm²) brings a to the size of 1.
+// smear[1] (the share of its light that ink takes from paper beside it), log_exposure[1].
+// `reference` (1/mm²) brings a to the size of 1.
 template <class T>
 bool Predict(const SpotGeometry& geometry, double reference, const T* flash_mm, const T* log_q,
-             const T* ambient, const T* vignetting, const T* gloss, const T* log_exposure,
-             T* radiance) {
+             const T* ambient, const T* vignetting, const T* gloss, const T* smear,
+             const T* log_exposure, T* radiance) {
   T flash;
   if (!FlashOnSpot(geometry, flash_mm, gloss[0], &flash)) return false;
-  const T seen = exp(log_exposure[0]) * Falloff(geometry, vignetting);
+  const T seen =
+      exp(log_exposure[0]) * Falloff(geometry, vignetting) * (T(1) - smear[0] * T(geometry.smear));
   for (int c = 0; c < 3; ++c) {
     radiance[c] = seen * exp(log_q[c]) * (flash + ambient[c] * T(reference));
   }

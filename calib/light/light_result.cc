@@ -89,6 +89,7 @@ void FillRadiometry(const LightOptions& options, const State& state, const Layou
     }
     estimate->ambient_rgb[c] = {std::max(0.0, ambient), sigma};
   }
+  estimate->smear = {state.smear, std::sqrt(covariance(layout.smear, layout.smear))};
   estimate->gloss.value = state.gloss * options.paper_reflectance;
   if (layout.gloss >= 0) {
     estimate->gloss.sigma =

@@ -13,10 +13,10 @@ class SpotCost {
       : spot_(spot), reference_(reference), scale_(scale) {}
   template <class T>
   bool operator()(const T* flash, const T* log_q, const T* ambient, const T* vignetting,
-                  const T* gloss, const T* log_exposure, T* residual) const {
+                  const T* gloss, const T* smear, const T* log_exposure, T* residual) const {
     T radiance[3];
-    if (!Predict(spot_.geometry, reference_, flash, log_q, ambient, vignetting, gloss, log_exposure,
-                 radiance)) {
+    if (!Predict(spot_.geometry, reference_, flash, log_q, ambient, vignetting, gloss, smear,
+                 log_exposure, radiance)) {
       return false;
     }
     for (int c = 0; c < 3; ++c) {
@@ -74,12 +74,12 @@ void AddSpots(bool robust, State* state, ceres::Problem* problem) {
     if (!photo.used) continue;
     for (const Spot& spot : photo.spots) {
       if (!spot.inlier) continue;
-      problem->AddResidualBlock(new ceres::AutoDiffCostFunction<SpotCost, 3, 3, 3, 3, 3, 1, 1>(
+      problem->AddResidualBlock(new ceres::AutoDiffCostFunction<SpotCost, 3, 3, 3, 3, 3, 1, 1, 1>(
                                     new SpotCost(spot, state->reference, state->scale)),
                                 robust ? new ceres::CauchyLoss(2.0) : nullptr,
                                 state->flash_mm.data(), state->log_q.data(), state->ambient.data(),
                                 state->vignetting[photo.camera].data(), &state->gloss,
-                                &photo.log_exposure);
+                                &state->smear, &photo.log_exposure);
     }
   }
 }
@@ -91,6 +91,7 @@ void AddPriors(const LightOptions& options, State* state, ceres::Problem* proble
   AddPrior<3>(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(kPrior.ambient),
               state->ambient.data(), problem);
   AddPrior<1>(Vector1::Zero(), Vector1::Constant(kPrior.gloss), &state->gloss, problem);
+  AddPrior<1>(Vector1::Zero(), Vector1::Constant(kPrior.smear), &state->smear, problem);
   for (size_t c = 0; c < state->vignetting.size(); ++c) {
     if (!problem->HasParameterBlock(state->vignetting[c].data())) continue;
     problem->AddResidualBlock(new ceres::AutoDiffCostFunction<FalloffPrior, 3, 3>(new FalloffPrior),

@@ -35,6 +35,7 @@ struct State {
   Eigen::Vector3d log_q{0, 0, 0};
   Eigen::Vector3d ambient{0, 0, 0};  // a / reference
   double gloss = 0;                  // lobe's reflectance over the paper's
+  double smear = 0;                  // see SmearOf
   std::vector<Eigen::Vector3d> vignetting;
   std::vector<PhotoState> photos;
   double reference = 1;  // 1/mm²: median of cosθ/d²
@@ -54,14 +55,14 @@ struct Prior {
   double flash_free_mm = 50;      // … unless the paper contradicts that
   double vignetting = 1;          // v1; v2 and v3 about those of (1 + t·r²)⁻² with its v1:
   double vignetting_form = 0.02;  // the cosine-to-the-fourth law with a strength of its own
-  double ambient = 0.5, gloss = 0.05, exif = 0.1;
+  double ambient = 0.5, gloss = 0.05, smear = 0.05, exif = 0.1;
 };
 inline constexpr Prior kPrior;
 
 // Free scalar parameters in order, for the covariance.
 struct Layout {
-  int flash = -1, log_q = -1, ambient = -1, gloss = -1;  // first column; −1: held
-  std::vector<int> vignetting, exposure;                 // per camera; per photo
+  int flash = -1, log_q = -1, ambient = -1, gloss = -1, smear = -1;  // first column; −1: held
+  std::vector<int> vignetting, exposure;                             // per camera; per photo
   int columns = 0;
 };
 Layout LayoutOf(const State& state);

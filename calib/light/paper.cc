@@ -70,7 +70,7 @@ std::vector<PaperSample> SamplePaper(const Photo& photo, Encoding encoding, cons
     const double radius_px = std::min(12.0, std::max(kLeastRadius_px, plain_px / 3));
     if (const auto mean = DiscMean(photo, encoding, *at, radius_px)) {
       samples.push_back({GridPointInSample(board, spot.squares.x(), spot.squares.y()),
-                         mean->radiance, spot.block, mean->pixels});
+                         mean->radiance, spot.block, mean->pixels, plain_px});
     }
   }
   return samples;

@@ -16,6 +16,7 @@ struct PaperSample {
   Eigen::Vector3d radiance;  // linear, R G B; the sensor clips at 1
   int block = 0;             // of 3 × 3 squares, in which it lies
   int pixels = 1;            // of which `radiance` is the mean
+  double ink_px = 100;       // distance of the nearest ink from the spot's middle
 };
 
 // A place of plain paper on the board.
