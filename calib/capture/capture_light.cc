@@ -148,7 +148,7 @@ void FillSimpleLight(const Capture& capture, const CalibOptions& options, CalibS
 }  // namespace
 
 void FillLight(const Capture& capture, const CalibOptions& options, CalibSummary* summary) {
-  if (options.light == "board") {
+  if (options.light == "board" && options.quick_px == 0) {  // --check asks for no light
     summary->light = EstimateFromBoard(capture, options, *summary);
     if (summary->light.known) {
       summary->power_source =

@@ -14,7 +14,7 @@
 // with Cauchy's loss and rejected; the final solution is plain least squares on the rest. Its
 // covariance is the sandwich (JᵀJ)⁻¹ (Σ gₛgₛᵀ) (JᵀJ)⁻¹ over blocks s of 3 × 3 squares of each
 // photo, gₛ the gradient of a block's spots: errors that neighbours share (blur of the ink, JPEG, a
-// crease) count as one; to it come smooth errors of 0.05 % (light_covariance.cc), which residuals
+// crease) count as one; to it come smooth errors of 0.1 % (light_covariance.cc), which residuals
 // do not show. Only the product of power and reflectance shows; the paper's reflectance is taken as
 // known.
 #pragma once

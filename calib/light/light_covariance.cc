@@ -12,7 +12,7 @@ namespace {
 
 // Smooth errors that residuals hardly show (ink's blur, JPEG, the tone curve): this share of the
 // radiance, in every photograph of its own and in all of them alike, per mode.
-constexpr double kSmoothError = 0.0005;
+constexpr double kSmoothError = 0.001;
 constexpr int kModes = 5;
 
 // Blocks in the layout's order: columns of the evaluated Jacobian.

@@ -54,7 +54,7 @@ struct Prior {
   double flash_along_mm = 2;      // a phone's flash lies in the lens's plane, or where told …
   double flash_free_mm = 50;      // … unless the paper contradicts that
   double vignetting = 1;          // v1; v2 and v3 about those of (1 + t·r²)⁻² with its v1:
-  double vignetting_form = 0.02;  // the cosine-to-the-fourth law with a strength of its own
+  double vignetting_form = 0.01;  // the cosine-to-the-fourth law with a strength of its own
   double ambient = 0.5, gloss = 0.05, smear = 0.05, exif = 0.1;
 };
 inline constexpr Prior kPrior;
