@@ -88,7 +88,7 @@ Eigen::MatrixXd SystematicGradients(const LightProblem& problem, const State& st
       if (!spot.inlier) continue;
       const auto modes = ModesAt(problem.cameras[photo.camera], spot);
       for (int c = 0; c < 3; ++c, ++row) {
-        const double weight = spot.seen[c] / (spot.sigma[c] * state.scale);
+        const double weight = spot.seen[c] / (spot.sigma[c] * state.weighing_scale());
         for (int a = jacobian.rows[row]; a < jacobian.rows[row + 1]; ++a) {
           for (int m = 0; m < kModes; ++m) {
             own(jacobian.cols[a], m) += weight * modes[m] * jacobian.values[a];

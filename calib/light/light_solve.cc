@@ -75,8 +75,8 @@ void AddSpots(bool robust, State* state, ceres::Problem* problem) {
     for (const Spot& spot : photo.spots) {
       if (!spot.inlier) continue;
       problem->AddResidualBlock(new ceres::AutoDiffCostFunction<SpotCost, 3, 3, 3, 3, 3, 1, 1, 1>(
-                                    new SpotCost(spot, state->reference, state->scale)),
-                                robust ? new ceres::CauchyLoss(2.0) : nullptr,
+                                    new SpotCost(spot, state->reference, state->weighing_scale())),
+                                robust ? new ceres::CauchyLoss(2.0 / State::kShared) : nullptr,
                                 state->flash_mm.data(), state->log_q.data(), state->ambient.data(),
                                 state->vignetting[photo.camera].data(), &state->gloss,
                                 &state->smear, &photo.log_exposure);

@@ -44,6 +44,10 @@ struct State {
   bool hold_flash = false, hold_ambient = false, hold_gloss = false;
   std::vector<bool> hold_vignetting;
   double scale = 1;  // standard deviation of residuals in units of Spot::sigma
+  // … as the solution weighs them: neighbouring spots share errors, so that a hundred of a block
+  // tell no more than a few; what is known beforehand counts that much more.
+  double weighing_scale() const { return kShared * scale; }
+  static constexpr double kShared = 5;
 
   std::vector<double> Prediction(const PhotoState& photo, const Spot& spot) const;  // empty: none
 };
