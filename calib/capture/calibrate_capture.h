@@ -17,7 +17,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 3;
+inline constexpr int kCalibVersion = 4;
 
 struct RejectedPhoto {
   std::string name, reason;

@@ -114,7 +114,7 @@ class SeedRun {
   }
 
   void Calibrate(const std::string& light) const {
-    Run("glint-calib", capture_, folder_ / "log.txt", threads_, {"--light", light});
+    Run("glint-calib", capture_, folder_ / "log.txt", threads_, {"--light", light, "--force"});
   }
 
   Calibration Truth() const { return ReadCalibration(capture_ / "truth/calib/manifest.json"); }
