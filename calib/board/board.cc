@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "calib/board/dictionary.h"
+#include "calib/board/marker_frame.h"
 
 namespace glint {
 namespace {
@@ -80,6 +81,10 @@ Eigen::Vector2d GridPointInSample(const Board& board, double column, double row)
 }
 
 std::string CheckBoard(const Board& board) {
+  if (!board.board_centre_in_sample_mm.allFinite()) {
+    return Wrong("centre_mm", "a value that is not finite", "give two numbers in millimetres");
+  }
+  if (board.kind == BoardKind::kMarkers) return CheckMarkerFrame(board);
   const bool charuco = board.kind == BoardKind::kCharuco;
   const int least = charuco ? 2 : 3;
   if (board.squares_x < least || board.squares_y < least || board.squares_x > kMaxSquares ||
@@ -92,9 +97,6 @@ std::string CheckBoard(const Board& board) {
     return Wrong("square_mm", fmt::format("{}", board.square_mm),
                  "give the side of a printed square in millimetres");
   }
-  if (!board.board_centre_in_sample_mm.allFinite()) {
-    return Wrong("centre_mm", "a value that is not finite", "give two numbers in millimetres");
-  }
   if (charuco) {
     const std::string wrong = CheckMarkers(board);
     if (!wrong.empty()) return wrong;
@@ -104,6 +106,14 @@ std::string CheckBoard(const Board& board) {
 
 std::vector<BoardCorner> BoardCorners(const Board& board) {
   std::vector<BoardCorner> corners;
+  if (board.kind == BoardKind::kMarkers) {
+    for (const BoardMarker& marker : BoardMarkers(board)) {
+      for (int k = 0; k < 4; ++k) {
+        corners.push_back({4 * marker.id + k, marker.corners_in_sample_mm[k]});
+      }
+    }
+    return corners;
+  }
   for (int row = 1; row < board.squares_y; ++row) {
     for (int column = 1; column < board.squares_x; ++column) {
       // A corner is seen only where all four squares round it are printed.
@@ -120,7 +130,19 @@ std::vector<BoardCorner> BoardCorners(const Board& board) {
 
 std::vector<BoardMarker> BoardMarkers(const Board& board) {
   std::vector<BoardMarker> markers;
-  if (board.kind != BoardKind::kCharuco) return markers;
+  if (board.kind == BoardKind::kCheckerboard) return markers;
+  if (board.kind == BoardKind::kMarkers) {
+    for (const ListedMarker& listed : board.markers) {
+      BoardMarker marker;
+      marker.id = listed.id;
+      for (int k = 0; k < 4; ++k) {
+        marker.corners_in_sample_mm[k] =
+            listed.corners_in_board_mm[k] + board.board_centre_in_sample_mm;
+      }
+      markers.push_back(marker);
+    }
+    return markers;
+  }
   const double inset = 0.5 * (1.0 - board.marker_mm / board.square_mm);
   int id = 0;
   for (int row = 0; row < board.squares_y; ++row) {

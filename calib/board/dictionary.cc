@@ -33,6 +33,13 @@ std::optional<int> DictionaryNumber(const std::string& name) {
   return static_cast<int>(found - names.begin());
 }
 
+std::string DictionaryFromAnyName(const std::string& name) {
+  if (name.rfind("tag", 0) == 0 && DictionaryNumber("DICT_APRILTAG_" + name.substr(3))) {
+    return "DICT_APRILTAG_" + name.substr(3);
+  }
+  return name;
+}
+
 int DictionarySize(const std::string& name) { return OpenCvDictionary(name)->bytesList.rows; }
 
 MarkerCells CellsOfMarker(const std::string& name, int id) {

@@ -13,6 +13,9 @@ const std::vector<std::string>& DictionaryNames();
 // OpenCV's number of the dictionary (cv::aruco::PREDEFINED_DICTIONARY_NAME); nullopt: unknown name.
 std::optional<int> DictionaryNumber(const std::string& name);
 
+// OpenCV's name for a family by AprilTag's own ("tag36h11"); other names as they are.
+std::string DictionaryFromAnyName(const std::string& name);
+
 // How many markers the dictionary holds. `name` must be known.
 int DictionarySize(const std::string& name);
 

@@ -5,7 +5,7 @@ namespace {
 
 class Frame {
  public:
-  Frame(BoardOpening opening, double height_mm, double margin_mm)
+  Frame(BoardRectangle opening, double height_mm, double margin_mm)
       : opening_(opening), height_mm_(height_mm), margin_mm_(margin_mm) {}
 
   // Whether the ray from the texel at (x, y) to `to` meets the frame.
@@ -21,22 +21,13 @@ class Frame {
   }
 
  private:
-  BoardOpening opening_;
+  BoardRectangle opening_;
   double height_mm_, margin_mm_;
 };
 
 }  // namespace
 
-BoardOpening OpeningOf(const Board& board) {
-  const BoardWindow& window = *board.window;
-  const double left = board.board_centre_in_sample_mm.x() +
-                      (window.first_column - board.squares_x / 2.0) * board.square_mm;
-  const double top = board.board_centre_in_sample_mm.y() +
-                     (board.squares_y / 2.0 - window.first_row) * board.square_mm;
-  return {left, top - window.rows * board.square_mm, left + window.columns * board.square_mm, top};
-}
-
-std::vector<TexelStatus> MaskFrame(const SamplePlane& plane, const BoardOpening& opening,
+std::vector<TexelStatus> MaskFrame(const SamplePlane& plane, const BoardRectangle& opening,
                                    double height_mm, double margin_mm, const View& view) {
   const Frame frame(opening, height_mm, margin_mm);
   std::vector<TexelStatus> status(static_cast<size_t>(plane.width) * plane.height,

@@ -9,20 +9,12 @@
 
 namespace glint {
 
-// The rectangle of a board's window in the sample frame, in which the sample lies.
-struct BoardOpening {
-  double left_mm = 0, bottom_mm = 0, right_mm = 0, top_mm = 0;
-};
-
-// `board` must have a window.
-BoardOpening OpeningOf(const Board& board);
-
 // Per texel kMasked where the frame is in the way, else kOutside (that is: undecided). The frame is
 // a sheet of thickness `height_mm` with its top that far above the sample's plane; it is in the way
 // where the texel itself, or the point at that height on the ray to light or camera, lies outside
-// of the opening made smaller by `margin_mm`. With height_mm = 0 only what lies under the frame is
-// masked.
-std::vector<TexelStatus> MaskFrame(const SamplePlane& plane, const BoardOpening& opening,
+// of the opening (OpeningInSample) made smaller by `margin_mm`. With height_mm = 0 only what lies
+// under the frame is masked.
+std::vector<TexelStatus> MaskFrame(const SamplePlane& plane, const BoardRectangle& opening,
                                    double height_mm, double margin_mm, const View& view);
 
 }  // namespace glint

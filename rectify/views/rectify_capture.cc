@@ -31,8 +31,8 @@ void CheckSize(const fs::path& file, const Camera& camera) {
 std::vector<TexelStatus> FrameStatus(const RectifyTask& task, const RectifyOptions& options,
                                      const SamplePlane& plane, const View& view) {
   if (task.board_opening_mm.empty()) return {};
-  const BoardOpening opening{task.board_opening_mm[0], task.board_opening_mm[1],
-                             task.board_opening_mm[2], task.board_opening_mm[3]};
+  const BoardRectangle opening{task.board_opening_mm[0], task.board_opening_mm[1],
+                               task.board_opening_mm[2], task.board_opening_mm[3]};
   return MaskFrame(plane, opening, options.frame_height_mm, options.frame_margin_mm, view);
 }
 

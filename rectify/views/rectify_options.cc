@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "pipeline/contract/errors.h"
-#include "rectify/views/frame_mask.h"
 
 namespace glint {
 namespace {
@@ -49,9 +48,10 @@ RectifyTask ResolveTask(const Capture& capture, const RectifyOptions& options) {
   task.resolution_px = {static_cast<double>(width), static_cast<double>(height)};
   task.encoding = capture.encoding;
   task.ambient.assign(capture.ambient.begin(), capture.ambient.end());
-  if (capture.has_board && capture.board.window) {
-    const BoardOpening opening = OpeningOf(capture.board);
-    task.board_opening_mm = {opening.left_mm, opening.bottom_mm, opening.right_mm, opening.top_mm};
+  const auto opening = capture.has_board ? OpeningInSample(capture.board) : std::nullopt;
+  if (opening) {
+    task.board_opening_mm = {opening->left_mm, opening->bottom_mm, opening->right_mm,
+                             opening->top_mm};
   }
   return task;
 }

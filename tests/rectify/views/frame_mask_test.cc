@@ -30,7 +30,7 @@ TEST(FrameMask, OpeningIsTheWindowInTheSampleFrame) {
   board.square_mm = 10;
   board.window = BoardWindow{2, 3, 8, 5};
   board.board_centre_in_sample_mm = {1, -2};
-  const BoardOpening opening = OpeningOf(board);
+  const BoardRectangle opening = *OpeningInSample(board);
   EXPECT_DOUBLE_EQ(opening.left_mm, 1 - 60 + 20);
   EXPECT_DOUBLE_EQ(opening.right_mm, 1 - 60 + 100);
   EXPECT_DOUBLE_EQ(opening.top_mm, -2 + 50 - 30);
@@ -52,7 +52,7 @@ TEST(FrameMask, MasksWhatLiesUnderTheFrame) {
 // A frame 5 mm high, light 100 mm up and 100 mm to the left of the left edge: it shades
 // 5·(distance)/(100 − 5) of the sample beside that edge.
 TEST(FrameMask, MasksTheFramesShadow) {
-  const BoardOpening opening{-40, -50, 50, 50};
+  const BoardRectangle opening{-40, -50, 50, 50};
   const auto status = MaskFrame(Plane(), opening, 5, 0, ViewFrom({-40, 0, 1e9}, {-140, 0, 100}));
   const double shadow_mm = 5 * 100.0 / 95;  // 5.26: texel centres −39.5 … −34.5 lie in −40 … −34.7
   EXPECT_TRUE(Masked(status, 50, static_cast<int>(-40 + shadow_mm - 0.5 + 50)));
