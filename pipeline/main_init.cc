@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
       argc, argv,
       {"glint-init", "Writes a commented capture.toml, never over one that is there.",
        GLINT_VERSION,
-       "Example: glint init wood --squares 12,12 --square-mm 15 --sample-mm 100,100"},
+       "A board.json in the folder (glint board) is taken for the board; else the options describe "
+       "it.\nExample: glint init wood --squares 12,12 --square-mm 15 --sample-mm 100,100"},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         const glint::InitResult result = glint::WriteCapture(o);
         return {result.BriefReport(),

@@ -20,7 +20,9 @@ struct Capture {
   std::vector<std::string> board_photos;
 
   bool has_board = false;  // an imported set has none
-  Board board;             // [board]; board_centre_in_sample_mm from [sample] centre_mm
+  std::string
+      board_file;  // [board] file, relative to the folder; empty: the table itself describes
+  Board board;     // [board]; board_centre_in_sample_mm from [sample] centre_mm
 
   std::array<double, 2> sample_size_mm{0, 0};  // [sample] size_mm = [width, height]
   std::array<int, 2> resolution_px{0, 0};      // [sample] resolution_px = width, or [width, height]

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "calib/board/board.h"
+#include "pipeline/contract/board_file.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 
@@ -120,10 +121,29 @@ std::vector<double> SampleSize_mm(const InitOptions& options, const Board& board
     }
     return options.sample_mm;
   }
-  const double columns = board.window ? board.window->columns : board.squares_x;
-  const double rows = board.window ? board.window->rows : board.squares_y;
-  return {std::max(columns * board.square_mm - 2 * kSampleMargin_mm, 1.0),
-          std::max(rows * board.square_mm - 2 * kSampleMargin_mm, 1.0)};
+  const BoardRectangle room = OpeningInSample(board).value_or(OutlineInSample(board));
+  return {std::max(room.right_mm - room.left_mm - 2 * kSampleMargin_mm, 1.0),
+          std::max(room.top_mm - room.bottom_mm - 2 * kSampleMargin_mm, 1.0)};
+}
+
+std::string BoardPhotosText(const std::string& board_photos) {
+  if (board_photos.empty()) {
+    return "# photos = [\"board/*.jpg\"]       # more photographs of the board, for the lens "
+           "alone\n";
+  }
+  return "photos = " + board_photos +
+         "       # more photographs of the board, for the lens alone\n";
+}
+
+// Of a board that glint board has printed, or a person described in the folder's board.json.
+std::string BoardFileText(const Board& board, const std::string& board_photos) {
+  std::string text = "[board]                          # what lies round the sample\n";
+  text += "file = \"board.json\"\n";
+  if (board.ruler) {
+    text += "# measured_ruler_mm = " + NumberText(board.ruler->length_mm()) +
+            "        # the printed ruler, where it has another length\n";
+  }
+  return text + BoardPhotosText(board_photos);
 }
 
 std::string BoardText(const InitOptions& options, const std::vector<double>& window,
@@ -143,14 +163,7 @@ std::string BoardText(const InitOptions& options, const std::vector<double>& win
     text += "window = " + List(window) +
             "            # first column, first row, columns, rows left out for the sample\n";
   }
-  if (board_photos.empty()) {
-    text +=
-        "# photos = [\"board/*.jpg\"]       # more photographs of the board, for the lens alone\n";
-  } else {
-    text +=
-        "photos = " + board_photos + "       # more photographs of the board, for the lens alone\n";
-  }
-  return text;
+  return text + BoardPhotosText(board_photos);
 }
 
 std::string PhotoPatterns(const fs::path& folder, size_t* files) {
@@ -173,7 +186,9 @@ std::string InitResult::BriefReport() const {
 
 std::string CaptureText(const InitOptions& options, InitResult* result) {
   std::vector<double> window;
-  const Board board = DescribedBoard(options, &window);
+  const fs::path board_file = options.folder / "board.json";
+  const bool has_file = fs::exists(board_file);
+  const Board board = has_file ? ReadBoardFile(board_file).board : DescribedBoard(options, &window);
   RequireCount(options.light_offset_mm, 3, "light-offset-mm", "X,Y,Z");
   const std::string board_photos = Patterns(options.folder, "board", &result->board_photos);
   std::string text = "# A capture for Glint; docs/capture.md explains every key.\n\n";
@@ -183,7 +198,8 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   text += "resolution_px = " + std::to_string(options.resolution_px) +
           "             # width of the maps, or [width, height]\n\n";
   text += "[photos]\nfiles = " + PhotoPatterns(options.folder, &result->photos) + "\n\n";
-  text += BoardText(options, window, board_photos) + "\n";
+  text += has_file ? BoardFileText(board, board_photos) : BoardText(options, window, board_photos);
+  text += "\n";
   text += "[radiometry]\nencoding = \"" + options.encoding +
           "\"                # auto, srgb, gamma2.2, linear\n\n";
   text += "[light]\noffset_mm = " + List(options.light_offset_mm) +

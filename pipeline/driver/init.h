@@ -1,4 +1,5 @@
-// `glint init`: a commented capture.toml for a folder of photographs.
+// `glint init`: a commented capture.toml for a folder of photographs. A board.json in the folder,
+// as `glint board` writes it, is taken for the board; else the options describe it.
 #pragma once
 
 #include <filesystem>

@@ -88,6 +88,7 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
   if (!imported) {
     std::vector<std::string> all = capture.photos;
     all.insert(all.end(), capture.board_photos.begin(), capture.board_photos.end());
+    if (!capture.board_file.empty()) all.push_back(capture.board_file);
     steps.push_back(Step("calib", all, {}));
     steps.push_back(Step("rectify", capture.photos, {"calib"}));
   }
