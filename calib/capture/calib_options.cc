@@ -6,8 +6,12 @@ namespace glint {
 namespace {
 
 std::string BoardInOneLine(const Board& board) {
-  std::string line = fmt::format("{} {}x{} squares of {} mm",
-                                 board.kind == BoardKind::kCharuco ? "charuco" : "checkerboard",
+  // The markers of a frame stand in board.json, which is an input.
+  if (board.kind == BoardKind::kMarkers) {
+    return fmt::format("{} markers of {}, {} mm on average", board.markers.size(), board.dictionary,
+                       board.square_mm);
+  }
+  std::string line = fmt::format("{} {}x{} squares of {} mm", BoardKindName(board.kind),
                                  board.squares_x, board.squares_y, board.square_mm);
   if (board.kind == BoardKind::kCharuco) {
     line += fmt::format(", {} of {} mm{}", board.dictionary, board.marker_mm,

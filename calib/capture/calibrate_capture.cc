@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "calib/capture/guide_capture.h"
 #include "calib/guidance/coverage_picture.h"
 #include "calib/guidance/polar_picture.h"
+#include "pipeline/contract/board_file.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 
@@ -51,6 +53,15 @@ BundleResult Adjust(const Capture& capture, const CalibOptions& options, BundleP
   } catch (const UserError& error) {
     throw UserError(capture.file.string() + ": " + error.what());
   }
+}
+
+// A print that is not to scale spoils nothing once its ruler is measured, but the person should
+// know.
+void TellOfPrintScale(const Board& board) {
+  constexpr double kWorthAWord = 0.002;  // a ruler is read to some tenths of a millimetre
+  if (std::abs(board.print_scale - 1) < kWorthAWord) return;
+  spdlog::warn("the board was printed at {}; all its lengths are taken times {:.4f}",
+               PrintScaleInWords(board), board.print_scale);
 }
 
 // A focal length that is known to a hundredth only is worth a word.
@@ -158,11 +169,13 @@ std::vector<std::filesystem::path> CalibInputs(const Capture& capture,
   std::vector<std::filesystem::path> inputs;
   for (const std::string& name : capture.photos) inputs.push_back(capture.folder / name);
   for (const std::string& name : capture.board_photos) inputs.push_back(capture.folder / name);
+  if (!capture.board_file.empty()) inputs.push_back(capture.folder / capture.board_file);
   if (!options.fix_intrinsics.empty()) inputs.push_back(options.fix_intrinsics);
   return inputs;
 }
 
 CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, int threads) {
+  TellOfPrintScale(capture.board);
   CalibSummary summary;
   summary.photos = DetectPhotos(capture, options, threads);
   summary.groups = GroupCameras(capture.file, options.cameras, summary.photos);

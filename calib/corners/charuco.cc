@@ -5,83 +5,10 @@
 #include <map>
 
 #include "calib/corners/detector_internal.h"
-#include "calib/corners/markers.h"
+#include "calib/corners/marker_match.h"
 
 namespace glint::corners {
 namespace {
-
-// A marker seen, with the places of its four corners on the board.
-struct Match {
-  int id = 0;
-  PlanePoint corners[4];
-  double side_px = 0;
-};
-
-std::vector<Match> MatchMarkers(const Board& board, const std::vector<SeenMarker>& seen) {
-  std::map<int, BoardMarker> on_board;
-  for (const BoardMarker& marker : BoardMarkers(board)) on_board[marker.id] = marker;
-  std::vector<Match> matches;
-  for (const SeenMarker& marker : seen) {
-    const auto found = on_board.find(marker.id);
-    if (found == on_board.end()) continue;
-    Match match;
-    match.id = marker.id;
-    match.side_px = marker.side_px();
-    for (int k = 0; k < 4; ++k) {
-      match.corners[k] = {SquaresFromSample(board, found->second.corners_in_sample_mm[k]),
-                          marker.corners_px[k]};
-    }
-    matches.push_back(match);
-  }
-  return matches;
-}
-
-std::vector<PlanePoint> Points(const std::vector<Match>& matches) {
-  std::vector<PlanePoint> points;
-  for (const Match& match : matches) points.insert(points.end(), match.corners, match.corners + 4);
-  return points;
-}
-
-std::vector<Match> Agreeing(const std::vector<Match>& matches, const Eigen::Matrix3d& h) {
-  constexpr double kTolerance = 0.6;  // of a marker's side: lens distortion counts against it
-  std::vector<Match> agreeing;
-  for (const Match& match : matches) {
-    bool fits = true;
-    for (const PlanePoint& corner : match.corners) {
-      const auto there = ApplyHomography(h, corner.board);
-      fits = fits && there && (*there - corner.image_px).norm() < kTolerance * match.side_px;
-    }
-    if (fits) agreeing.push_back(match);
-  }
-  return agreeing;
-}
-
-// The largest set of markers that one homography explains; homographies come from pairs, which are
-// gone through in a fixed order. A single marker has nobody to agree with.
-std::vector<Match> Consensus(const std::vector<Match>& matches) {
-  constexpr size_t kMaxPairs = 600;
-  std::vector<Match> best;
-  const size_t n = matches.size();
-  if (n < 2) return best;
-  const size_t pairs = n * (n - 1) / 2;
-  const size_t stride = std::max<size_t>(1, pairs / kMaxPairs);
-  size_t number = 0;
-  for (size_t gap = n - 1; gap >= 1; --gap) {
-    for (size_t i = 0; i + gap < n; ++i) {
-      if (number++ % stride != 0) continue;
-      const auto h = FitHomography(Points({matches[i], matches[i + gap]}));
-      if (!h) continue;
-      auto agreeing = Agreeing(matches, *h);
-      if (agreeing.size() > best.size()) best = std::move(agreeing);
-    }
-  }
-  if (best.size() < 2) return {};
-  if (const auto h = FitHomography(Points(best))) {
-    auto again = Agreeing(matches, *h);
-    if (again.size() > best.size()) best = std::move(again);
-  }
-  return best;
-}
 
 // The radius round a corner that no marker's ink reaches.
 double FreeRadiusSquares(const Board& board) {
@@ -126,11 +53,11 @@ void DropInconsistent(std::map<int, Found>* found) {
 }
 
 // Median of seen over described size of the markers, given where the corners are; 0: unknown.
-double MarkerScale(const std::vector<Match>& matches, const std::map<int, Found>& found) {
+double MarkerScale(const std::vector<MarkerMatch>& matches, const std::map<int, Found>& found) {
   std::vector<PlanePoint> points;
   for (const auto& [id, one] : found) points.push_back(one.point);
   std::vector<double> ratios;
-  for (const Match& match : matches) {
+  for (const MarkerMatch& match : matches) {
     // Markers among corners only: a homography tells little of what lies far from its points.
     const Eigen::Vector2d at = 0.5 * (match.corners[0].board + match.corners[2].board);
     const auto near = std::count_if(points.begin(), points.end(), [&](const PlanePoint& point) {
@@ -200,12 +127,13 @@ BoardDetection DetectCharuco(const GrayImage& image, const Board& board,
     return Mismatch(detection, LayoutMismatch(board, seen, matches.size(), agreeing.size()));
   }
   if (agreeing.size() < 2) {
+    if (ShowsMirroredMarkers(image, board, options)) return Mismatch(detection, kMirrored);
     detection.problem = fmt::format("{} of the board's {} markers ({}) seen", matches.size(),
                                     on_board, board.dictionary);
     return detection;
   }
   std::map<int, Found> found;
-  FindCorners(image, board, options, Points(agreeing), &found);
+  FindCorners(image, board, options, MatchedPoints(agreeing), &found);
   DropInconsistent(&found);
   // Corners predict their neighbours better than markers do.
   for (int round = 0; round < 3 && found.size() >= 6; ++round) {

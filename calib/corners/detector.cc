@@ -23,8 +23,15 @@ BoardDetection DetectBoard(const GrayImage& image, const Board& board,
         fmt::format("the picture has only {} x {} pixels", image.width, image.height);
     return detection;
   }
-  return board.kind == BoardKind::kCharuco ? corners::DetectCharuco(image, board, options)
-                                           : corners::DetectCheckerboard(image, board, options);
+  switch (board.kind) {
+    case BoardKind::kCharuco:
+      return corners::DetectCharuco(image, board, options);
+    case BoardKind::kMarkers:
+      return corners::DetectMarkerFrame(image, board, options);
+    case BoardKind::kCheckerboard:
+      break;
+  }
+  return corners::DetectCheckerboard(image, board, options);
 }
 
 namespace corners {

@@ -5,6 +5,9 @@
 // interpolateCornersCharuco is not used: in 4.6 it is off by half a pixel (opencv_contrib#3024).
 // Checkerboards: findChessboardCornersSB (then findChessboardCorners) finds a grid, which is grown
 // over whatever part of the board can be seen; the same fit places its corners.
+// Marker frames: ArUco's identities again, and a fit of each marker's whole outline
+// (marker_outline.h), as a marker's corners are no saddles. OpenCV's own refinements of them
+// (CORNER_REFINE_SUBPIX, _CONTOUR) are not used: see docs/experiments.md.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,6 +16,7 @@
 
 #include "calib/board/board.h"
 #include "calib/corners/gray_image.h"
+#include "calib/corners/marker_outline.h"
 #include "calib/corners/saddle.h"
 
 namespace glint {
@@ -22,6 +26,7 @@ struct DetectorOptions {
       1600;  // boards are looked for in a copy reduced to this; corners are placed in full
   int min_corners = 6;  // fewer are no detection
   SaddleOptions saddle;
+  OutlineOptions outline;
 };
 
 struct CornerObservation {
@@ -38,14 +43,15 @@ struct BoardDetection {
   bool position_known = true;
   std::string problem;
   bool mismatch = false;  // what is seen contradicts the description, which `problem` tells
-  int markers = 0;        // markers of the board seen (ChArUco)
+  int markers = 0;        // markers of the board seen
 };
 
 // Never throws for a picture; `board` must pass CheckBoard.
 BoardDetection DetectBoard(const GrayImage& image, const Board& board,
                            const DetectorOptions& options = {});
 
-// Board coordinates in squares (column to the right, row down, from the top left corner).
+// Board coordinates in squares (column to the right, row down, from the top left corner); of a
+// marker frame in mean sides of its markers, from the board's centre.
 Eigen::Vector2d SquaresFromSample(const Board& board, const Eigen::Vector2d& position_in_sample_mm);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// Shared by the two detectors; not for other folders.
+// Shared by the detectors; not for other folders.
 #pragma once
 
 #include <optional>
@@ -14,6 +14,8 @@ inline constexpr double kReachSquares = 1.5;
 
 BoardDetection DetectCharuco(const GrayImage& image, const Board& board,
                              const DetectorOptions& options);
+BoardDetection DetectMarkerFrame(const GrayImage& image, const Board& board,
+                                 const DetectorOptions& options);
 BoardDetection DetectCheckerboard(const GrayImage& image, const Board& board,
                                   const DetectorOptions& options);
 

@@ -29,7 +29,7 @@ struct PaperSpot {
 // The places of the board that are farthest from ink, window and border, the largest first: discs
 // of plain paper whose centres keep a radius from each other. The larger the disc, the less of the
 // ink's blur and of JPEG's blocks reaches its middle. Discs of less than 0.45 of the largest radius
-// are left out. paper_spots.cc.
+// are left out. Of a marker frame: the rims of its markers, a block each. paper_spots.cc.
 std::vector<PaperSpot> PaperSpots(const Board& board);
 
 // One sample per spot that is seen large enough. Spots with a clipped pixel are left out, as are
