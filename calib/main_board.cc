@@ -1,0 +1,140 @@
+// glint-board: a calibration board as PDF and SVG, and its description for calib.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "calib/printing/draw_sheet.h"
+#include "calib/printing/drawing.h"
+#include "calib/printing/sheet_plan.h"
+#include "pipeline/contract/board_file.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
+#include "pipeline/contract/program.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BoardOptions {
+  fs::path folder = ".";
+  SheetOptions sheet;
+  fs::path from;        // a board.json to print
+  double measured = 0;  // length of the ruler on paper
+};
+
+constexpr char kTable[] = "[board]\nfile = \"board.json\"\n";
+
+void WriteDescription(const fs::path& file, const BoardFile& board) {
+  WriteFileAtomically(file, ToJson(board).dump(1) + "\n");
+}
+
+ProgramResult Correct(const BoardOptions& options) {
+  const fs::path file = options.folder / "board.json";
+  const fs::path source = options.from.empty() ? file : options.from;
+  BoardFile board = ReadBoardFile(source);
+  ScaleBoard(RulerFactor(source, board.board, options.measured), &board.board);
+  WriteDescription(file, board);
+  const double scale = board.board.print_scale;
+  std::string text =
+      fmt::format("the board was printed at {}\n{} now says so: {}\n",
+                  PrintScaleInWords(board.board), file.string(), BoardInWords(board.board));
+  if (std::abs(scale - 1) > 0.01) {
+    text +=
+        "more than 1 % off: the printer fits to the page; its lengths are corrected, but look "
+        "whether all of the board is on the paper\n";
+  }
+  return {text, {{"file", file.string()}, {"print_scale", scale}}};
+}
+
+ProgramResult Print(const BoardOptions& options, const CommonOptions& common) {
+  const fs::path description = options.folder / "board.json";
+  if (fs::exists(description) && !common.force &&
+      !(fs::exists(options.from) && fs::equivalent(description, options.from))) {
+    throw UserError(description, "", "a board.json that is there already",
+                    "give another folder, or --force to replace it");
+  }
+  BoardFile board;
+  if (options.from.empty()) {
+    board = PlanSheet(options.sheet);
+  } else {
+    board = ReadBoardFile(options.from);
+    PlaceOnSheet(options.sheet, &board);
+  }
+  const Drawing drawing = DrawSheet(board, options.sheet.paper_reflectance);
+  std::error_code error;
+  fs::create_directories(options.folder, error);
+  if (error) {
+    throw EnvironmentError(options.folder.string() + ": cannot create the folder: " +
+                           error.message() + "; check the path and its permissions");
+  }
+  WriteFileAtomically(options.folder / "board.pdf", PdfOf(drawing));
+  WriteFileAtomically(options.folder / "board.svg", SvgOf(drawing));
+  WriteDescription(description, board);
+  std::string text = fmt::format("{}: {}\nwrote board.pdf, board.svg and board.json\n",
+                                 options.folder.string(), BoardInWords(board.board));
+  text += "print board.pdf at 100 %, on stiff, matt paper";
+  if (board.board.ruler) {
+    text += fmt::format(
+        ", and measure its ruler; if that is not {:.6g} mm: glint board {} "
+        "--measured LENGTH",
+        board.board.ruler->length_mm(), options.folder.string());
+  }
+  text += "\nin the capture.toml beside a copy of board.json:\n\n" + std::string(kTable);
+  Json json = {{"pdf", (options.folder / "board.pdf").string()},
+               {"svg", (options.folder / "board.svg").string()},
+               {"file", description.string()},
+               {"table", kTable},
+               {"board", ToJson(board)}};
+  return {text, json};
+}
+
+void AddOptions(OptionSet* set, BoardOptions* options) {
+  SheetOptions& sheet = options->sheet;
+  set->AddPositional("DIR", &options->folder, "folder for board.pdf, board.svg, board.json", false);
+  set->AddChoice("kind", &sheet.kind, {"charuco", "checkerboard", "markers"},
+                 "charuco: a frame with a window for the sample; markers: single AprilTags");
+  set->Add("paper", &sheet.paper,
+           "A0 to A6, Letter, Legal, Tabloid, or WIDTHxHEIGHT in millimetres");
+  set->Add("landscape", &sheet.landscape, "the paper's longer side lies across");
+  set->AddRange("margin-mm", &sheet.margin_mm, 0, 200, "white at the paper's edges");
+  set->Add("squares", &sheet.squares,
+           "COLUMNS,ROWS (markers: ACROSS,DOWN the frame); left out: as many as fit");
+  set->AddRange("square-mm", &sheet.square_mm, 0, 1000,
+                "side of a square, or of a marker of kind markers; 0: by the paper");
+  set->AddRange("marker-mm", &sheet.marker_mm, 0, 1000,
+                "side of a ChArUco marker; 0: by the square");
+  set->Add("dictionary", &sheet.dictionary,
+           "OpenCV's name, or AprilTag's such as tag36h11 (the default of kind markers)");
+  set->Add("legacy-layout", &sheet.legacy_layout, "ChArUco as OpenCV before 4.6 lays it out");
+  set->Add("window", &sheet.window,
+           "FIRST_COLUMN,FIRST_ROW,COLUMNS,ROWS of squares left out for the sample");
+  set->Add("sample-mm", &sheet.sample_mm, "WIDTH,HEIGHT of the sample that the window must take");
+  set->Add("full-board", &sheet.full_board, "no window");
+  set->Add("patches", &sheet.patches,
+           "reflectances of grey patches above the board, such as 0.85,0.6,0.36,0.18,0.09,0.04");
+  set->AddRange("paper-reflectance", &sheet.paper_reflectance, 0.05, 1, "of the white paper");
+  set->Add("from", &options->from, "print (or correct) this board.json instead of a new board");
+  set->AddRange("measured", &options->measured, 0, 1e5,
+                "length of the printed ruler in mm: corrects DIR/board.json and prints nothing");
+}
+
+}  // namespace
+}  // namespace glint
+
+int main(int argc, char** argv) {
+  glint::BoardOptions options;
+  glint::OptionSet set;
+  glint::AddOptions(&set, &options);
+  const glint::ProgramInfo info{
+      "glint-board",
+      "Writes a calibration board to print: PDF and SVG in exact millimetres, and board.json, "
+      "which calib reads.",
+      GLINT_VERSION,
+      "Examples:\n  glint board wood --sample-mm 100,100\n"
+      "  glint board wood --measured 149.2      the printed ruler's length: corrects board.json\n"
+      "  glint board a3 --paper A3 --landscape --patches 0.85,0.36,0.18,0.09"};
+  return glint::RunProgram(argc, argv, info, &set, [&](const glint::CommonOptions& common) {
+    return options.measured > 0 ? glint::Correct(options) : glint::Print(options, common);
+  });
+}

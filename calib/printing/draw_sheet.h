@@ -1,0 +1,16 @@
+// The drawing of a planned sheet.
+#pragma once
+
+#include "calib/printing/drawing.h"
+#include "pipeline/contract/board_file.h"
+
+namespace glint {
+
+// `file` must have a sheet and be at its designed size (print_scale 1). `paper_reflectance` tells
+// which level of grey each patch is printed with.
+Drawing DrawSheet(const BoardFile& file, double paper_reflectance);
+
+// "ChArUco frame, 13 x 17 squares of 15 mm, …": what the board is, in ASCII.
+std::string BoardInWords(const Board& board);
+
+}  // namespace glint

@@ -1,0 +1,101 @@
+#include "tests/calib/printing/raster_check.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "calib/corners/saddle.h"
+#include "pipeline/contract/errors.h"
+
+namespace glint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+GrayImage ReadPgm(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string magic;
+  GrayImage image;
+  int most = 0;
+  stream >> magic >> image.width >> image.height >> most;
+  stream.get();
+  if (magic != "P5" || most != 255) throw EnvironmentError(file.string() + ": no PGM file");
+  image.samples.resize(static_cast<size_t>(image.width) * image.height);
+  stream.read(reinterpret_cast<char*>(image.samples.data()),
+              static_cast<std::streamsize>(image.samples.size()));
+  return image;
+}
+
+}  // namespace
+
+GrayImage Rasterize(const fs::path& pdf, int dpi, int oversampling) {
+  const fs::path stem = pdf.parent_path() / fmt::format("{}_{}", pdf.stem().string(), dpi);
+  const std::string command = fmt::format("pdftoppm -gray -singlefile -r {} '{}' '{}'",
+                                          dpi * oversampling, pdf.string(), stem.string());
+  if (std::system(command.c_str()) != 0) {
+    throw EnvironmentError("pdftoppm failed; apt-get install poppler-utils");
+  }
+  const GrayImage fine = ReadPgm(stem.string() + ".pgm");
+  fs::remove(stem.string() + ".pgm");
+  int factor = 1;
+  const int longest = (std::max(fine.width, fine.height) + oversampling - 1) / oversampling;
+  return oversampling == 1 ? fine : Reduced(fine, longest, &factor);
+}
+
+RasterErrors CheckCorners(const BoardFile& file, const GrayImage& raster, int dpi) {
+  const double px_per_mm = dpi / 25.4;
+  const double square_px = file.board.square_mm * px_per_mm;
+  const double gap = 0.5 * (1 - file.board.marker_mm / file.board.square_mm);
+  RasterErrors errors;
+  double squares = 0;
+  for (const BoardCorner& corner : BoardCorners(file.board)) {
+    const Eigen::Vector2d on_sheet_mm = corner.position_in_sample_mm + file.sheet->board_centre_mm;
+    SaddleGuess guess;
+    guess.centre_px = {on_sheet_mm.x() * px_per_mm,
+                       (file.sheet->height_mm - on_sheet_mm.y()) * px_per_mm};
+    guess.column_px = {square_px, 0};
+    guess.row_px = {0, square_px};
+    const int column = corner.id % (file.board.squares_x - 1);
+    const int row = corner.id / (file.board.squares_x - 1);
+    guess.top_left_is_black = SquareIsBlack(file.board, column, row);
+    guess.radius_squares = std::min(0.42, 1.3 * gap);
+    const SaddleFit fit = FitSaddle(raster, guess, {});
+    ++errors.corners;
+    if (!fit.ok) continue;
+    ++errors.found;
+    const double error = (fit.centre_px - guess.centre_px).norm();
+    squares += error * error;
+    errors.worst_px = std::max(errors.worst_px, error);
+  }
+  errors.rms_px = std::sqrt(squares / std::max(1, errors.found));
+  return errors;
+}
+
+std::vector<NamedSheet> TenSheets() {
+  std::vector<NamedSheet> sheets;
+  const auto add = [&](const std::string& name, const std::string& paper) -> SheetOptions& {
+    sheets.push_back({name, {}});
+    sheets.back().options.paper = paper;
+    return sheets.back().options;
+  };
+  add("A4, as it comes", "A4");
+  SheetOptions& across = add("A4 across, sample 100 x 80, patches", "A4");
+  across.landscape = true;
+  across.sample_mm = {100, 80};
+  across.patches = {0.85, 0.6, 0.36, 0.18, 0.09, 0.04};
+  add("A3, squares of 17.3 mm", "A3").square_mm = 17.3;
+  add("A5", "A5");
+  add("A6", "A6");
+  add("Letter", "Letter");
+  add("Legal", "Legal").dictionary = "tag36h11";
+  SheetOptions& legacy = add("Tabloid, legacy layout, 12 x 18", "Tabloid");
+  legacy.squares = {12, 18};
+  legacy.legacy_layout = true;
+  add("300 x 200 mm, full board", "300x200").full_board = true;
+  add("A4 checkerboard", "A4").kind = "checkerboard";
+  return sheets;
+}
+
+}  // namespace glint::testing
