@@ -10,6 +10,7 @@
 #include "datasets/synth/material_source.h"
 #include "datasets/synth/view_set.h"
 #include "fitting/training/material_pack.h"
+#include "pipeline/contract/board_file.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/svbrdf_file.h"
@@ -148,10 +149,12 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   std::vector<double> distance_mm{plan.nearest_mm, plan.farthest_mm};
   std::vector<double> flash_mm(plan.flash_offset_mm.begin(), plan.flash_offset_mm.end());
   std::vector<double> tint(plan.flash_tint.begin(), plan.flash_tint.end());
-  fs::path out;
+  fs::path out, board_file;
   OptionSet options;
   options.AddPositional("out", &out, "folder of the new capture", true);
   choice.AddTo(&options);
+  options.Add("board", &board_file,
+              "board.json of the board round the sample; none: a frame on A4");
   options.AddRange("photos", &plan.photos, 1, 1000, "photographs; the first is about a top view");
   options.AddRange("megapixels", &plan.megapixels, 0.05, 60, "size of a photograph, 4:3");
   options.AddRange("sample-mm", &plan.sample_mm, 10, 1000, "side of the square sample");
@@ -183,6 +186,7 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
     if (distance_mm.size() != 2) {
       throw UserError("distance-mm: give two numbers, as in 270,330");
     }
+    if (!board_file.empty()) plan.board = ReadBoardFile(board_file).board;
     plan.seed = common.seed;
     capture.overwrite = common.force;
     plan.nearest_mm = distance_mm[0];

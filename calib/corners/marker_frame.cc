@@ -52,7 +52,7 @@ std::string Contradiction(const Board& board, const std::vector<SeenMarker>& see
   if (matched >= 4 && agreeing * 10 < matched * 7) {
     return fmt::format(
         "{} markers of the board seen, but only {} of them lie where board.json has them; correct "
-        "their places (and the order of their corners: clockwise from each marker's own top left)",
+        "their places there",
         matched, agreeing);
   }
   return "";
@@ -92,7 +92,7 @@ BoardDetection DetectMarkerFrame(const GrayImage& image, const Board& board,
   const int on_board = static_cast<int>(board.markers.size());
   const auto seen = FindMarkers(image, board.dictionary, options.longest_px, (on_board + 1) / 2);
   const auto matches = MatchMarkers(board, seen);
-  const auto agreeing = Consensus(matches);
+  const auto agreeing = ConsensusOfFrame(board, seen);
   detection.markers = static_cast<int>(agreeing.size());
   detection.problem = Contradiction(board, seen, matches.size(), agreeing.size());
   detection.mismatch = !detection.problem.empty();

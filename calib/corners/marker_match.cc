@@ -75,6 +75,19 @@ std::vector<MarkerMatch> Consensus(const std::vector<MarkerMatch>& matches) {
   return best;
 }
 
+std::vector<MarkerMatch> ConsensusOfFrame(const Board& board, const std::vector<SeenMarker>& seen) {
+  std::vector<MarkerMatch> best;
+  for (int turn = 0; turn < 4; ++turn) {
+    std::vector<SeenMarker> turned = seen;
+    for (size_t i = 0; i < seen.size(); ++i) {
+      for (int k = 0; k < 4; ++k) turned[i].corners_px[k] = seen[i].corners_px[(k + turn) % 4];
+    }
+    auto agreeing = Consensus(MatchMarkers(board, turned));
+    if (agreeing.size() > best.size()) best = std::move(agreeing);
+  }
+  return best;
+}
+
 bool ShowsMirroredMarkers(const GrayImage& image, const Board& board,
                           const DetectorOptions& options) {
   GrayImage mirrored = image;
@@ -83,7 +96,9 @@ bool ShowsMirroredMarkers(const GrayImage& image, const Board& board,
     std::reverse(begin, begin + image.width);
   }
   const auto seen = FindMarkers(mirrored, board.dictionary, options.longest_px, 0);
-  return Consensus(MatchMarkers(board, seen)).size() >= 3;
+  const auto agreeing = board.kind == BoardKind::kMarkers ? ConsensusOfFrame(board, seen)
+                                                          : Consensus(MatchMarkers(board, seen));
+  return agreeing.size() >= 3;
 }
 
 }  // namespace glint::corners

@@ -25,6 +25,11 @@ std::vector<PlanePoint> MatchedPoints(const std::vector<MarkerMatch>& matches);
 // gone through in a fixed order. A single marker has nobody to agree with.
 std::vector<MarkerMatch> Consensus(const std::vector<MarkerMatch>& matches);
 
+// The same for a marker frame whose markers may all be turned alike by quarters: programs differ in
+// what they call a marker's top left (OpenCV draws AprilTags upside down), and the markers' places
+// tell. Where several turns explain as many, the described one.
+std::vector<MarkerMatch> ConsensusOfFrame(const Board& board, const std::vector<SeenMarker>& seen);
+
 // Whether the picture, turned left for right, shows markers of the board where they belong.
 bool ShowsMirroredMarkers(const GrayImage& image, const Board& board,
                           const DetectorOptions& options);

@@ -96,12 +96,11 @@ DrawnPose DrawPose(const CapturePlanOptions& options, int index, double first_az
 // The four corners of the squares lie in the picture, `share` of the half picture or less from its
 // centre.
 bool BoardInPicture(const CapturePlan& plan, const Rigid3& camera_from_sample, double share) {
-  const double x_mm = 0.5 * plan.board.squares_x * plan.board.square_mm;
-  const double y_mm = 0.5 * plan.board.squares_y * plan.board.square_mm;
+  const BoardRectangle outline = OutlineInSample(plan.board);
   const Vector2d half_px(0.5 * plan.camera.width_px, 0.5 * plan.camera.height_px);
-  for (const double sx : {-1.0, 1.0}) {
-    for (const double sy : {-1.0, 1.0}) {
-      const Vector3d corner = camera_from_sample * Vector3d(sx * x_mm, sy * y_mm, 0);
+  for (const double x_mm : {outline.left_mm, outline.right_mm}) {
+    for (const double y_mm : {outline.bottom_mm, outline.top_mm}) {
+      const Vector3d corner = camera_from_sample * Vector3d(x_mm, y_mm, 0);
       if (corner.z() < 0.1 * plan.options.nearest_mm) return false;
       const Vector2d offset = ImageFromCamera(plan.camera, corner) - half_px;
       if ((offset.cwiseAbs().array() > share * half_px.array()).any()) return false;
@@ -182,13 +181,12 @@ std::array<double, 3> NearestPolynomial(double strength) {
 
 // One power for the whole capture: the brightest piece of paper reaches `paper_level`.
 void SetPower(CapturePlan* plan) {
-  const double half_x = 0.5 * plan->board.squares_x * plan->board.square_mm;
-  const double half_y = 0.5 * plan->board.squares_y * plan->board.square_mm;
+  const BoardRectangle sheet = OutlineInSample(plan->board);
   double brightest = 0;
   for (const PlannedPhoto& photo : plan->photos) {
     // The foot of the flash, moved onto the sheet, is where the paper is brightest.
-    const double x = std::clamp(photo.light_in_sample_mm.x(), -half_x, half_x);
-    const double y = std::clamp(photo.light_in_sample_mm.y(), -half_y, half_y);
+    const double x = std::clamp(photo.light_in_sample_mm.x(), sheet.left_mm, sheet.right_mm);
+    const double y = std::clamp(photo.light_in_sample_mm.y(), sheet.bottom_mm, sheet.top_mm);
     brightest = std::max(brightest, photo.exposure * LightGeometry(photo.light_in_sample_mm, x, y));
   }
   const CapturePlanOptions& options = plan->options;
@@ -245,11 +243,29 @@ double LensFalloff(const CapturePlan& plan, const Vector2d& point_px) {
   return 1.0 / (denominator * denominator);
 }
 
+namespace {
+
+// The sample, which lies at the board's centre, must fit into its window.
+void CheckBoardOf(const CapturePlanOptions& options) {
+  if (!options.board) return;
+  const auto opening = OpeningInSample(*options.board);
+  if (!opening) return;
+  const double room_mm =
+      2 * std::min({-opening->left_mm, opening->right_mm, -opening->bottom_mm, opening->top_mm});
+  if (options.sample_mm <= room_mm) return;
+  throw UserError("board: found a window that takes " + std::to_string(room_mm) +
+                  " mm at most round the board's centre, while the sample has " +
+                  std::to_string(options.sample_mm) + "; give a smaller --sample-mm");
+}
+
+}  // namespace
+
 CapturePlan PlanCapture(const CapturePlanOptions& options) {
   CheckOptions(options);
+  CheckBoardOf(options);
   CapturePlan plan;
   plan.options = options;
-  plan.board = FrameBoard(options.sample_mm);
+  plan.board = options.board.value_or(FrameBoard(options.sample_mm));
   plan.margin_mm = plan.board.square_mm;
   plan.camera = PhoneCamera(options.megapixels, options.seed);
   if (options.vignetting > 0) {

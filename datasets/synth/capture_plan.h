@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "calib/board/board.h"
@@ -28,6 +29,9 @@ struct CapturePlanOptions {
   double vignetting = 0;      // share of the light that the picture's corners lose
   double exposure_ev = 0;     // exposures spread evenly over ± this, in random order
   double exif_error = 0;      // standard deviation of the exposures in EXIF, relative
+
+  // Any board, with the sample at its centre; none: FrameBoard.
+  std::optional<Board> board;
 };
 
 // Reflectance factors of what surrounds the sample, Lambertian.

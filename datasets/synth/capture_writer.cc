@@ -10,6 +10,7 @@
 #include "datasets/procedural/random.h"
 #include "datasets/synth/photo_file.h"
 #include "datasets/synth/photo_renderer.h"
+#include "pipeline/contract/board_file.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
@@ -36,6 +37,15 @@ std::string PhotoName(int index, const std::string& format) {
   return fmt::format("photos/photo_{:03}.{}", index, format);
 }
 
+std::string InlineBoard(const Board& board) {
+  return fmt::format(
+      "[board]\nkind = \"charuco\"\nsquares = [{}, {}]\nsquare_mm = {}\nmarker_mm = {}\n"
+      "dictionary = \"{}\"\nwindow = [{}, {}, {}, {}]\n\n",
+      board.squares_x, board.squares_y, board.square_mm, board.marker_mm, board.dictionary,
+      board.window->first_column, board.window->first_row, board.window->columns,
+      board.window->rows);
+}
+
 std::string CaptureToml(const CapturePlan& plan, const SyntheticCaptureOptions& options) {
   const Board& board = plan.board;
   const double side = plan.options.sample_mm;
@@ -44,12 +54,7 @@ std::string CaptureToml(const CapturePlan& plan, const SyntheticCaptureOptions& 
   text += fmt::format("[sample]\nsize_mm = [{}, {}]\nresolution_px = {}\n\n", side, side,
                       options.resolution_px);
   text += fmt::format("[photos]\nfiles = [\"photos/*.{}\"]\n\n", options.format);
-  text += fmt::format(
-      "[board]\nkind = \"charuco\"\nsquares = [{}, {}]\nsquare_mm = {}\nmarker_mm = {}\n"
-      "dictionary = \"{}\"\nwindow = [{}, {}, {}, {}]\n\n",
-      board.squares_x, board.squares_y, board.square_mm, board.marker_mm, board.dictionary,
-      board.window->first_column, board.window->first_row, board.window->columns,
-      board.window->rows);
+  text += options.plan.board ? "[board]\nfile = \"board.json\"\n\n" : InlineBoard(board);
   text += fmt::format("[radiometry]\nencoding = \"{}\"\n\n",
                       options.format == "exr" ? "linear" : options.encoding);
   if (!options.tell_flash) return text;
@@ -250,6 +255,9 @@ SyntheticCaptureSummary WriteSyntheticCapture(const fs::path& folder,
     progress.Advance();
   }
   WriteTruth(folder / "truth", plan, material, options);
+  if (options.plan.board) {
+    WriteFileAtomically(folder / "board.json", ToJson(BoardFile{plan.board, {}}).dump(1) + "\n");
+  }
   WriteFileAtomically(folder / "capture.toml", CaptureToml(plan, options));
   return summary;
 }

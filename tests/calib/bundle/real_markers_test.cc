@@ -109,7 +109,7 @@ TEST(BathTile, MarkersLieWhereTheDescriptionHasThemAndTheirPaperTellsTheCamera) 
     double squares = 0;
     for (const Eigen::Vector2d& error : errors) squares += (error - mean).squaredNorm();
     const double rms = std::sqrt(squares / static_cast<double>(errors.size()));
-    const auto samples = SamplePaper(photo, ParseEncoding("gamma2.2"), board, detection.corners);
+    const auto samples = SamplePaper(photo, EncodingFromName("gamma2.2").value(), board, detection.corners);
     const Eigen::Vector3d light = LightByFallOff(samples);
     const Json& camera = published["camera_pos"][static_cast<size_t>(i)];
     const Eigen::Vector3d truth(10 * camera[0].get<double>(), 10 * camera[1].get<double>(),

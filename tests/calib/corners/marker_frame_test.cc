@@ -40,19 +40,19 @@ Board TagFrame(int first_id = 0) {
 }
 
 // A phone's picture, with the lens' distortion of detection_errors.h.
-const Camera kCamera{CameraModel::kRadial, 1600, 1200, {1440, 806.3, 593.1, 0.06, -0.08}};
+const Camera kCamera{CameraModel::kRadial, 1200, 900, {1080, 604.3, 446.1, 0.06, -0.08}};
 
 TEST(DetectMarkerFrame, HasNoBiasUnderPerspectiveBlurAndNoise) {
   const Board board = TagFrame();
   ASSERT_EQ(CheckBoard(board), "");
   Errors all;
   Eigen::Vector2d outward(0, 0);  // along the marker's diagonals: that they seem too large
-  for (int i = 0; i < 6; ++i) {
-    const Rigid3 pose = LookAt(300 + 15 * i, 4 + 7 * i, 60 * i, -40 + 17 * i, {3.0 * i - 8, 4});
+  for (int i = 0; i < 5; ++i) {
+    const Rigid3 pose = LookAt(300 + 15 * i, 4 + 8 * i, 60 * i, -40 + 17 * i, {3.0 * i - 8, 4});
     PhotoSettings settings;
-    settings.blur_px = 0.6 + 0.3 * i;
+    settings.blur_px = 0.5 + 0.2 * i;
     settings.seed = i;
-    settings.samples = 3;
+    settings.samples = 2;
     const auto detection = DetectBoard(Photograph(board, kCamera, pose, settings), board);
     EXPECT_GE(detection.corners.size(), 56u) << "picture " << i << ": " << detection.problem;
     Errors one;
@@ -82,11 +82,11 @@ TEST(DetectMarkerFrame, StatesTheUncertaintyItHas) {
   const Rigid3 pose = LookAt(330, 20, 40, 10);
   double squares = 0;
   int corners = 0;
-  for (int seed = 0; seed < 3; ++seed) {
+  for (int seed = 0; seed < 2; ++seed) {
     PhotoSettings settings;
     settings.seed = 10 + seed;
     settings.noise = 4;
-    settings.samples = 3;
+    settings.samples = 2;
     const auto detection = DetectBoard(Photograph(board, kCamera, pose, settings), board);
     for (const CornerObservation& c : detection.corners) {
       const Eigen::Vector2d error = c.point_px - Project(kCamera, pose, c.position_in_sample_mm);
@@ -94,7 +94,7 @@ TEST(DetectMarkerFrame, StatesTheUncertaintyItHas) {
       ++corners;
     }
   }
-  ASSERT_GE(corners, 150);
+  ASSERT_GE(corners, 110);
   EXPECT_GT(std::sqrt(squares / corners), 0.6);
   EXPECT_LT(std::sqrt(squares / corners), 1.8);
 }
@@ -115,6 +115,28 @@ TEST(DetectMarkerFrame, LeavesOutMarkersThatSomethingHides) {
   EXPECT_GE(errors.corners, 36) << detection.problem;
   EXPECT_LE(errors.corners, 56);
   EXPECT_EQ(errors.wrong, 0);
+}
+
+// OpenCV's AprilTags are upside down to AprilTag's own: descriptions have either.
+TEST(DetectMarkerFrame, UnderstandsMarkersThatAreAllTurnedAlike) {
+  const Board board = TagFrame();
+  const Rigid3 pose = LookAt(330, 15, 40, 5);
+  PhotoSettings settings;
+  settings.samples = 2;
+  const GrayImage photo = Photograph(board, kCamera, pose, settings);
+  for (int turn = 0; turn < 4; ++turn) {
+    Board turned = board;
+    for (size_t i = 0; i < board.markers.size(); ++i) {
+      for (int k = 0; k < 4; ++k) {
+        turned.markers[i].corners_in_board_mm[k] =
+            board.markers[i].corners_in_board_mm[(k + turn) % 4];
+      }
+    }
+    Errors errors;
+    Add(DetectBoard(photo, turned), kCamera, pose, &errors);
+    EXPECT_GE(errors.corners, 56) << turn;
+    EXPECT_EQ(errors.wrong, 0) << turn;
+  }
 }
 
 TEST(DetectMarkerFrame, SaysWhatWasSeenInstead) {
