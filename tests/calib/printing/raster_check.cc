@@ -4,44 +4,25 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
+#include <opencv2/imgcodecs.hpp>
 
 #include "calib/corners/saddle.h"
 #include "pipeline/contract/errors.h"
 
 namespace glint::testing {
-namespace {
 
-namespace fs = std::filesystem;
-
-GrayImage ReadPgm(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string magic;
-  GrayImage image;
-  int most = 0;
-  stream >> magic >> image.width >> image.height >> most;
-  stream.get();
-  if (magic != "P5" || most != 255) throw EnvironmentError(file.string() + ": no PGM file");
-  image.samples.resize(static_cast<size_t>(image.width) * image.height);
-  stream.read(reinterpret_cast<char*>(image.samples.data()),
-              static_cast<std::streamsize>(image.samples.size()));
-  return image;
-}
-
-}  // namespace
-
-GrayImage Rasterize(const fs::path& pdf, int dpi, int oversampling) {
-  const fs::path stem = pdf.parent_path() / fmt::format("{}_{}", pdf.stem().string(), dpi);
-  const std::string command = fmt::format("pdftoppm -gray -singlefile -r {} '{}' '{}'",
-                                          dpi * oversampling, pdf.string(), stem.string());
+GrayImage Rasterize(const std::filesystem::path& pdf, int dpi, const std::string& program) {
+  const std::string stem = (pdf.parent_path() / pdf.stem()).string();
+  const std::string command =
+      fmt::format("{} -gray -png -singlefile -r {} '{}' '{}'", program, dpi, pdf.string(), stem);
   if (std::system(command.c_str()) != 0) {
-    throw EnvironmentError("pdftoppm failed; apt-get install poppler-utils");
+    throw EnvironmentError(program + " failed; apt-get install poppler-utils");
   }
-  const GrayImage fine = ReadPgm(stem.string() + ".pgm");
-  fs::remove(stem.string() + ".pgm");
-  int factor = 1;
-  const int longest = (std::max(fine.width, fine.height) + oversampling - 1) / oversampling;
-  return oversampling == 1 ? fine : Reduced(fine, longest, &factor);
+  const cv::Mat picture = cv::imread(stem + ".png", cv::IMREAD_GRAYSCALE);
+  std::filesystem::remove(stem + ".png");
+  if (picture.empty()) throw EnvironmentError(stem + ".png: no picture");
+  return {picture.cols, picture.rows,
+          std::vector<unsigned char>(picture.datastart, picture.dataend)};
 }
 
 RasterErrors CheckCorners(const BoardFile& file, const GrayImage& raster, int dpi) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "calib/corners/gray_image.h"
 #include "calib/printing/sheet_plan.h"
@@ -14,10 +15,11 @@ struct RasterErrors {
   double rms_px = 0, worst_px = 0;
 };
 
-// The first page as poppler draws it at `dpi`. It places edges to a quarter of its pixels, so it
-// draws `oversampling` times finer and its pixels are averaged. Throws EnvironmentError without
-// pdftoppm.
-GrayImage Rasterize(const std::filesystem::path& pdf, int dpi, int oversampling);
+// The first page as a program of poppler-utils draws it: pdftocairo, whose pixels hold the share of
+// ink to 1/255, or pdftoppm, which places every edge to a quarter of a pixel. Throws
+// EnvironmentError without the program.
+GrayImage Rasterize(const std::filesystem::path& pdf, int dpi,
+                    const std::string& program = "pdftocairo");
 
 // Every corner of the sheet's squares in the raster, against its place by the description.
 RasterErrors CheckCorners(const BoardFile& file, const GrayImage& raster, int dpi);
