@@ -6,8 +6,8 @@
 // Checkerboards: findChessboardCornersSB (then findChessboardCorners) finds a grid, which is grown
 // over whatever part of the board can be seen; the same fit places its corners.
 // Marker frames: ArUco's identities again, and a fit of each marker's whole outline
-// (marker_outline.h), as a marker's corners are no saddles. OpenCV's own refinements of them
-// (CORNER_REFINE_SUBPIX, _CONTOUR) are not used: see docs/experiments.md.
+// (marker_outline.h), in linear light: a marker's corners are no saddles, and a tone curve would
+// make each marker seem too small.
 #pragma once
 
 #include <Eigen/Core>
