@@ -1,5 +1,6 @@
 #include "pipeline/contract/image.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <memory>
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
 #include "pipeline/contract/oiio.h"
 
 namespace glint {
@@ -33,6 +35,24 @@ void Write(const std::filesystem::path& file, const OIIO::ImageSpec& spec, OIIO:
   if (!output->open(file.string(), spec)) fail(output->geterror());
   if (!output->write_image(type, interleaved)) fail(output->geterror());
   if (!output->close()) fail(output->geterror());
+}
+
+// By way of memory: libpng's writer does not say when the disk is full.
+void WriteEncoded(const std::filesystem::path& file, const OIIO::ImageSpec& spec,
+                  OIIO::TypeDesc type, const void* interleaved) {
+  SetUpOiio();
+  OIIO::Filesystem::IOVecOutput encoded;
+  const std::unique_ptr<OIIO::ImageOutput> output =
+      OIIO::ImageOutput::create(file.string(), &encoded);
+  const auto fail = [&](const std::string& reason) {
+    throw EnvironmentError(file.string() + ": cannot encode the image: " + reason);
+  };
+  if (!output) fail(OIIO::geterror());
+  if (!output->open(file.string(), spec)) fail(output->geterror());
+  if (!output->write_image(type, interleaved)) fail(output->geterror());
+  if (!output->close()) fail(output->geterror());
+  const auto& bytes = encoded.buffer();
+  WriteFileAtomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 // Planar to interleaved in the order `order` (channel index for each written channel).
@@ -89,9 +109,9 @@ void WritePng(const std::filesystem::path& file, const Image& image, int bits) {
     if (bits != 16) bytes[i] = static_cast<std::uint8_t>(rounded[i]);
   }
   if (bits == 16) {
-    Write(file, spec, OIIO::TypeUInt16, rounded.data());
+    WriteEncoded(file, spec, OIIO::TypeUInt16, rounded.data());
   } else {
-    Write(file, spec, OIIO::TypeUInt8, bytes.data());
+    WriteEncoded(file, spec, OIIO::TypeUInt8, bytes.data());
   }
 }
 

@@ -34,10 +34,10 @@ void LimitFileSize(rlim_t bytes) {
 
 TEST_F(EnvironmentTest, AFullDiskKeepsEarlierResults) {
   EditToml("resolution_px = 64", "resolution_px = 256");
-  const Outcome outcome = RunWith([] { LimitFileSize(200 << 10); });
+  const Outcome outcome = RunWith([] { LimitFileSize(60 << 10); });
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("space"));
-  EXPECT_THAT(outcome.err, HasSubstr("view_000.exr"));
+  EXPECT_THAT(outcome.err, HasSubstr("residuals_camera0.png"));
   EXPECT_EQ(Differences(Results(finished()), Results(capture())), "");
   EditToml("resolution_px = 256", "resolution_px = 64");
   EXPECT_EQ(RunCapture().code, 0);

@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
+#include <filesystem>
 #include <limits>
 
 #include "pipeline/contract/errors.h"
@@ -59,6 +62,26 @@ TEST(Photo, EightBitPngKeepsItsValues) {
   for (size_t i = 0; i < wanted.samples.size(); ++i) {
     ASSERT_NEAR(photo.image.samples[i], wanted.samples[i], 0.5 / 255 + 1e-6);
   }
+}
+
+// A disk that fills up in the middle of a picture, as a limit on file sizes plays it.
+TEST(Image, APngThatDoesNotFitIsAnErrorAndNotAPartOfAFile) {
+  const test::TemporaryFolder folder;
+  Image image(256, 256, {"R", "G", "B"});
+  unsigned state = 1;
+  for (float& sample : image.samples) {
+    state = state * 1664525u + 1013904223u;
+    sample = static_cast<float>(state >> 8) / 16777216.0f;
+  }
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{20 << 10, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW(WritePng(folder / "large.png", image, 8), EnvironmentError);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_FALSE(std::filesystem::exists(folder / "large.png"));
 }
 
 TEST(Photo, BadFilesAreNamed) {
