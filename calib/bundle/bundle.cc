@@ -70,8 +70,10 @@ int Iterate(const BundleProblem& problem, const BundleOptions& options, State* s
   return rounds;
 }
 
-BundleResult Summarise(const BundleProblem& problem, const State& state) {
+BundleResult Summarise(const BundleProblem& problem, const BundleOptions& options,
+                       const State& state) {
   BundleResult result;
+  if (problem.bend || options.bend) result.bend = state.bend;
   for (const Camera& camera : state.cameras) result.cameras.push_back({camera, {}, {}, 0});
   double sum = 0;
   for (size_t i = 0; i < problem.photos.size(); ++i) {
@@ -84,11 +86,11 @@ BundleResult Summarise(const BundleProblem& problem, const State& state) {
     estimate.camera_from_sample = photo_state.camera_from_sample();
     estimate.tilt_deg = TiltDegrees(estimate.camera_from_sample);
     double photo_sum = 0;
-    const auto residuals = bundle::Residuals(photo, state.cameras[photo.camera], photo_state);
+    const auto residuals = bundle::Residuals(photo, state, photo_state);
     for (size_t k = 0; k < photo.corners.size(); ++k) {
       const bool inlier = photo_state.inlier[k];
-      estimate.corners.push_back(
-          {photo.corners[k].id, photo.corners[k].point_px, residuals[k], inlier});
+      estimate.corners.push_back({photo.corners[k].id, photo.corners[k].point_px, residuals[k],
+                                  inlier, photo.corners[k].position_in_sample_mm});
       if (inlier) photo_sum += residuals[k].squaredNorm();
     }
     estimate.rms_px = std::sqrt(photo_sum / std::max(1, estimate.inliers()));
@@ -138,6 +140,12 @@ void RequireFocalLengths(const BundleResult& result, const std::vector<double>& 
 
 }  // namespace
 
+Eigen::Vector3d BoardPoint(const std::optional<BoardBend>& bend,
+                           const Eigen::Vector2d& position_in_sample_mm) {
+  return {position_in_sample_mm.x(), position_in_sample_mm.y(),
+          bend ? bend->HeightAt(position_in_sample_mm) : 0};
+}
+
 int PhotoEstimate::inliers() const {
   return static_cast<int>(std::count_if(corners.begin(), corners.end(),
                                         [](const CornerResidual& c) { return c.inlier; }));
@@ -164,17 +172,27 @@ std::string BundleResult::BriefReport() const {
                   : fmt::format("  {:<3} {:>12.6f} ± {:.6f}\n", names[i], value, estimate.sigma[i]);
     }
   }
+  if (bend) {
+    text += fmt::format(
+        "board: rises by {:.3f} ± {:.3f} mm across its width, {:.3f} ± {:.3f} mm "
+        "across its height\n",
+        bend->height_mm.x(), std::sqrt(bend->covariance(0, 0)), bend->height_mm.y(),
+        std::sqrt(bend->covariance(1, 1)));
+  }
   return text;
 }
 
 BundleResult AdjustBundle(const BundleProblem& problem, const BundleOptions& options) {
   CheckOptions(options);
+  if (problem.bend && options.bend) throw UserError("option bend: the board's bend is given");
   if (problem.photos.empty()) throw UserError("photos: found none; at least one is needed");
   State state = bundle::Start(problem, options);
   RejectSmallPhotos(problem, options, &state);
   RequirePhotos(problem, state);
   const int rounds = Iterate(problem, options, &state);
-  BundleResult result = Summarise(problem, state);
+  // Covariances are of small motions beside each pose.
+  for (PhotoState& photo : state.photos) photo.Rebase();
+  BundleResult result = Summarise(problem, options, state);
   result.rounds = rounds;
   const auto focal_sigmas = bundle::Covariance(problem, options, state, &result);
   RequireFocalLengths(result, focal_sigmas, options);

@@ -7,7 +7,7 @@
 // homographies. While outliers are looked for, ρ is Cauchy's loss with a scale from the residuals'
 // median; the final solution is plain least squares on what was kept, so that its covariance
 // s²(JᵀJ)⁻¹ means what it says. Solved on one thread: the problem is small, and the result has one
-// value.
+// value. A board that is not flat can be given two unknowns of its own: see BoardBend.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,14 +37,33 @@ struct BundleCamera {
   std::optional<Camera> known;  // held as it is; only poses are solved for
 };
 
+// How far the board stands off its plane: two parabolas, after mrcal's "calibration object warp".
+//   z = height_x (1 − x²) + height_y (1 − y²),  x and y from −1 to 1 across the board's corners,
+// so that the outermost four corners stay on z = 0 and each height is reached in the middle.
+struct BoardBend {
+  Eigen::Vector2d centre_mm{0, 0}, half_size_mm{1, 1};
+  Eigen::Vector2d height_mm{0, 0};  // (height_x, height_y), positive toward the viewer
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+
+  Eigen::Vector2d Weights(const Eigen::Vector2d& position_in_sample_mm) const {
+    const Eigen::Array2d at = (position_in_sample_mm - centre_mm).array() / half_size_mm.array();
+    return (1 - at.square()).matrix();
+  }
+  double HeightAt(const Eigen::Vector2d& position_in_sample_mm) const {
+    return height_mm.dot(Weights(position_in_sample_mm));
+  }
+};
+
 struct BundleProblem {
   std::vector<BundleCamera> cameras;
   std::vector<BundlePhoto> photos;
+  std::optional<BoardBend> bend;  // known; held as it is
 };
 
 struct BundleOptions {
   CameraModel model = CameraModel::kOpenCv;
   std::vector<std::string> hold;  // parameters held at 0 (distortion alone: "p1", "k3", …)
+  bool bend = false;              // solve for the board's bending too
   bool reject = true;             // look for outlier corners and photos
   double reject_sigmas = 5;       // a corner is an outlier beyond this many robust deviations …
   double min_reject_px = 0.5;     // … and beyond this distance
@@ -67,6 +86,7 @@ struct CornerResidual {
   Eigen::Vector2d point_px;     // as seen
   Eigen::Vector2d residual_px;  // seen − predicted
   bool inlier = true;
+  Eigen::Vector2d position_in_sample_mm{0, 0};
 };
 
 struct PhotoEstimate {
@@ -79,6 +99,10 @@ struct PhotoEstimate {
   double tilt_deg = 0;            // between the optical axis and the board's normal
   double rms_px = 0;              // of inliers: root mean ‖residual‖²
   std::vector<CornerResidual> corners;
+  // Of the pose: a rotation vector (radian) and a shift (mm) applied in the camera's frame after
+  // camera_from_sample; and with the camera's parameters (6 × as many as the model has).
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::MatrixXd covariance_with_camera;
 
   int inliers() const;
 };
@@ -86,7 +110,9 @@ struct PhotoEstimate {
 struct BundleResult {
   std::vector<CameraEstimate> cameras;  // as in the problem
   std::vector<PhotoEstimate> photos;    // as in the problem, rejected ones included
+  std::optional<BoardBend> bend;        // where one is known or was solved for
   double rms_px = 0;                    // over all inliers: root mean ‖residual‖²
+  double sigma_px = 0;                  // of one coordinate of a corner, by the degrees of freedom
   int corners = 0, inliers = 0;         // of accepted photos
   int rounds = 0;                       // of solving and rejecting
 
@@ -97,5 +123,9 @@ struct BundleResult {
 // Throws UserError when no photo or too few corners are given, or when the photos do not determine
 // the intrinsics (all fronto-parallel); ComputationError when the solution does not converge.
 BundleResult AdjustBundle(const BundleProblem& problem, const BundleOptions& options = {});
+
+// A corner's place on the board, bent or flat.
+Eigen::Vector3d BoardPoint(const std::optional<BoardBend>& bend,
+                           const Eigen::Vector2d& position_in_sample_mm);
 
 }  // namespace glint

@@ -24,7 +24,12 @@ struct PhotoState {
 struct State {
   std::vector<Camera> cameras;
   std::vector<PhotoState> photos;
+  BoardBend bend;  // flat: heights of 0
 };
+
+// A weak prior on each height of a bend that is solved for, in mm: a sheet on a table rarely rises
+// by more than a twentieth of its size.
+double BendPriorSigma(const BoardBend& bend);
 
 // Focal lengths and poses to start from. Photos without a pose are marked as rejected.
 State Start(const BundleProblem& problem, const BundleOptions& options);
@@ -48,8 +53,8 @@ void Solve(const BundleProblem& problem, const BundleOptions& options, Refine re
            double loss_scale_px, double sigma_px, State* state);
 
 // Seen − predicted, for every corner of a photo; points behind the camera give 1e6 px.
-std::vector<Eigen::Vector2d> Residuals(const BundlePhoto& photo, const Camera& camera,
-                                       const PhotoState& state);
+std::vector<Eigen::Vector2d> Residuals(const BundlePhoto& photo, const State& state,
+                                       const PhotoState& photo_state);
 
 // Robust standard deviation of one coordinate, from the median length of the inliers' residuals.
 double RobustSigma(const BundleProblem& problem, const State& state);

@@ -22,14 +22,15 @@ std::vector<double> Lengths(const std::vector<Eigen::Vector2d>& residuals) {
 
 }  // namespace
 
-std::vector<Eigen::Vector2d> Residuals(const BundlePhoto& photo, const Camera& camera,
-                                       const PhotoState& state) {
-  const Rigid3 camera_from_sample = state.camera_from_sample();
+std::vector<Eigen::Vector2d> Residuals(const BundlePhoto& photo, const State& state,
+                                       const PhotoState& photo_state) {
+  const Camera& camera = state.cameras[photo.camera];
+  const Rigid3 camera_from_sample = photo_state.camera_from_sample();
   std::vector<Eigen::Vector2d> residuals;
   for (const BundleCorner& corner : photo.corners) {
+    const Eigen::Vector2d& at = corner.position_in_sample_mm;
     const Eigen::Vector3d p =
-        camera_from_sample *
-        Eigen::Vector3d(corner.position_in_sample_mm.x(), corner.position_in_sample_mm.y(), 0);
+        camera_from_sample * Eigen::Vector3d(at.x(), at.y(), state.bend.HeightAt(at));
     if (p.z() > 1e-9) {
       residuals.push_back(corner.point_px - ImageFromCamera(camera, p));
     } else {
@@ -43,8 +44,7 @@ double RobustSigma(const BundleProblem& problem, const State& state) {
   std::vector<double> lengths;
   for (size_t i = 0; i < problem.photos.size(); ++i) {
     if (!state.photos[i].accepted) continue;
-    const auto residuals =
-        Residuals(problem.photos[i], state.cameras[problem.photos[i].camera], state.photos[i]);
+    const auto residuals = Residuals(problem.photos[i], state, state.photos[i]);
     for (size_t k = 0; k < residuals.size(); ++k) {
       if (state.photos[i].inlier[k]) lengths.push_back(residuals[k].norm());
     }
@@ -61,8 +61,7 @@ bool Reject(const BundleProblem& problem, const BundleOptions& options, double s
   for (size_t i = 0; i < problem.photos.size(); ++i) {
     PhotoState& photo = state->photos[i];
     if (!photo.accepted) continue;
-    const auto lengths =
-        Lengths(Residuals(problem.photos[i], state->cameras[problem.photos[i].camera], photo));
+    const auto lengths = Lengths(Residuals(problem.photos[i], *state, photo));
     medians[i] = Median(lengths);
     usual.push_back(medians[i]);
     for (size_t k = 0; k < lengths.size(); ++k) {

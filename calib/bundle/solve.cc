@@ -1,5 +1,8 @@
-#include <ceres/ceres.h>
+#include <ceres/loss_function.h>
+#include <ceres/manifold.h>
 #include <ceres/normal_prior.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
 #include <glog/logging.h>
 
 #include <algorithm>
@@ -13,24 +16,6 @@
 #include "pipeline/contract/errors.h"
 
 namespace glint::bundle {
-
-std::unique_ptr<ceres::CostFunction> MakeCost(CameraModel model, const Eigen::Matrix3d& rotation0,
-                                              const BundleCorner& corner) {
-  auto functor = std::make_unique<ReprojectionError>(model, rotation0, corner);
-  using ceres::AutoDiffCostFunction;
-  switch (CameraParameterNames(model).size()) {
-    case 3:
-      return std::make_unique<AutoDiffCostFunction<ReprojectionError, 2, 3, 6>>(functor.release());
-    case 4:
-      return std::make_unique<AutoDiffCostFunction<ReprojectionError, 2, 4, 6>>(functor.release());
-    case 5:
-      return std::make_unique<AutoDiffCostFunction<ReprojectionError, 2, 5, 6>>(functor.release());
-    case 8:
-      return std::make_unique<AutoDiffCostFunction<ReprojectionError, 2, 8, 6>>(functor.release());
-    default:
-      return std::make_unique<AutoDiffCostFunction<ReprojectionError, 2, 12, 6>>(functor.release());
-  }
-}
 
 namespace {
 
@@ -71,6 +56,47 @@ void AddPrior(const Camera& camera, const std::vector<int>& free, double sigma_p
     weights(static_cast<long>(i), prior[i].first) = sigma_px * prior[i].second;
   }
   solver->AddResidualBlock(new ceres::NormalPrior(weights, ceres::Vector::Zero(n)), nullptr, block);
+}
+
+void AddBendPrior(double sigma_px, BoardBend* bend, ceres::Problem* solver) {
+  const ceres::Matrix weights = ceres::Matrix::Identity(2, 2) * (sigma_px / BendPriorSigma(*bend));
+  solver->AddResidualBlock(new ceres::NormalPrior(weights, ceres::Vector::Zero(2)), nullptr,
+                           bend->height_mm.data());
+}
+
+// The cost of every accepted inlier; returns which cameras have any.
+std::vector<bool> AddCorners(const BundleProblem& problem, bool bend_is_free,
+                             ceres::LossFunction* loss, State* state, ceres::Problem* solver) {
+  std::vector<bool> used(problem.cameras.size(), false);
+  for (size_t i = 0; i < problem.photos.size(); ++i) {
+    const BundlePhoto& photo = problem.photos[i];
+    PhotoState& photo_state = state->photos[i];
+    if (!photo_state.accepted) continue;
+    Camera& camera = state->cameras[photo.camera];
+    for (size_t k = 0; k < photo.corners.size(); ++k) {
+      if (!photo_state.inlier[k]) continue;
+      std::vector<double*> blocks = {camera.parameters.data(), photo_state.pose.data()};
+      if (bend_is_free) blocks.push_back(state->bend.height_mm.data());
+      solver->AddResidualBlock(
+          MakeCost(camera.model, photo_state.rotation0, photo.corners[k], state->bend, bend_is_free)
+              .release(),
+          loss, blocks);
+      used[photo.camera] = true;
+    }
+  }
+  return used;
+}
+
+ceres::Solver::Options SolverOptions(const BundleOptions& options) {
+  ceres::Solver::Options solver_options;
+  solver_options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver_options.num_threads = 1;
+  solver_options.max_num_iterations = options.max_iterations;
+  solver_options.function_tolerance = 1e-14;
+  solver_options.gradient_tolerance = 1e-14;
+  solver_options.parameter_tolerance = 1e-12;
+  solver_options.logging_type = ceres::SILENT;
+  return solver_options;
 }
 
 }  // namespace
@@ -133,20 +159,9 @@ void Solve(const BundleProblem& problem, const BundleOptions& options, Refine re
   ceres::Problem::Options problem_options;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem solver(problem_options);
-  std::vector<bool> used(problem.cameras.size(), false);
-  for (size_t i = 0; i < problem.photos.size(); ++i) {
-    const BundlePhoto& photo = problem.photos[i];
-    PhotoState& photo_state = state->photos[i];
-    if (!photo_state.accepted) continue;
-    Camera& camera = state->cameras[photo.camera];
-    for (size_t k = 0; k < photo.corners.size(); ++k) {
-      if (!photo_state.inlier[k]) continue;
-      solver.AddResidualBlock(
-          MakeCost(camera.model, photo_state.rotation0, photo.corners[k]).release(), loss.get(),
-          camera.parameters.data(), photo_state.pose.data());
-      used[photo.camera] = true;
-    }
-  }
+  const bool bend_is_free = options.bend && refine == Refine::kAll;
+  const std::vector<bool> used = AddCorners(problem, bend_is_free, loss.get(), state, &solver);
+  if (bend_is_free) AddBendPrior(sigma_px, &state->bend, &solver);
   for (size_t c = 0; c < used.size(); ++c) {
     if (!used[c]) continue;
     Camera& camera = state->cameras[c];
@@ -155,16 +170,8 @@ void Solve(const BundleProblem& problem, const BundleOptions& options, Refine re
     AddPrior(camera, FreeParameters(problem, options, static_cast<int>(c)), sigma_px, &solver,
              camera.parameters.data());
   }
-  ceres::Solver::Options solver_options;
-  solver_options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  solver_options.num_threads = 1;
-  solver_options.max_num_iterations = options.max_iterations;
-  solver_options.function_tolerance = 1e-14;
-  solver_options.gradient_tolerance = 1e-14;
-  solver_options.parameter_tolerance = 1e-12;
-  solver_options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
-  ceres::Solve(solver_options, &solver, &summary);
+  ceres::Solve(SolverOptions(options), &solver, &summary);
   if (!summary.IsSolutionUsable()) {
     throw ComputationError("the bundle adjustment failed: " + summary.message +
                            "; look at the corners of the photographs");

@@ -111,10 +111,29 @@ BundlePhoto Undistorted(const BundlePhoto& photo, const Camera& camera) {
   return out;
 }
 
+// Over all corners that were seen.
+BoardBend FlatBoard(const BundleProblem& problem) {
+  Eigen::Vector2d low(INFINITY, INFINITY), high(-INFINITY, -INFINITY);
+  for (const BundlePhoto& photo : problem.photos) {
+    for (const BundleCorner& corner : photo.corners) {
+      low = low.cwiseMin(corner.position_in_sample_mm);
+      high = high.cwiseMax(corner.position_in_sample_mm);
+    }
+  }
+  BoardBend bend;
+  if (!low.allFinite()) return bend;
+  bend.centre_mm = 0.5 * (low + high);
+  bend.half_size_mm = (0.5 * (high - low)).cwiseMax(1e-6);
+  return bend;
+}
+
 }  // namespace
+
+double BendPriorSigma(const BoardBend& bend) { return 0.1 * bend.half_size_mm.maxCoeff(); }
 
 State Start(const BundleProblem& problem, const BundleOptions& options) {
   State state;
+  state.bend = problem.bend ? *problem.bend : FlatBoard(problem);
   state.photos.resize(problem.photos.size());
   for (size_t i = 0; i < problem.photos.size(); ++i) {
     state.photos[i].inlier.assign(problem.photos[i].corners.size(), true);

@@ -42,7 +42,7 @@ TEST(ReprojectionError, DerivativesAgreeWithFiniteDifferences) {
     double residual[2];
     const double* parameters[] = {camera.data(), pose.data()};
     double* jacobians[] = {j_camera.data(), j_pose.data()};
-    const auto cost = bundle::MakeCost(model, start.rotation, corner);
+    const auto cost = bundle::MakeCost(model, start.rotation, corner, {}, false);
     ASSERT_TRUE(cost->Evaluate(parameters, residual, jacobians));
 
     const auto predicted = [&](const std::vector<double>& c, const std::vector<double>& p) {
@@ -82,7 +82,7 @@ TEST(ReprojectionError, DerivativesAgreeWithFiniteDifferences) {
 
 TEST(ReprojectionError, RefusesPointsBehindTheCamera) {
   const auto cost = bundle::MakeCost(CameraModel::kSimplePinhole, Eigen::Matrix3d::Identity(),
-                                     {0, {1, 2}, {3, 4}});
+                                     {0, {1, 2}, {3, 4}}, {}, false);
   const double camera[] = {1000, 500, 500}, pose[] = {0, 0, 0, 0, 0, -10};
   const double* parameters[] = {camera, pose};
   double residual[2];
