@@ -1,0 +1,27 @@
+// Public calibration sets that are no part of the repository; see GLINT_DATA.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calib/bundle/bundle.h"
+
+namespace glint::testing {
+
+// $GLINT_DATA, or the folder shared/data beside the repository; may not exist.
+std::filesystem::path DataFolder();
+
+std::vector<double> ReadNumbers(const std::filesystem::path& file);
+
+// Z. Zhang 1998: five images, his own corners (data1.txt … data5.txt, Model.txt).
+BundleProblem ZhangProblem(const std::filesystem::path& folder);
+
+// OpenCV's 13 photographs of a 9 × 6 chessboard by one camera of a pair ("left", "right"), with our
+// own corners.
+BundleProblem ChessboardProblem(const std::filesystem::path& folder, const std::string& side);
+
+// Two radial terms and two tangential, and k3: OpenCV's five terms of the publication.
+BundleOptions FiveTermOptions();
+
+}  // namespace glint::testing
