@@ -8,72 +8,26 @@
 #include "calib/board/board.h"
 #include "calib/bundle/residual_picture.h"
 #include "pipeline/contract/errors.h"
-#include "tests/calib/testing/synthetic_photo.h"
+#include "tests/calib/testing/board_scene.h"
 
 namespace glint {
 namespace {
 
+using testing::FrameBoard;
 using ::testing::HasSubstr;
-using testing::LookAt;
 using testing::Random;
+using testing::Scene;
 
-Board FrameBoard() {
-  Board board;
-  board.squares_x = board.squares_y = 12;
-  board.square_mm = 15;
-  board.marker_mm = 11;
-  board.window = BoardWindow{3, 3, 6, 6};
-  return board;
-}
-
-Camera Phone(CameraModel model) {
-  switch (model) {
-    case CameraModel::kSimpleRadial:
-      return {model, 4000, 3000, {3100, 2011, 1489, 0.04}};
-    case CameraModel::kRadial:
-      return {model, 4000, 3000, {3100, 2011, 1489, 0.06, -0.09}};
-    case CameraModel::kOpenCv:
-      return {model, 4000, 3000, {3100, 3105, 2011, 1489, 0.06, -0.09, 4e-4, -6e-4}};
-    default:
-      return {CameraModel::kFullOpenCv,
-              4000,
-              3000,
-              {3100, 3105, 2011, 1489, 0.2, 0.1, 4e-4, -6e-4, -0.02, 0.15, 0.05, 0.01}};
-  }
-}
-
-BundlePhoto Seen(const Camera& camera, const Rigid3& pose, double noise_px, Random* random) {
-  BundlePhoto photo;
-  for (const BoardCorner& corner : BoardCorners(FrameBoard())) {
-    const Eigen::Vector2d at = testing::Project(camera, pose, corner.position_in_sample_mm);
-    if (at.x() < 10 || at.y() < 10 || at.x() > camera.width_px - 10 ||
-        at.y() > camera.height_px - 10) {
-      continue;
-    }
-    photo.corners.push_back({corner.id, corner.position_in_sample_mm,
-                             at + noise_px * Eigen::Vector2d(random->Normal(), random->Normal())});
-  }
-  return photo;
-}
-
-struct Scene {
-  BundleProblem problem;
-  std::vector<Rigid3> poses;
-};
+Camera Phone(CameraModel model) { return testing::PhoneCamera(model); }
 
 Scene MakeScene(const Camera& camera, int photos, double noise_px, std::uint64_t seed,
                 double tilt_scale = 1) {
-  Random random(seed);
-  Scene scene;
-  scene.problem.cameras.push_back({camera.width_px, camera.height_px, {}});
-  for (int i = 0; i < photos; ++i) {
-    const Rigid3 pose = LookAt(260 + 8 * i, tilt_scale * (5 + 3 * i), 77 * i, 29 * i - 90,
-                               {random.Uniform(-10, 10), random.Uniform(-10, 10)});
-    scene.poses.push_back(pose);
-    scene.problem.photos.push_back(Seen(camera, pose, noise_px, &random));
-    scene.problem.photos.back().name = "photo" + std::to_string(i) + ".jpg";
-  }
-  return scene;
+  testing::SceneSettings settings;
+  settings.photos = photos;
+  settings.noise_px = noise_px;
+  settings.seed = seed;
+  settings.tilt_scale = tilt_scale;
+  return testing::MakeScene(camera, settings);
 }
 
 class Models : public ::testing::TestWithParam<CameraModel> {};

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <fstream>
 
 #include "calib/board/board.h"
@@ -10,11 +9,6 @@
 #include "pipeline/contract/image.h"
 
 namespace glint::testing {
-
-std::filesystem::path DataFolder() {
-  if (const char* data = std::getenv("GLINT_DATA")) return data;
-  return std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data";
-}
 
 std::vector<double> ReadNumbers(const std::filesystem::path& file) {
   std::ifstream stream(file);

@@ -1,4 +1,4 @@
-// Public calibration sets that are no part of the repository; see GLINT_DATA.
+// Public calibration sets that are no part of the repository; see tests/support/data_folder.h.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,6 @@
 #include "calib/bundle/bundle.h"
 
 namespace glint::testing {
-
-// $GLINT_DATA, or the folder shared/data beside the repository; may not exist.
-std::filesystem::path DataFolder();
 
 std::vector<double> ReadNumbers(const std::filesystem::path& file);
 
