@@ -27,8 +27,9 @@ std::string BoardInOneLine(const Board& board) {
 }  // namespace
 
 void AddCalibOptions(OptionSet* set, CalibOptions* options) {
-  set->AddChoice("model", &options->model, {"SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV"},
-                 "COLMAP's camera model");
+  set->AddChoice("model", &options->model,
+                 {"auto", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV"},
+                 "COLMAP's camera model; auto: the simplest that explains photos held out");
   set->AddChoice(
       "cameras", &options->cameras, {"auto", "one", "each"},
       "auto: photos of the same size and EXIF focal length share their intrinsics; one: all "
@@ -37,6 +38,11 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   set->Add("fix-intrinsics", &options->fix_intrinsics,
            "manifest of another calibration whose intrinsics are taken as they are",
            Invalidates::kNo);  // its content is an input, and the place of the file tells nothing
+  set->Add("library", &options->library,
+           "folder of calib manifests: a camera found there by EXIF keeps its intrinsics",
+           Invalidates::kNo);  // likewise
+  set->AddChoice("board-shape", &options->board_shape, {"flat", "bent"},
+                 "bent: how far the board rises in its middle is solved for");
   set->AddRange("reject-sigmas", &options->reject_sigmas, 2, 1000,
                 "corners farther off than this many robust standard deviations are rejected");
   set->AddRange("min-reject-px", &options->min_reject_px, 0, 1000,
@@ -57,6 +63,7 @@ BundleOptions BundleOptionsOf(const CalibOptions& options) {
   BundleOptions bundle;
   bundle.model = CameraModelFromName(options.model).value_or(CameraModel::kOpenCv);
   bundle.hold = options.hold;
+  bundle.bend = options.board_shape == "bent";
   bundle.reject_sigmas = options.reject_sigmas;
   bundle.min_reject_px = options.min_reject_px;
   bundle.min_corners = options.min_corners;

@@ -12,10 +12,13 @@
 namespace glint {
 
 struct CalibOptions {
-  std::string model = "OPENCV";          // SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV
+  // SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV; auto: chosen, see validation/model_choice.h
+  std::string model = "OPENCV";
   std::string cameras = "auto";          // auto, one, each: see camera_groups.h
   std::vector<std::string> hold;         // distortion parameters held at 0
   std::filesystem::path fix_intrinsics;  // manifest of another calibration; empty: estimate
+  std::filesystem::path library;         // see phone_library.h; empty: none
+  std::string board_shape = "flat";      // flat; bent: two unknowns, see BoardBend
   double reject_sigmas = 5;              // see BundleOptions
   double min_reject_px = 0.5;
   int min_corners = 6;

@@ -12,6 +12,7 @@
 #include "calib/camera/orientation.h"
 #include "calib/capture/capture_light.h"
 #include "calib/capture/guide_capture.h"
+#include "calib/capture/phone_library.h"
 #include "calib/guidance/coverage_picture.h"
 #include "calib/guidance/polar_picture.h"
 #include "pipeline/contract/board_file.h"
@@ -45,11 +46,46 @@ void TakeIntrinsics(const CalibOptions& options, BundleProblem* problem, BundleO
   }
 }
 
-BundleResult Adjust(const Capture& capture, const CalibOptions& options, BundleProblem problem) {
+// Intrinsics from the library, when it knows every camera; otherwise all are solved for.
+void LookUpIntrinsics(const CalibOptions& options, const CalibSummary& summary,
+                      BundleProblem* problem, BundleOptions* bundle) {
+  std::vector<Camera> known;
+  for (const CameraGroup& group : summary.groups.groups) {
+    const DetectedPhoto& photo = summary.photos[group.photos[0]];
+    const auto found = FindPhone(options.library, {photo.camera_model, photo.focal_length_35mm,
+                                                   group.width_px, group.height_px});
+    if (!found || (!known.empty() && known[0].model != found->camera.model)) {
+      spdlog::info(
+          "{} does not know the camera '{}' at {}x{} pixels; its intrinsics are solved for",
+          options.library.string(), photo.camera_model, group.width_px, group.height_px);
+      return;
+    }
+    spdlog::info("intrinsics of '{}' are those of {}", photo.camera_model, found->file.string());
+    known.push_back(found->camera);
+  }
+  for (size_t c = 0; c < known.size(); ++c) problem->cameras[c].known = known[c];
+  if (!known.empty()) bundle->model = known[0].model;
+}
+
+// Fills summary->bundle and, unless this is a quick look, summary->trust.
+void Adjust(const Capture& capture, const CalibOptions& options, BundleProblem problem,
+            CalibSummary* summary) {
   BundleOptions bundle = BundleOptionsOf(options);
-  if (!options.fix_intrinsics.empty()) TakeIntrinsics(options, &problem, &bundle);
+  if (!options.fix_intrinsics.empty()) {
+    TakeIntrinsics(options, &problem, &bundle);
+  } else if (!options.library.empty()) {
+    LookUpIntrinsics(options, *summary, &problem, &bundle);
+  }
+  const bool quick = options.quick_px > 0;
+  const bool given = !problem.cameras.empty() && problem.cameras[0].known;
   try {
-    return AdjustBundle(problem, bundle);
+    std::optional<ModelChoice> choice;
+    if (options.model == "auto" && !given && !quick) choice = ChooseModel(problem, bundle);
+    if (choice) bundle = WithModel(bundle, choice->model);
+    summary->bundle = AdjustBundle(problem, bundle);
+    if (quick) return;
+    summary->trust = AssessTrust(capture, problem, bundle, summary->bundle);
+    summary->trust.choice = std::move(choice);
   } catch (const UserError& error) {
     throw UserError(capture.file.string() + ": " + error.what());
   }
@@ -152,6 +188,7 @@ void WriteOutputs(const CalibSummary& summary, Stage* stage) {
              ResidualPicture(summary.bundle, static_cast<int>(c)));
   }
   WriteLightPicture(summary, stage);
+  WriteTrustPictures(summary.bundle, summary.trust, stage);
   WriteFileAtomically(stage->Output("residuals.json"), ResidualsOf(summary).dump(1) + "\n");
   WriteFileAtomically(stage->Output("guidance_views.svg"), PolarPictureSvg(summary.guidance));
   WritePng(stage->Output("guidance_coverage.png"), CoveragePicture(summary.guidance));
@@ -171,6 +208,9 @@ std::vector<std::filesystem::path> CalibInputs(const Capture& capture,
   for (const std::string& name : capture.board_photos) inputs.push_back(capture.folder / name);
   if (!capture.board_file.empty()) inputs.push_back(capture.folder / capture.board_file);
   if (!options.fix_intrinsics.empty()) inputs.push_back(options.fix_intrinsics);
+  if (!options.library.empty()) {
+    for (const auto& file : LibraryFiles(options.library)) inputs.push_back(file);
+  }
   return inputs;
 }
 
@@ -188,7 +228,7 @@ void SolveCapture(const Capture& capture, const CalibOptions& options,
   summary->photo_index.clear();
   BundleProblem problem = MakeProblem(summary->photos, summary->groups, &summary->photo_index);
   for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
-  summary->bundle = Adjust(capture, options, std::move(problem));
+  Adjust(capture, options, std::move(problem), summary);
   WarnOfUncertainty(summary->bundle);
   FillPhotos(capture, summary);
   FillLight(capture, options, summary);

@@ -8,6 +8,7 @@
 #include "calib/capture/calib_options.h"
 #include "calib/capture/camera_groups.h"
 #include "calib/capture/detect_photos.h"
+#include "calib/capture/trust.h"
 #include "calib/guidance/verdict.h"
 #include "calib/light/light.h"
 #include "calib/light/power.h"
@@ -28,6 +29,7 @@ struct CalibSummary {
   std::vector<DetectedPhoto> photos;
   CameraGroups groups;
   BundleResult bundle;              // of the stored pictures
+  Trust trust;                      // in that result
   std::vector<size_t> photo_index;  // which of `photos` each photo of `bundle` is
   std::vector<RejectedPhoto> rejected;
   LightEstimate light;       // photos as calibration.photos; known: the board told it

@@ -70,8 +70,11 @@ Json MetricsOf(const CalibSummary& summary) {
   metrics["corners"] = summary.bundle.corners;
   metrics["inliers"] = summary.bundle.inliers;
   metrics["cameras"] = Json::array();
-  for (const CameraEstimate& camera : summary.bundle.cameras) {
-    metrics["cameras"].push_back(CameraMetrics(camera));
+  for (size_t c = 0; c < summary.bundle.cameras.size(); ++c) {
+    metrics["cameras"].push_back(CameraMetrics(summary.bundle.cameras[c]));
+    const DetectedPhoto& photo = summary.photos[summary.groups.groups[c].photos[0]];
+    metrics["cameras"].back()["exif_camera"] = photo.camera_model;
+    metrics["cameras"].back()["focal_length_35mm"] = photo.focal_length_35mm;
   }
   metrics["photos"] = Json::array();
   for (size_t i = 0; i < summary.bundle.photos.size(); ++i) {
@@ -82,6 +85,7 @@ Json MetricsOf(const CalibSummary& summary) {
   for (const RejectedPhoto& photo : summary.rejected) {
     metrics["rejected_photos"].push_back({{"photo", photo.name}, {"reason", photo.reason}});
   }
+  AddTrustMetrics(summary.bundle, summary.trust, &metrics);
   metrics["light"] = LightMetrics(summary);
   metrics["guidance"] = ToJson(summary.guidance);
   return metrics;
@@ -101,6 +105,7 @@ Json ResidualsOf(const CalibSummary& summary) {
     }
     json["photos"][photo.name] = corners;
   }
+  AddTrustResiduals(summary.bundle, summary.trust, &json);
   return json;
 }
 
@@ -119,7 +124,8 @@ std::string TextOf(const CalibSummary& summary) {
   for (const RejectedPhoto& photo : summary.rejected) {
     text += fmt::format("  left out: {}: {}\n", photo.name, photo.reason);
   }
-  return text + LightText(summary) + TextOf(summary.guidance);
+  return text + TextOf(summary.bundle, summary.trust) + LightText(summary) +
+         TextOf(summary.guidance);
 }
 
 }  // namespace glint

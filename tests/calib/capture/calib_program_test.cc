@@ -158,6 +158,30 @@ TEST_F(CalibProgram, CalibratesTheSameForAnyThreadCountAndPlace) {
   EXPECT_THAT(Calibrate(a, "--light camera").output, HasSubstr("up to date"));
 }
 
+TEST_F(CalibProgram, SaysHowFarTheResultCanBeTrusted) {
+  const fs::path capture = Copy("trust");
+  const fs::path library = capture / "phones";
+  fs::create_directories(library);
+  const Result result =
+      Calibrate(capture, "--model auto --board-shape bent --library " + library.string());
+  ASSERT_EQ(result.code, 0) << result.output;
+  for (const char* words :
+       {"does not know the camera", "model: ", "at the sample: places are known",
+        "odd/even photographs, camera 0", "board: rises by"}) {
+    EXPECT_THAT(result.output, HasSubstr(words));
+  }
+  const std::string manifest = ReadText(capture / "glint/calib/manifest.json");
+  for (const char* field : {"projection_uncertainty", "sample_uncertainty", "cross_validation",
+                            "model_choice", "board_bend", "exif_camera"}) {
+    EXPECT_THAT(manifest, HasSubstr(field));
+  }
+  for (const char* picture : {"projection_camera0.png", "odd_even_camera0.png",
+                              "residuals_by_place.png", "residuals_by_photo_camera0.png"}) {
+    EXPECT_TRUE(fs::exists(capture / "glint/calib" / picture)) << picture;
+  }
+  EXPECT_THAT(ReadText(capture / "glint/calib/residuals.json"), HasSubstr("row_motion_share"));
+}
+
 TEST_F(CalibProgram, NamesPhotosWithoutTheBoard) {
   const fs::path capture = Copy("noboard", true);
   const GrayImage gray{640, 480, std::vector<unsigned char>(640 * 480, 120)};
