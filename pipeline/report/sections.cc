@@ -94,6 +94,12 @@ std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
                             {ManifestLink("calib"), std::string("metrics.") + name}, "px");
       break;
     }
+    if (metrics.contains("sample_uncertainty") && metrics["sample_uncertainty"].is_object() &&
+        metrics["sample_uncertainty"].contains("sigma_mm")) {
+      figures +=
+          HeadFigure("places on the sample known to ±", metrics["sample_uncertainty"]["sigma_mm"],
+                     {ManifestLink("calib"), "metrics.sample_uncertainty.sigma_mm"}, "mm");
+    }
   }
   for (const auto& [name, label] : {std::pair{"fitted", "fitted photographs"},
                                     std::pair{"kept_back", "photographs kept back"}}) {
