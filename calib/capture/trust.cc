@@ -47,7 +47,7 @@ Json ValidationJson(const Trust& trust) {
   const CrossValidation& validation = trust.validation;
   if (!validation.problem.empty()) return {{"problem", validation.problem}};
   Json json = {{"held_out_rms_px", validation.held_out_rms_px},
-               {"trusted", validation.ratio() <= kTrustedRatio},
+               {"trusted", validation.trusted()},
                {"cameras", Json::array()}};
   for (const CameraDifference& camera : validation.cameras) {
     json["cameras"].push_back({{"camera", camera.camera},
@@ -118,7 +118,7 @@ std::string ValidationText(const CrossValidation& validation) {
         "odd/even photographs, camera {}: projections differ by {:.3f} px RMS, predicted {:.3f} "
         "(ratio {:.2f})",
         camera.camera, camera.rms_px, camera.predicted_px, camera.ratio());
-    text += camera.ratio() <= kTrustedRatio
+    text += camera.trusted()
                 ? ": the uncertainties can be trusted\n"
                 : fmt::format(
                       ": not noise but the model of lens, board or shutter limits this "

@@ -118,6 +118,11 @@ double CrossValidation::ratio() const {
   return largest;
 }
 
+bool CrossValidation::trusted() const {
+  return std::all_of(cameras.begin(), cameras.end(),
+                     [](const CameraDifference& camera) { return camera.trusted(); });
+}
+
 BundleProblem Accepted(const BundleProblem& problem, const BundleResult& result, int parity) {
   BundleProblem out = problem;
   std::vector<int> count(problem.cameras.size(), 0);

@@ -20,6 +20,11 @@
 
 namespace glint {
 
+// Above this ratio of difference and prediction the model, not the noise, limits the calibration …
+inline constexpr double kTrustedRatio = 2;
+// … unless they differ by less than any corner is found to.
+inline constexpr double kNegligible_px = 0.02;
+
 struct CameraDifference {
   int camera = 0;
   ImageGrid grid;
@@ -28,10 +33,8 @@ struct CameraDifference {
   double rms_px = 0;                           // of the difference, where corners were seen
   double predicted_px = 0;                     // likewise
   double ratio() const { return predicted_px > 0 ? rms_px / predicted_px : 0; }
+  bool trusted() const { return ratio() <= kTrustedRatio || rms_px < kNegligible_px; }
 };
-
-// Above this ratio of difference and prediction the model, not the noise, limits the calibration.
-inline constexpr double kTrustedRatio = 2;
 
 struct CrossValidation {
   std::string problem;                    // why there is none; empty: there is
@@ -40,6 +43,7 @@ struct CrossValidation {
   std::vector<double> held_out_px2;
   double held_out_rms_px = 0;
   double ratio() const;  // the largest of the cameras
+  bool trusted() const;  // all of them
 };
 
 // `result` solves `problem` under `options`; its inliers are used. At least four photographs of a

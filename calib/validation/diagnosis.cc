@@ -14,8 +14,9 @@
 namespace glint {
 namespace {
 
-constexpr double kBentSigmas = 4;       // a height beyond this many standard deviations …
-constexpr double kBentResidual = 0.97;  // … that takes this share of the residual's length or less
+// A height beyond this many standard deviations, and this share of the board's size (half a sheet's
+// thickness), which leaves this share of the residual or less.
+constexpr double kBentSigmas = 4, kBentShare = 0.0003, kBentResidual = 0.97;
 
 struct Normal {
   Eigen::Vector2d position;
@@ -70,8 +71,10 @@ std::optional<BundleResult> TrialWithBend(const BundleProblem& problem, BundleOp
 }
 
 bool Significant(const BoardBend& bend) {
+  const double least_mm = kBentShare * 2 * bend.half_size_mm.maxCoeff();
   for (int i = 0; i < 2; ++i) {
-    if (std::abs(bend.height_mm[i]) > kBentSigmas * std::sqrt(bend.covariance(i, i))) return true;
+    const double sigma_mm = std::sqrt(bend.covariance(i, i));
+    if (std::abs(bend.height_mm[i]) > std::max(least_mm, kBentSigmas * sigma_mm)) return true;
   }
   return false;
 }
@@ -134,42 +137,76 @@ std::string Listed(const BundleResult& result, const std::vector<size_t>& photos
   return text;
 }
 
+std::string MotionInWords(const BundleResult& result, const std::vector<size_t>& moved,
+                          size_t accepted, bool many, double largest_px) {
+  if (many) {
+    return fmt::format(
+        "in {} of {} photographs residuals vary smoothly over the picture, up to {:.2f} px RMS: "
+        "the model of the lens has too few terms (--model auto), the board has another shape, or "
+        "all were taken in motion",
+        moved.size(), accepted, largest_px);
+  }
+  return fmt::format(
+      "in {} of {} photographs ({}) residuals vary smoothly over the picture as of a phone or "
+      "board that moves while it is read (rolling shutter), up to {:.2f} px RMS; hold still, or "
+      "use more light",
+      moved.size(), accepted, Listed(result, moved), largest_px);
+}
+
+std::string BlurInWords(const BundleResult& result, const Diagnosis& diagnosis,
+                        const std::vector<size_t>& lined, size_t accepted) {
+  const PhotoPattern& worst = diagnosis.photos[lined[0]];
+  return fmt::format(
+      "in {} of {} photographs ({}) corners scatter along one direction ({:.0f} degrees in the "
+      "first, {:.1f} times as far as across): blurred by motion",
+      lined.size(), accepted, Listed(result, lined), worst.axis_deg,
+      worst.mean_length_px / std::max(worst.across_px, 1e-9));
+}
+
+// Photographs whose residuals a motion explains. A hand shakes now and then: it must stand out from
+// the others, and what most of them show is another fault (`many`).
+std::vector<size_t> Moved(const std::vector<PhotoPattern>& photos, double usual_effect_px,
+                          size_t accepted, bool* many) {
+  constexpr size_t kLeastMany = 3;
+  constexpr double kAboveUsual = 2;
+  std::vector<size_t> smooth, moved;
+  for (size_t i = 0; i < photos.size(); ++i) {
+    if (!photos[i].moved_while_read) continue;
+    smooth.push_back(i);
+    if (photos[i].row_motion_px > kAboveUsual * usual_effect_px) moved.push_back(i);
+  }
+  *many = smooth.size() >= kLeastMany && 2 * smooth.size() > accepted;
+  return *many ? smooth : moved;
+}
+
 void LookForMotion(const BundleResult& result, Diagnosis* out) {
-  std::vector<double> lengths;
-  int accepted = 0;
+  std::vector<double> lengths, effects;
   for (size_t i = 0; i < result.photos.size(); ++i) {
     if (!result.photos[i].rejected.empty()) continue;
-    lengths.push_back(PatternOf(result, i).mean_length_px);
-    ++accepted;
+    const PhotoPattern pattern = PatternOf(result, i);
+    lengths.push_back(pattern.mean_length_px);
+    effects.push_back(pattern.row_motion_px);
   }
-  const double usual = Median(std::move(lengths));
-  std::vector<size_t> moved, lined;
-  double largest_px = 0;
+  const size_t accepted = lengths.size();
+  const double usual_px = Median(std::move(lengths)), usual_effect_px = Median(std::move(effects));
+  std::vector<size_t> lined;
   for (size_t i = 0; i < result.photos.size(); ++i) {
-    out->photos.push_back(result.photos[i].rejected.empty() ? PatternOf(result, i, usual)
+    out->photos.push_back(result.photos[i].rejected.empty() ? PatternOf(result, i, usual_px)
                                                             : PhotoPattern());
-    const PhotoPattern& pattern = out->photos.back();
-    if (pattern.moved_while_read) {
-      moved.push_back(i);
-      largest_px = std::max(largest_px, pattern.row_motion_px);
-    }
-    if (pattern.scattered_on_a_line) lined.push_back(i);
+    if (out->photos.back().scattered_on_a_line) lined.push_back(i);
+  }
+  bool many = false;
+  const std::vector<size_t> moved = Moved(out->photos, usual_effect_px, accepted, &many);
+  for (PhotoPattern& pattern : out->photos) pattern.moved_while_read = false;
+  double largest_px = 0;
+  for (const size_t i : moved) {
+    out->photos[i].moved_while_read = !many;
+    largest_px = std::max(largest_px, out->photos[i].row_motion_px);
   }
   if (!moved.empty()) {
-    out->words.push_back(fmt::format(
-        "in {} of {} photographs ({}) residuals grow from row to row as of a phone or board that "
-        "moves while the picture is read (rolling shutter), up to {:.2f} px RMS; hold still, or "
-        "use more light",
-        moved.size(), accepted, Listed(result, moved), largest_px));
+    out->words.push_back(MotionInWords(result, moved, accepted, many, largest_px));
   }
-  if (!lined.empty()) {
-    const PhotoPattern& worst = out->photos[lined[0]];
-    out->words.push_back(fmt::format(
-        "in {} of {} photographs ({}) corners scatter along one direction ({:.0f} degrees in the "
-        "first, {:.1f} times as far as across): blurred by motion",
-        lined.size(), accepted, Listed(result, lined), worst.axis_deg,
-        worst.mean_length_px / std::max(worst.across_px, 1e-9)));
-  }
+  if (!lined.empty()) out->words.push_back(BlurInWords(result, *out, lined, accepted));
 }
 
 // Corners that are printed elsewhere than described: offsets in the plane beyond what noise gives.

@@ -91,10 +91,11 @@ PhotoPattern PatternOf(const BundleResult& result, size_t photo, double usual_le
   out.row_motion_share = rows.share;
   out.row_motion_f = rows.f;
   out.column_motion_share = columns.share;
-  // What the rows leave unexplained is clearly less than what the columns leave.
+  // A motion along columns must not explain clearly more. It often explains as much: a board seen
+  // from the front is sheared by both alike.
   out.moved_while_read = rows.f > kLeastF && rows.share > kLeastShare &&
                          rows.effect_px > kLeastEffect_px &&
-                         1 - rows.share < 0.8 * (1 - columns.share);
+                         1 - rows.share < 1.1 * (1 - columns.share);
   Eigen::MatrixXd rest = residuals.values;
   if (out.moved_while_read) rest -= rows.fitted;
   Axes(rest, &out);

@@ -3,7 +3,8 @@
 // Rolling shutter or a phone that moves while the rows are read: the pose changes by a small motion
 // m from the first row to the last, so that a corner at row y is off by J m (y − H/2)/H, with J the
 // image's derivative by the pose. m is fitted to the residuals, beside the pose itself; its effect
-// must stand out by an F-test and against the same fit with columns, which no shutter follows.
+// must stand out by an F-test, and the same fit with columns, which no shutter follows, must not
+// explain more. A wrong model of the lens looks alike, but in most photographs (see diagnosis.cc).
 // A blur by motion scatters corners along one direction: the axes of the residuals' covariance.
 #pragma once
 
@@ -23,7 +24,7 @@ struct PhotoPattern {
   double row_motion_share = 0;       // of the residuals' squares that it explains, in [0, 1]
   double row_motion_f = 0;           // F of that fit: six unknowns
   double column_motion_share = 0;    // the same for columns
-  bool moved_while_read = false;     // rolling shutter, or the board moved
+  bool moved_while_read = false;     // rolling shutter, or phone or board moved
   bool scattered_on_a_line = false;  // a motion blur
 };
 

@@ -15,6 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::MakeScene;
+using ::testing::Not;
 using testing::PhoneCamera;
 using testing::SceneSettings;
 
@@ -47,6 +48,14 @@ TEST(Diagnosis, FindsNothingInGoodPhotographs) {
     settings.seed = seed;
     EXPECT_THAT(Diagnose(settings).diagnosis.words, IsEmpty()) << seed;
   }
+}
+
+TEST(Diagnosis, FindsNothingInExactCorners) {
+  SceneSettings settings;
+  settings.noise_px = 0;
+  const auto [result, diagnosis] = Diagnose(settings);
+  EXPECT_LT(result.rms_px, 1e-6);
+  EXPECT_THAT(diagnosis.words, IsEmpty());
 }
 
 TEST(Diagnosis, FindsABentBoardAndItsHeights) {
@@ -94,6 +103,22 @@ TEST(Diagnosis, FindsPhotographsReadWhileThePhoneMoved) {
   EXPECT_THAT(Found(diagnosis, &PhotoPattern::moved_while_read), ElementsAre(2, 7));
   ASSERT_THAT(diagnosis.words, Not(IsEmpty()));
   EXPECT_THAT(diagnosis.words[0], HasSubstr("2 of 12 photographs (photo2.jpg, photo7.jpg)"));
+  EXPECT_THAT(diagnosis.words[0], HasSubstr("rolling shutter"));
+}
+
+// A lens with fewer terms than it has leaves smooth residuals in all photographs, which must not be
+// put down to motion.
+TEST(Diagnosis, DoesNotTakeAPoorModelForMotion) {
+  Camera camera = PhoneCamera(CameraModel::kOpenCv);
+  camera.parameters[4] = 0.2;
+  camera.parameters[5] = -0.5;
+  BundleOptions options;
+  options.model = CameraModel::kSimpleRadial;
+  const auto problem = MakeScene(camera, {}).problem;
+  const Diagnosis diagnosis = glint::Diagnose(problem, options, AdjustBundle(problem, options));
+  EXPECT_THAT(Found(diagnosis, &PhotoPattern::moved_while_read), IsEmpty());
+  ASSERT_THAT(diagnosis.words, Not(IsEmpty()));
+  EXPECT_THAT(diagnosis.words[0], HasSubstr("--model auto"));
 }
 
 TEST(Diagnosis, FindsThePhotographBlurredByMotion) {
