@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -89,6 +90,13 @@ std::vector<Published> LeftIntrinsics(const BundleResult& result) {
 
 class LeftCamera : public ::testing::Test {
  protected:
+  // The board is looked for once a process: that takes seconds.
+  const BundleProblem& Problem(const std::string& side) {
+    static std::map<std::string, BundleProblem> problems;
+    auto& problem = problems[side];
+    if (problem.photos.empty()) problem = testing::ChessboardProblem(folder_, side);
+    return problem;
+  }
   void SetUp() override {
     if (!fs::exists(folder_)) GTEST_SKIP() << "no real data";
   }
@@ -112,7 +120,7 @@ std::vector<BundleCorner> OpenCvCorners(const fs::path& file) {
 }
 
 TEST_F(LeftCamera, TheEstimationAgreesWithThePublishedIntrinsics) {
-  BundleProblem problem = testing::ChessboardProblem(folder_, "left");
+  BundleProblem problem = Problem("left");
   for (BundlePhoto& photo : problem.photos) photo.corners = OpenCvCorners(folder_ / photo.name);
   options_.reject = false;  // as published
   const BundleResult result = AdjustBundle(problem, options_);
@@ -123,7 +131,7 @@ TEST_F(LeftCamera, TheEstimationAgreesWithThePublishedIntrinsics) {
 // Our own corners leave less than half of the published residual; the intrinsics move by what the
 // published corners' errors explain.
 TEST_F(LeftCamera, OurCornersAgreeAndFitBetter) {
-  const BundleProblem problem = testing::ChessboardProblem(folder_, "left");
+  const BundleProblem& problem = Problem("left");
   for (const BundlePhoto& photo : problem.photos) EXPECT_GE(photo.corners.size(), 50u);
   const BundleResult result = AdjustBundle(problem, options_);
   EXPECT_TRUE(PrintTable("OpenCV left, our corners", result, LeftIntrinsics(result), 3));
@@ -134,7 +142,7 @@ TEST_F(LeftCamera, OurCornersAgreeAndFitBetter) {
 // named. Zhang's five images are too few for it.
 TEST_F(LeftCamera, OddAndEvenPhotographsAgree) {
   for (const std::string side : {"left", "right"}) {
-    const BundleProblem problem = testing::ChessboardProblem(folder_, side);
+    const BundleProblem& problem = Problem(side);
     for (const bool bend : {false, true}) {
       BundleOptions options;
       options.bend = bend;
