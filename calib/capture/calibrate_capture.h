@@ -18,7 +18,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 4;
+inline constexpr int kCalibVersion = 5;
 
 struct RejectedPhoto {
   std::string name, reason;

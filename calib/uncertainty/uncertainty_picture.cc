@@ -137,8 +137,8 @@ Image MapPicture(const Camera& camera, const ImageGrid& grid, const std::vector<
 
 Image UncertaintyPicture(const BundleResult& result, int camera, const UncertaintyMap& map) {
   const std::string text = fmt::format(
-      "camera {}: projection's standard deviation, px, worst direction, at {:.0f} mm: centre "
-      "{:.3f}, median {:.3f}, largest {:.3f}; dots: corners",
+      "camera {}: standard deviation of the projection, px, at {:.0f} mm: centre {:.3f}, median "
+      "{:.3f}, largest {:.3f}",
       camera, map.depth_mm, map.centre_px, map.median_px, map.largest_px);
   return MapPicture(result.cameras[camera].camera, map.grid, map.sigma_px,
                     SeenCorners(result, camera), text);
