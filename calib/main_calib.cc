@@ -4,7 +4,9 @@
 #include <chrono>
 
 #include "calib/capture/calibrate_capture.h"
+#include "calib/capture/export_colmap.h"
 #include "calib/capture/guide_capture.h"
+#include "calib/capture/pose_source.h"
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/program.h"
@@ -26,29 +28,48 @@ ProgramResult Check(const Capture& capture, const CalibOptions& options,
 
 ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOptions* options,
                   bool check, const CommonOptions& common) {
-  const Capture capture = ReadCapture(folder);
+  Capture capture = ReadCapture(folder);
   set->LoadToml(capture.file, "calib");
-  if (!capture.has_board) {
+  const PoseSource source = PoseSourceOf(*options);
+  if (source == PoseSource::kBoard && !capture.has_board) {
     throw UserError(capture.file, "board", "no such table",
-                    "describe the board that lies round the sample, or import a rectified set and "
-                    "go on with: glint run --from fit");
+                    "describe the board that lies round the sample, give --poses colmap, or import "
+                    "a rectified set and go on with: glint run --from fit");
   }
   if (capture.photos.empty()) {
     throw UserError(capture.file, "photos", "no photographs",
                     "give files = [\"photos/*.jpg\"] in [photos]");
   }
-  if (check) return Check(capture, *options, common);
-  CalibTask task = ResolveTask(capture);
+  if (check) {
+    if (!capture.has_board) {
+      throw UserError(capture.file, "board", "no such table",
+                      "a check looks for the board; run without --check");
+    }
+    return Check(capture, *options, common);
+  }
+  if (source != PoseSource::kBoard) {
+    CheckPoses(capture, *options);
+    capture.board_photos.clear();  // they show no sample
+  }
+  CalibTask task = ResolveTask(capture, *options);
   AddTask(set, &task);
   Stage stage(capture.work() / "calib", {"calib", kCalibVersion}, *set, common,
               CalibInputs(capture, *options));
   Json json = {{"stage", "calib"},
                {"up_to_date", stage.UpToDate()},
                {"manifest", stage.manifest_file().string()}};
-  if (stage.UpToDate()) return {stage.UpToDateText(), json};
-  const CalibSummary summary = CalibrateCapture(capture, *options, common, &stage);
-  json["metrics"] = MetricsOf(summary);
-  return {TextOf(summary), json};
+  std::string text = stage.UpToDateText();
+  if (!stage.UpToDate()) {
+    const CalibSummary summary = CalibrateCapture(capture, *options, common, &stage);
+    json["metrics"] = MetricsOf(summary);
+    text = TextOf(summary);
+  }
+  if (options->write == "colmap") {
+    const std::string exported = ExportColmap(capture, stage.manifest_file()).string();
+    json["exported"] = exported;
+    text += (text.ends_with("\n") ? "COLMAP model: " : "\nCOLMAP model: ") + exported;
+  }
+  return {text, json};
 }
 
 }  // namespace
@@ -67,10 +88,13 @@ int main(int argc, char** argv) {
           glint::Invalidates::kNo);
   const glint::ProgramInfo info{
       "glint-calib",
-      "Finds the board in each photograph and estimates intrinsics, poses and the flash's power.",
+      "Finds the board in each photograph and estimates intrinsics, poses and the flash's power; "
+      "or "
+      "takes poses and intrinsics from COLMAP.",
       GLINT_VERSION,
       "Examples:\n  glint calib wood\n  glint calib wood --model RADIAL --cameras one\n"
-      "  glint calib wood --check"};
+      "  glint calib wood --check\n  glint calib wood --poses colmap\n"
+      "  glint calib wood --poses colmap:wood/sparse/0\n  glint calib wood --export colmap"};
   return glint::RunProgram(argc, argv, info, &set, [&](const glint::CommonOptions& common) {
     return glint::Run(folder, &set, &options, check, common);
   });

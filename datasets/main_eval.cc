@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "datasets/evaluation/calibration_error.h"
 #include "datasets/evaluation/experiment_verbs.h"
@@ -10,6 +11,7 @@
 #include "datasets/evaluation/view_error.h"
 #include "datasets/synth/material_source.h"
 #include "pipeline/contract/calibration.h"
+#include "pipeline/contract/capture.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/rectified_set.h"
@@ -153,18 +155,58 @@ ProgramResult ReportCameras(const CalibrationErrors& errors) {
   return result;
 }
 
-int RunCameras(int argc, char** argv, const ProgramInfo& info) {
-  fs::path truth, estimate;
-  OptionSet options;
-  options.AddPositional("truth", &truth, "folder truth/ of a synthetic capture", true);
-  options.AddPositional("estimate", &estimate, "manifest.json of calib", true);
-  return RunProgram(argc, argv, info, &options, [&](const CommonOptions&) {
-    const fs::path facts_file = truth / "truth.json";
+fs::path ManifestIn(const fs::path& path) {
+  return fs::is_directory(path) ? path / "manifest.json" : path;
+}
+
+// What a calibration is held against: a synthetic capture's truth, or another calibration.
+struct Reference {
+  Calibration calibration;
+  Eigen::Vector2d sample_size_mm;
+};
+
+Reference ReadReference(const fs::path& path) {
+  const fs::path facts_file = path / "truth.json";
+  if (fs::exists(facts_file)) {
     const Json facts = Json::parse(ReadTextFile(facts_file), nullptr, false);
     const auto size = RequireNumbers(facts_file, facts, "truth", "sample_size_mm", 2);
-    const fs::path file = fs::is_directory(estimate) ? estimate / "manifest.json" : estimate;
-    return ReportCameras(CompareCalibrations(ReadCalibration(truth / "calib" / "manifest.json"),
-                                             ReadCalibration(file), {size[0], size[1]}));
+    return {ReadCalibration(path / "calib" / "manifest.json"), {size[0], size[1]}};
+  }
+  const fs::path file = ManifestIn(path);
+  Calibration calibration = ReadCalibration(file);
+  // CAPTURE/glint/calib/manifest.json
+  const Capture capture = ReadCapture(fs::absolute(file).parent_path().parent_path().parent_path());
+  return {std::move(calibration), {capture.sample_size_mm[0], capture.sample_size_mm[1]}};
+}
+
+int RunCameras(int argc, char** argv, const ProgramInfo& info) {
+  fs::path truth, estimate;
+  std::string align = "none";
+  OptionSet options;
+  options.AddPositional("truth", &truth,
+                        "folder truth/ of a synthetic capture, or manifest.json of calib", true);
+  options.AddPositional("estimate", &estimate, "manifest.json of calib", true);
+  options.AddChoice("align", &align, {"none", "similarity"},
+                    "similarity: move and scale the estimate's cameras onto the truth's first");
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions&) {
+    const Reference reference = ReadReference(truth);
+    Calibration calibration = ReadCalibration(ManifestIn(estimate));
+    Similarity3 moved;
+    if (align == "similarity") {
+      calibration = AlignCalibration(reference.calibration, calibration, &moved);
+    }
+    ProgramResult result = ReportCameras(
+        CompareCalibrations(reference.calibration, calibration, reference.sample_size_mm));
+    if (align == "none") return result;
+    const double angle_deg = Eigen::AngleAxisd(moved.rotation).angle() * 180 / std::numbers::pi;
+    result.json["alignment"] = {
+        {"scale", moved.scale},
+        {"rotation_deg", angle_deg},
+        {"translation_mm", {moved.translation.x(), moved.translation.y(), moved.translation.z()}}};
+    result.text += fmt::format(
+        "aligned by a similarity: scale {:.5f}, turned by {:.3f}°, moved by {:.3f} mm\n",
+        moved.scale, angle_deg, moved.translation.norm());
+    return result;
   });
 }
 
@@ -177,8 +219,10 @@ int main(int argc, char** argv) {
       {"views", "Renders views from a fit and compares them with the photographs.",
        "Example: glint-eval views cards/glint/refine cards/glint/rectify --views photo_07.jpg",
        RunViews},
-      {"cameras", "Compares a calibration with the truth of a synthetic capture.",
-       "Example: glint-eval cameras demo/truth demo/glint/calib/manifest.json", RunCameras}};
+      {"cameras", "Compares a calibration with the truth of a synthetic capture, or with another.",
+       "Examples:\n  glint-eval cameras demo/truth demo/glint/calib/manifest.json\n"
+       "  glint-eval cameras board/glint/calib colmap/glint/calib --align similarity",
+       RunCameras}};
   verbs.push_back(LightVerb());
   for (const Verb& verb : ExperimentVerbs()) verbs.push_back(verb);
   return RunVerb(argc, argv,

@@ -149,12 +149,14 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   std::vector<double> distance_mm{plan.nearest_mm, plan.farthest_mm};
   std::vector<double> flash_mm(plan.flash_offset_mm.begin(), plan.flash_offset_mm.end());
   std::vector<double> tint(plan.flash_tint.begin(), plan.flash_tint.end());
-  fs::path out, board_file;
+  std::string board;
+  fs::path out;
   OptionSet options;
   options.AddPositional("out", &out, "folder of the new capture", true);
   choice.AddTo(&options);
-  options.Add("board", &board_file,
-              "board.json of the board round the sample; none: a frame on A4");
+  options.Add("board", &board,
+              "board.json of the board round the sample (default: a frame on A4), or none: a "
+              "patterned table, for --poses colmap");
   options.AddRange("photos", &plan.photos, 1, 1000, "photographs; the first is about a top view");
   options.AddRange("megapixels", &plan.megapixels, 0.05, 60, "size of a photograph, 4:3");
   options.AddRange("sample-mm", &plan.sample_mm, 10, 1000, "side of the square sample");
@@ -186,7 +188,8 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
     if (distance_mm.size() != 2) {
       throw UserError("distance-mm: give two numbers, as in 270,330");
     }
-    if (!board_file.empty()) plan.board = ReadBoardFile(board_file).board;
+    plan.has_board = board != "none";
+    if (plan.has_board && !board.empty()) plan.board = ReadBoardFile(board).board;
     plan.seed = common.seed;
     capture.overwrite = common.force;
     plan.nearest_mm = distance_mm[0];

@@ -37,7 +37,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RectifyOp
   set->LoadToml(capture.file, "rectify");
   RectifyTask task = ResolveTask(capture, *options);
   AddTask(set, &task);
-  if (!capture.has_board && capture.photos.empty()) {
+  if (capture.imported()) {
     throw UserError(capture.file, "photos", "an imported capture, which is rectified already",
                     "go on with: glint run --from fit");
   }

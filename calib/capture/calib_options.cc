@@ -24,12 +24,33 @@ std::string BoardInOneLine(const Board& board) {
   return line;
 }
 
+std::string PosesInOneLine(const Capture& capture) {
+  const PosesTable& poses = capture.poses;
+  return fmt::format(
+      "size {} x {} mm, photo '{}', corners [{}], points [{}] {} mm, cameras [{}] {} mm, height {} "
+      "mm, origin [{}], x axis [{}]",
+      capture.sample_size_mm[0], capture.sample_size_mm[1], poses.photo,
+      fmt::join(poses.corners_px, " "), fmt::join(poses.points_px, " "), poses.points_mm,
+      fmt::join(poses.cameras, " "), poses.cameras_mm, poses.height_mm,
+      fmt::join(poses.origin_px, " "), fmt::join(poses.x_axis_px, " "));
+}
+
 }  // namespace
 
 void AddCalibOptions(OptionSet* set, CalibOptions* options) {
-  set->AddChoice("model", &options->model,
-                 {"auto", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV"},
-                 "COLMAP's camera model; auto: the simplest that explains photos held out");
+  // What the result depends on are the model's files, which are inputs, and the kind of source,
+  // which is in the task; the place of the folder tells nothing.
+  set->Add("poses", &options->poses,
+           "where poses and intrinsics come from: board; colmap (runs the program); colmap:DIR (a "
+           "COLMAP model)",
+           Invalidates::kNo);
+  set->AddChoice("export", &options->write, {"none", "colmap"},
+                 "also write the calibration for another program: colmap, to glint/colmap",
+                 Invalidates::kNo);
+  set->AddChoice(
+      "model", &options->model, {"auto", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV"},
+      "COLMAP's camera model; auto: the simplest that explains photos held out (of a board; "
+      "--poses colmap: OPENCV)");
   set->AddChoice(
       "cameras", &options->cameras, {"auto", "one", "each"},
       "auto: photos of the same size and EXIF focal length share their intrinsics; one: all "
@@ -55,6 +76,12 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
                  "board: flash position, lens fall-off, exposures and room light from the board's "
                  "white paper; camera: the light at the lens or at [light] offset_mm, exposures by "
                  "EXIF");
+  set->AddRange("plane-tolerance", &options->plane_tolerance, 1e-5, 0.2,
+                "--poses colmap: points this share of the cameras' distance off the sample's plane "
+                "are none of it");
+  set->AddRange("feature-px", &options->feature_px, 200, 20000,
+                "--poses colmap: features are looked for in a copy whose longer side is at most "
+                "this");
   set->AddRange("paper-reflectance", &options->paper_reflectance, 0.05, 1,
                 "of the board's white, from which the light's power is estimated");
 }
@@ -70,9 +97,12 @@ BundleOptions BundleOptionsOf(const CalibOptions& options) {
   return bundle;
 }
 
-CalibTask ResolveTask(const Capture& capture) {
+CalibTask ResolveTask(const Capture& capture, const CalibOptions& options) {
   CalibTask task;
-  task.board = BoardInOneLine(capture.board);
+  task.board = capture.has_board ? BoardInOneLine(capture.board) : "none";
+  const bool colmap = options.poses.starts_with("colmap");
+  task.poses = !colmap ? "board" : options.poses == "colmap" ? "colmap" : "model";
+  if (colmap) task.poses_frame = PosesInOneLine(capture);
   task.board_centre_mm = {capture.board.board_centre_in_sample_mm.x(),
                           capture.board.board_centre_in_sample_mm.y()};
   task.encoding = capture.encoding;
@@ -86,6 +116,8 @@ CalibTask ResolveTask(const Capture& capture) {
 
 void AddTask(OptionSet* set, CalibTask* task) {
   set->Add("board", &task->board, "from [board]");
+  set->Add("poses-from", &task->poses, "from --poses");
+  set->Add("poses-frame", &task->poses_frame, "from [poses]");
   set->Add("board-centre-mm", &task->board_centre_mm, "from [sample] centre_mm");
   set->Add("encoding", &task->encoding, "from [radiometry]");
   set->Add("light-offset-mm", &task->light_offset_mm, "from [light]");

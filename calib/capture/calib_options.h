@@ -12,6 +12,7 @@
 namespace glint {
 
 struct CalibOptions {
+  std::string poses = "board";  // board, colmap, colmap:DIR: see colmap_poses.h
   // SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV; auto: chosen, see validation/model_choice.h
   std::string model = "OPENCV";
   std::string cameras = "auto";          // auto, one, each: see camera_groups.h
@@ -19,11 +20,14 @@ struct CalibOptions {
   std::filesystem::path fix_intrinsics;  // manifest of another calibration; empty: estimate
   std::filesystem::path library;         // see phone_library.h; empty: none
   std::string board_shape = "flat";      // flat; bent: two unknowns, see BoardBend
+  std::string write = "none";            // none, colmap: see export_colmap.h
   double reject_sigmas = 5;              // see BundleOptions
   double min_reject_px = 0.5;
   int min_corners = 6;
   int detect_px = 1600;             // boards are looked for in a copy of this size
   std::string light = "board";      // or camera, see capture_light.h
+  double plane_tolerance = 0.005;   // COLMAP: see FrameOptions
+  int feature_px = 2000;            // COLMAP: features are looked for in a copy of this size
   double paper_reflectance = 0.85;  // of the board's white, for the light's power
   int quick_px = 0;  // no option: read photographs reduced to this for a quick look; 0: whole
 };
@@ -34,14 +38,15 @@ BundleOptions BundleOptionsOf(const CalibOptions& options);
 // The values of capture.toml that the result depends on. They enter the manifest as options, so
 // that a change of theirs makes the result stale and others do not.
 struct CalibTask {
-  std::string board;  // in one line
+  std::string board;               // in one line
+  std::string poses, poses_frame;  // where poses come from; [poses] in one line
   std::vector<double> board_centre_mm;
   std::string encoding;
   std::vector<double> light_offset_mm, light_power, ambient;
   std::vector<double> sample_mm, resolution_px;  // of the guidance
 };
 
-CalibTask ResolveTask(const Capture& capture);
+CalibTask ResolveTask(const Capture& capture, const CalibOptions& options);
 void AddTask(OptionSet* set, CalibTask* task);
 
 }  // namespace glint

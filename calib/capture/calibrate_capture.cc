@@ -11,8 +11,10 @@
 #include "calib/bundle/residual_picture.h"
 #include "calib/camera/orientation.h"
 #include "calib/capture/capture_light.h"
+#include "calib/capture/colmap_poses.h"
 #include "calib/capture/guide_capture.h"
 #include "calib/capture/phone_library.h"
+#include "calib/capture/pose_source.h"
 #include "calib/guidance/coverage_picture.h"
 #include "calib/guidance/polar_picture.h"
 #include "pipeline/contract/board_file.h"
@@ -188,10 +190,18 @@ void WriteOutputs(const CalibSummary& summary, Stage* stage) {
              ResidualPicture(summary.bundle, static_cast<int>(c)));
   }
   WriteLightPicture(summary, stage);
-  WriteTrustPictures(summary.bundle, summary.trust, stage);
+  if (summary.from_board()) WriteTrustPictures(summary.bundle, summary.trust, stage);
   WriteFileAtomically(stage->Output("residuals.json"), ResidualsOf(summary).dump(1) + "\n");
   WriteFileAtomically(stage->Output("guidance_views.svg"), PolarPictureSvg(summary.guidance));
   WritePng(stage->Output("guidance_coverage.png"), CoveragePicture(summary.guidance));
+}
+
+// What follows once poses are known.
+void FinishCapture(const Capture& capture, const CalibOptions& options, bool assumed_intrinsics,
+                   CalibSummary* summary) {
+  FillPhotos(capture, summary);
+  FillLight(capture, options, summary);
+  summary->guidance = Judge(GuidanceInputOf(capture, *summary, assumed_intrinsics));
 }
 
 }  // namespace
@@ -210,6 +220,9 @@ std::vector<std::filesystem::path> CalibInputs(const Capture& capture,
   if (!options.fix_intrinsics.empty()) inputs.push_back(options.fix_intrinsics);
   if (!options.library.empty()) {
     for (const auto& file : LibraryFiles(options.library)) inputs.push_back(file);
+  }
+  if (PoseSourceOf(options) == PoseSource::kColmapModel) {
+    for (const auto& file : ColmapModelFiles(PosesFolder(capture, options))) inputs.push_back(file);
   }
   return inputs;
 }
@@ -230,15 +243,20 @@ void SolveCapture(const Capture& capture, const CalibOptions& options,
   for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
   Adjust(capture, options, std::move(problem), summary);
   WarnOfUncertainty(summary->bundle);
-  FillPhotos(capture, summary);
-  FillLight(capture, options, summary);
-  summary->guidance = Judge(GuidanceInputOf(capture, *summary, !assumed.empty()));
+  FinishCapture(capture, options, !assumed.empty(), summary);
 }
 
 CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& options,
                               const CommonOptions& common, Stage* stage) {
-  CalibSummary summary = DetectCapture(capture, options, common.threads);
-  SolveCapture(capture, options, {}, &summary);
+  CalibSummary summary;
+  if (PoseSourceOf(options) == PoseSource::kBoard) {
+    summary = DetectCapture(capture, options, common.threads);
+    SolveCapture(capture, options, {}, &summary);
+  } else {
+    summary.photos = DetectPhotos(capture, options, common.threads);
+    PosesFromColmap(capture, options, common, stage, &summary);
+    FinishCapture(capture, options, false, &summary);
+  }
   WriteOutputs(summary, stage);
   stage->Commit(ToJson(summary.calibration), MetricsOf(summary));
   return summary;

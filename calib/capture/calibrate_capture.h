@@ -29,14 +29,16 @@ struct CalibSummary {
   std::vector<DetectedPhoto> photos;
   CameraGroups groups;
   BundleResult bundle;              // of the stored pictures
-  Trust trust;                      // in that result
+  Trust trust;                      // in that result; empty unless from_board()
   std::vector<size_t> photo_index;  // which of `photos` each photo of `bundle` is
   std::vector<RejectedPhoto> rejected;
-  LightEstimate light;       // photos as calibration.photos; known: the board told it
-  PowerEstimate power;       // otherwise; photo_power as calibration.photos
+  Json poses;           // of COLMAP: what is known of its model and the sample's plane; else null
+  LightEstimate light;  // photos as calibration.photos; known: the board told it
+  PowerEstimate power;  // otherwise; photo_power as calibration.photos
   std::string power_source;  // "capture.toml", "board", "board, light at the lens" or "guess"
   Verdict guidance;
 
+  bool from_board() const { return poses.is_null(); }
   // Index into bundle.photos of a detected photograph; −1: it has no corners.
   int BundleIndex(size_t photo) const;
 };

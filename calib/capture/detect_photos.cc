@@ -44,6 +44,7 @@ DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
   if (photo.exposure_time_s > 0 && photo.iso > 0 && photo.f_number > 0) {
     detected.exposure = photo.exposure_time_s * photo.iso / (photo.f_number * photo.f_number);
   }
+  if (!capture.has_board) return detected;
   DetectorOptions detector;
   detector.longest_px = options.detect_px;
   detector.min_corners = options.min_corners;

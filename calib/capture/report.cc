@@ -85,9 +85,10 @@ Json MetricsOf(const CalibSummary& summary) {
   for (const RejectedPhoto& photo : summary.rejected) {
     metrics["rejected_photos"].push_back({{"photo", photo.name}, {"reason", photo.reason}});
   }
-  AddTrustMetrics(summary.bundle, summary.trust, &metrics);
+  if (summary.from_board()) AddTrustMetrics(summary.bundle, summary.trust, &metrics);
   metrics["light"] = LightMetrics(summary);
   metrics["guidance"] = ToJson(summary.guidance);
+  if (!summary.poses.is_null()) metrics["poses"] = summary.poses;
   return metrics;
 }
 
@@ -105,27 +106,41 @@ Json ResidualsOf(const CalibSummary& summary) {
     }
     json["photos"][photo.name] = corners;
   }
-  AddTrustResiduals(summary.bundle, summary.trust, &json);
+  if (summary.from_board()) AddTrustResiduals(summary.bundle, summary.trust, &json);
   return json;
 }
 
+// What COLMAP's model gave; "" where the board gave the poses.
+std::string PosesText(const Json& poses) {
+  if (poses.is_null()) return "";
+  return fmt::format(
+      "poses from COLMAP: {} of {} images; plane through {} of {} points ({:.0f} % by weight), "
+      "{:.3f} mm RMS; scale from {}, {:.5g} mm a unit\n",
+      poses["images_used"].get<size_t>(), poses["images"].get<size_t>(),
+      poses["plane_inliers"].get<size_t>(), poses["plane_points"].get<size_t>(),
+      100 * poses["plane_share"].get<double>(), poses["plane_rms_mm"].get<double>(),
+      poses["scale_from"].get<std::string>(), poses["mm_per_unit"].get<double>());
+}
+
 std::string TextOf(const CalibSummary& summary) {
-  std::string text = "calib: " + summary.bundle.BriefReport();
+  std::string text = "calib: " + summary.bundle.BriefReport() + PosesText(summary.poses);
   for (size_t i = 0; i < summary.bundle.photos.size(); ++i) {
     const PhotoEstimate& photo = summary.bundle.photos[i];
     if (!photo.rejected.empty()) continue;
+    const std::string sigma = std::isfinite(photo.sigma_position_mm)
+                                  ? fmt::format(" ± {:.2f}", photo.sigma_position_mm)
+                                  : "";
     text += fmt::format(
-        "  {:<28} {:3} of {:3} corners  {:.3f} px  tilt {:4.1f} deg  camera at {:.0f} mm ± "
-        "{:.2f}{}\n",
+        "  {:<28} {:3} of {:3} corners  {:.3f} px  tilt {:4.1f} deg  camera at {:.0f} mm{}{}\n",
         photo.name, photo.inliers(), photo.corners.size(), photo.rms_px, photo.tilt_deg,
-        photo.camera_from_sample.translation.norm(), photo.sigma_position_mm,
+        photo.camera_from_sample.translation.norm(), sigma,
         summary.photos[summary.photo_index[i]].board_photo ? "  (intrinsics only)" : "");
   }
   for (const RejectedPhoto& photo : summary.rejected) {
     text += fmt::format("  left out: {}: {}\n", photo.name, photo.reason);
   }
-  return text + TextOf(summary.bundle, summary.trust) + LightText(summary) +
-         TextOf(summary.guidance);
+  if (summary.from_board()) text += TextOf(summary.bundle, summary.trust);
+  return text + LightText(summary) + TextOf(summary.guidance);
 }
 
 }  // namespace glint

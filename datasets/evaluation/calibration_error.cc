@@ -119,4 +119,35 @@ CalibrationErrors CompareCalibrations(const Calibration& truth, const Calibratio
   return errors;
 }
 
+Calibration AlignCalibration(const Calibration& truth, const Calibration& estimate,
+                             Similarity3* truth_from_estimate) {
+  std::vector<Vector3d> from, to;
+  for (const CalibratedPhoto& photo : estimate.photos) {
+    for (const CalibratedPhoto& true_photo : truth.photos) {
+      if (photo.photo != true_photo.photo) continue;
+      from.push_back(Inverse(photo.camera_from_sample).translation);
+      to.push_back(Inverse(true_photo.camera_from_sample).translation);
+    }
+  }
+  Eigen::Matrix3Xd from_centres(3, from.size()), to_centres(3, to.size());
+  for (size_t i = 0; i < from.size(); ++i) {
+    from_centres.col(static_cast<long>(i)) = from[i];
+    to_centres.col(static_cast<long>(i)) = to[i];
+  }
+  const auto similarity = AlignPoints(from_centres, to_centres);
+  if (!similarity) {
+    throw UserError("the calibrations share " + std::to_string(from.size()) +
+                    " photographs; at least three, not taken from a line, are needed to align "
+                    "them");
+  }
+  Calibration aligned = estimate;
+  aligned.light_rgb *= similarity->scale * similarity->scale;
+  for (CalibratedPhoto& photo : aligned.photos) {
+    photo.camera_from_sample = MovedPose(photo.camera_from_sample, *similarity);
+    photo.light_in_camera_mm *= similarity->scale;
+  }
+  if (truth_from_estimate != nullptr) *truth_from_estimate = *similarity;
+  return aligned;
+}
+
 }  // namespace glint

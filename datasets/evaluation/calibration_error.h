@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/camera/similarity3.h"
 #include "pipeline/contract/calibration.h"
 
 namespace glint {
@@ -35,5 +36,11 @@ struct CalibrationErrors {
 CalibrationErrors CompareCalibrations(const Calibration& truth, const Calibration& estimate,
                                       const Eigen::Vector2d& sample_size_mm,
                                       int texels_across = 1024);
+
+// `estimate` moved so that its camera centres come as near to those of `truth` as a similarity can
+// bring them: frame and scale of the estimate no longer count. Throws UserError where fewer than
+// three photographs are in both, or the cameras stand in a line.
+Calibration AlignCalibration(const Calibration& truth, const Calibration& estimate,
+                             Similarity3* truth_from_estimate = nullptr);
 
 }  // namespace glint

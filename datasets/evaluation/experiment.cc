@@ -10,13 +10,13 @@
 
 #include "datasets/evaluation/capture_store.h"
 #include "datasets/evaluation/shipped_models.h"
-#include "datasets/evaluation/subprocess.h"
 #include "datasets/evaluation/view_error.h"
 #include "datasets/statistics/population.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/hash.h"
 #include "pipeline/contract/manifest.h"
+#include "pipeline/contract/subprocess.h"
 #include "pipeline/contract/svbrdf_file.h"
 
 namespace glint {

@@ -21,6 +21,7 @@ struct CapturePlanOptions {
   double nearest_mm = 270;       // distance of the camera from the point it looks at, uniform in
   double farthest_mm = 330;      // [nearest, farthest]
   double largest_tilt_deg = 40;  // of the views after the first
+  bool has_board = true;         // false: a patterned table round the sample instead, for COLMAP
   std::array<double, 3> flash_offset_mm{10, 0,
                                         0};   // in the camera frame: x right, y down, z forward
   std::array<double, 3> flash_tint{1, 1, 1};  // colour of the flash, largest channel 1
@@ -30,7 +31,7 @@ struct CapturePlanOptions {
   double exposure_ev = 0;     // exposures spread evenly over ± this, in random order
   double exif_error = 0;      // standard deviation of the exposures in EXIF, relative
 
-  // Any board, with the sample at its centre; none: FrameBoard.
+  // Any board, with the sample at its centre; nullopt: FrameBoard.
   std::optional<Board> board;
 };
 
@@ -48,7 +49,7 @@ struct PlannedPhoto {
 
 struct CapturePlan {
   CapturePlanOptions options;
-  Board board;           // a frame: the sample lies in its window
+  Board board;           // a frame: the sample lies in its window (without one: what would be seen)
   double margin_mm = 0;  // paper round the squares
   Camera camera;         // RADIAL, one for all photos
   std::vector<PlannedPhoto> photos;

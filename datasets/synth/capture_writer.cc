@@ -46,15 +46,35 @@ std::string InlineBoard(const Board& board) {
       board.window->rows);
 }
 
+// The sample's corners in the first photograph, as a person reads them off a picture: to a tenth of
+// a pixel.
+std::string PosesToml(const CapturePlan& plan, const std::string& format) {
+  const double half_mm = 0.5 * plan.options.sample_mm;
+  std::string corners;
+  for (const auto& [x, y] : {std::pair{-1, 1}, {1, 1}, {1, -1}, {-1, -1}}) {
+    const Eigen::Vector2d point_px =
+        ImageFromCamera(plan.camera, plan.photos[0].camera_from_sample *
+                                         Eigen::Vector3d(x * half_mm, y * half_mm, 0));
+    corners +=
+        fmt::format("{}[{:.1f}, {:.1f}]", corners.empty() ? "" : ", ", point_px.x(), point_px.y());
+  }
+  return fmt::format(
+      "[poses]\nphoto = \"{}\"\ncorners_px = [{}]\n\n[calib]\nposes = \"colmap\"\n\n",
+      PhotoName(0, format), corners);
+}
+
 std::string CaptureToml(const CapturePlan& plan, const SyntheticCaptureOptions& options) {
-  const Board& board = plan.board;
   const double side = plan.options.sample_mm;
   std::string text;
   text += "# A synthetic capture; what is true of it stands in truth/.\n";
   text += fmt::format("[sample]\nsize_mm = [{}, {}]\nresolution_px = {}\n\n", side, side,
                       options.resolution_px);
   text += fmt::format("[photos]\nfiles = [\"photos/*.{}\"]\n\n", options.format);
-  text += options.plan.board ? "[board]\nfile = \"board.json\"\n\n" : InlineBoard(board);
+  if (!plan.options.has_board) {
+    text += PosesToml(plan, options.format);
+  } else {
+    text += plan.options.board ? "[board]\nfile = \"board.json\"\n\n" : InlineBoard(plan.board);
+  }
   text += fmt::format("[radiometry]\nencoding = \"{}\"\n\n",
                       options.format == "exr" ? "linear" : options.encoding);
   if (!options.tell_flash) return text;

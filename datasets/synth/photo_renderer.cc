@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/parallel/parallel.h"
+#include "datasets/procedural/random.h"
 #include "fitting/reflectance/brdf.h"
 #include "pipeline/contract/errors.h"
 
@@ -25,6 +26,20 @@ constexpr int kMostMapSamples = 16;
 constexpr double kSamplesPerTexel = 2;
 
 Vec3d ToVec3d(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+// Smooth noise in [0, 1] with one random value per unit square's corner.
+double ValueNoise(double x, double y, std::uint32_t seed) {
+  const double left = std::floor(x), top = std::floor(y);
+  const auto at = [&](int dx, int dy) {
+    return static_cast<double>(procedural::ToUnit(procedural::Hash2(
+        static_cast<std::int32_t>(left) + dx, static_cast<std::int32_t>(top) + dy, seed)));
+  };
+  const auto smooth = [](double t) { return t * t * (3 - 2 * t); };
+  const double u = smooth(x - left), v = smooth(y - top);
+  const double upper = at(0, 0) + u * (at(1, 0) - at(0, 0));
+  const double lower = at(0, 1) + u * (at(1, 1) - at(0, 1));
+  return upper + v * (lower - upper);
+}
 
 Vector2d Between(const Vector2d& a, const Vector2d& b, double t) { return a + t * (b - a); }
 
@@ -65,9 +80,25 @@ PhotoRenderer::PhotoRenderer(const CapturePlan& plan, const SvbrdfMaps& maps, in
 PhotoRenderer::Surface PhotoRenderer::SurfaceAt(const Vector2d& position_mm) const {
   const double half_mm = 0.5 * plan_.options.sample_mm;
   if (std::abs(position_mm.x()) <= half_mm && std::abs(position_mm.y()) <= half_mm) return kSample;
+  if (!plan_.options.has_board) return kTable;
   const auto reflectance = painter_.ReflectanceAt(position_mm.x(), position_mm.y());
   if (!reflectance) return kTable;
   return *reflectance < 0.5 ? kInk : kPaper;
+}
+
+double PhotoRenderer::TablePattern(const Vector2d& position_mm) const {
+  constexpr double kFar_mm = 1e5;  // rays that go past the horizon
+  if (plan_.options.has_board || position_mm.cwiseAbs().maxCoeff() > kFar_mm) return 1;
+  double sum = 0, weights = 0, weight = 1;
+  const auto seed = static_cast<std::uint32_t>(procedural::Mix64(plan_.options.seed ^ 0x7ab1e));
+  for (const double wavelength_mm : {9.0, 4.5, 2.4, 1.3}) {
+    const Vector2d at = position_mm / wavelength_mm;
+    sum += weight * ValueNoise(at.x(), at.y(), seed + static_cast<std::uint32_t>(100 * weight));
+    weights += weight;
+    weight *= 0.8;
+  }
+  // Contrast as of printed cloth: from a tenth of the mean to twice the mean.
+  return std::clamp(1 + 3.6 * (sum / weights - 0.5), 0.1, 2.0);
 }
 
 void PhotoRenderer::FillCorners(const PhotoGeometry& geometry, int corner_row,
@@ -93,10 +124,11 @@ PhotoRenderer::Rgb PhotoRenderer::ShadeSurface(const PhotoGeometry& geometry, Su
   const double dx = light[0] - position_mm.x(), dy = light[1] - position_mm.y();
   const double squared = dx * dx + dy * dy + light[2] * light[2];
   const double falloff = light[2] / (squared * std::sqrt(squared));
+  const double pattern = surface == kTable ? TablePattern(position_mm) : 1;
   Rgb rgb;
   for (int c = 0; c < 3; ++c) {
-    const double albedo =
-        surface == kTable ? kTableAlbedo[c] : (surface == kInk ? kInkAlbedo : kPaperAlbedo);
+    const double albedo = surface == kTable ? pattern * kTableAlbedo[c]
+                                            : (surface == kInk ? kInkAlbedo : kPaperAlbedo);
     const double irradiance = plan_.light_rgb[c] * falloff + plan_.ambient_rgb[c];
     rgb[c] = static_cast<float>(albedo * kInversePi * irradiance);
   }
@@ -156,14 +188,19 @@ PhotoRenderer::Rgb PhotoRenderer::ShadePixel(const PhotoGeometry& geometry, cons
     uniform = SurfaceAt(at(0.5, 0)) == surface && SurfaceAt(at(0.5, 1)) == surface &&
               SurfaceAt(at(0, 0.5)) == surface && SurfaceAt(at(1, 0.5)) == surface &&
               SurfaceAt(centre) == surface;
-    if (uniform) return ShadeSurface(geometry, surface, centre);
+    if (uniform && plan_.options.has_board) return ShadeSurface(geometry, surface, centre);
   }
   const auto add = [](const Rgb& rgb, Rgb* sum) {
     for (int k = 0; k < 3; ++k) (*sum)[k] += rgb[k];
   };
   Rgb sum{0, 0, 0};
   int samples = 0;
-  if (uniform) {
+  if (uniform && surface != kSample) {
+    samples = 4;  // the pattern is smooth
+    for (int i = 0; i < samples; ++i) {
+      add(ShadeSurface(geometry, surface, at(0.25 + 0.5 * (i % 2), 0.25 + 0.5 * (i / 2))), &sum);
+    }
+  } else if (uniform) {
     const double texel_mm = plan_.options.sample_mm / std::max(map_width_, map_height_);
     const double longest_mm = std::sqrt(std::max((b - a).squaredNorm(), (c - a).squaredNorm()));
     const int side =

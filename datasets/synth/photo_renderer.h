@@ -3,7 +3,7 @@
 // What a pixel sees is the average over its footprint. Inside the sample it is averaged over a grid
 // of shaded points half a texel of the maps apart (bilinear between texels), so neither
 // relief nor highlights alias; the sheet is flat paper and ink, so a pixel is subdivided only where
-// an edge passes through it.
+// an edge passes through it. Without a board the table has a pattern, smooth over a millimetre.
 #pragma once
 
 #include <Eigen/Core>
@@ -47,6 +47,7 @@ class PhotoRenderer {
   };
 
   Surface SurfaceAt(const Eigen::Vector2d& position_mm) const;
+  double TablePattern(const Eigen::Vector2d& position_mm) const;
   void FillCorners(const PhotoGeometry& geometry, int corner_row, CornerRow* corners) const;
   Rgb ShadeSurface(const PhotoGeometry& geometry, Surface surface,
                    const Eigen::Vector2d& position_mm) const;

@@ -89,6 +89,30 @@ class TableReader {
     return numbers;
   }
 
+  // `count` points, as [[x, y], …] (one: [x, y]), one after the other; empty: absent.
+  std::vector<double> Points(const std::string& key, size_t count, const std::string& mend) {
+    const toml::node* node = Find(key);
+    if (node == nullptr) return {};
+    std::vector<double> numbers;
+    const auto add = [&](const toml::node& point) {
+      const toml::array* pair = point.as_array();
+      if (pair == nullptr || pair->size() != 2) Reject(point, key, mend);
+      for (const toml::node& element : *pair) {
+        const auto value = element.is_number() ? element.value<double>() : std::nullopt;
+        if (!value || !std::isfinite(*value)) Reject(element, key, mend);
+        numbers.push_back(*value);
+      }
+    };
+    if (count == 1) {
+      add(*node);
+      return numbers;
+    }
+    const toml::array* array = node->as_array();
+    if (array == nullptr || array->size() != count) Reject(*node, key, mend);
+    for (const toml::node& point : *array) add(point);
+    return numbers;
+  }
+
   std::vector<int> Integers(const std::string& key, size_t count, bool one_for_all,
                             const std::string& mend) {
     const std::vector<double> numbers = Numbers(key, count, one_for_all, mend);
@@ -311,10 +335,62 @@ void ReadRadiometry(const fs::path& file, const toml::table& document, Capture* 
   light.RejectUnknown();
 }
 
+// A length and what it is the length of stand together or not at all.
+void RequireTogether(const fs::path& file, const std::string& what, bool has_what,
+                     const std::string& length, bool has_length) {
+  if (has_what == has_length) return;
+  throw UserError(file, "poses." + (has_what ? length : what), "no such key",
+                  "give " + what + " and " + length + " together");
+}
+
+void ReadPoses(const fs::path& file, const toml::table& document, Capture* capture) {
+  TableReader table(file, document, "poses");
+  PosesTable& poses = capture->poses;
+  const std::string unit = " of millimetres, greater than 0";
+  poses.photo = table.Text("photo", "");
+  poses.corners_px = table.Points(
+      "corners_px", 4,
+      "give four points [x, y] of `photo`: the sample's top left, top right, bottom right, bottom "
+      "left corner");
+  poses.points_px = table.Points("points_px", 2, "give two points [[x, y], [x, y]] of `photo`");
+  poses.points_mm = table.Number("points_mm", 0, 1e-3, 1e6, unit);
+  poses.cameras = table.Texts("cameras", "give the names of two photographs");
+  poses.cameras_mm = table.Number("cameras_mm", 0, 1e-3, 1e6, unit);
+  poses.height_mm = table.Number("height_mm", 0, 1e-3, 1e6, unit);
+  poses.origin_px = table.Points("origin_px", 1, "give a point [x, y] of `photo`");
+  poses.x_axis_px = table.Points("x_axis_px", 2, "give two points [[x, y], [x, y]] of `photo`");
+  table.RejectUnknown();
+  RequireTogether(file, "points_px", !poses.points_px.empty(), "points_mm", poses.points_mm > 0);
+  RequireTogether(file, "cameras", !poses.cameras.empty(), "cameras_mm", poses.cameras_mm > 0);
+  std::vector<std::string> names = poses.cameras;
+  if (!poses.photo.empty()) names.push_back(poses.photo);
+  for (const std::string& name : names) {
+    if (std::find(capture->photos.begin(), capture->photos.end(), name) != capture->photos.end())
+      continue;
+    throw UserError(file, "poses", "'" + name + "', which is no photograph of the capture",
+                    "give its path from the capture's folder, such as \"photos/IMG_0001.jpg\"");
+  }
+  const bool points = !poses.corners_px.empty() || !poses.points_px.empty() ||
+                      !poses.origin_px.empty() || !poses.x_axis_px.empty();
+  if (points && poses.photo.empty()) {
+    table.Missing("photo", "name the photograph that the points are of");
+  }
+  if (!poses.cameras.empty() && poses.cameras.size() != 2) {
+    throw UserError(file, "poses.cameras", std::to_string(poses.cameras.size()) + " names",
+                    "give the names of two photographs");
+  }
+  const int scales = !poses.corners_px.empty() + !poses.points_px.empty() + !poses.cameras.empty() +
+                     (poses.height_mm > 0);
+  if (scales > 1) {
+    throw UserError(file, "poses", std::to_string(scales) + " lengths",
+                    "give one of corners_px, points_px, cameras and height_mm");
+  }
+}
+
 void RejectUnknownTables(const fs::path& file, const toml::table& document) {
   static const std::set<std::string, std::less<>> known = {
-      "sample",  "photos", "board",  "radiometry", "light", "calib",
-      "rectify", "fit",    "refine", "export",     "report"};
+      "sample", "photos",  "poses", "board",  "radiometry", "light",
+      "calib",  "rectify", "fit",   "refine", "export",     "report"};
   for (const auto& [key, node] : document) {
     if (known.count(std::string(key.str())) > 0) continue;
     std::string list;
@@ -346,6 +422,7 @@ Capture ReadCapture(const fs::path& folder) {
   photos.RejectUnknown();
   capture.photos = MatchAll(capture.folder, patterns, capture.file, "photos.files");
   ReadBoard(capture.file, *document, &capture);
+  ReadPoses(capture.file, *document, &capture);
   ReadRadiometry(capture.file, *document, &capture);
   if (photos.present() && capture.photos.empty()) {
     throw UserError(capture.file, "photos.files", "no photograph that matches",

@@ -10,6 +10,21 @@
 
 namespace glint {
 
+// [poses]: where the sample lies in a COLMAP model, and how large it is. Points are pixels of the
+// upright photograph `photo`; of corners, points, cameras and height at most one is given.
+struct PosesTable {
+  std::string photo;               // relative to the folder, one of [photos]
+  std::vector<double> corners_px;  // x y of the sample's corners: top left, top right, bottom
+                                   // right, bottom left
+  std::vector<double> points_px;     // x y of two points of the sample's plane …
+  double points_mm = 0;              // … and their distance
+  std::vector<std::string> cameras;  // two photographs …
+  double cameras_mm = 0;             // … and the distance of the lens between them
+  double height_mm = 0;           // of the lens above the sample in `photo` (none: median of all)
+  std::vector<double> origin_px;  // x y of the sample's centre
+  std::vector<double> x_axis_px;  // x y of two points, from left to right along the sample
+};
+
 struct Capture {
   std::filesystem::path folder;  // as given
   std::filesystem::path file;    // folder / "capture.toml"
@@ -24,6 +39,8 @@ struct Capture {
       board_file;  // [board] file, relative to the folder; empty: the table itself describes
   Board board;     // [board]; board_centre_in_sample_mm from [sample] centre_mm
 
+  PosesTable poses;
+
   std::array<double, 2> sample_size_mm{0, 0};  // [sample] size_mm = [width, height]
   std::array<int, 2> resolution_px{0, 0};      // [sample] resolution_px = width, or [width, height]
 
@@ -32,6 +49,8 @@ struct Capture {
   std::array<double, 3> light_power{0, 0, 0};      // [light] power, radiance·mm²; zeros: estimate
   std::array<double, 3> ambient{0, 0, 0};          // [light] ambient
 
+  // Rectified by another program: nothing to calibrate or rectify.
+  bool imported() const { return !has_board && photos.empty(); }
   std::filesystem::path work() const { return folder / "glint"; }
 };
 

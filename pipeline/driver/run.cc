@@ -113,7 +113,7 @@ void RequireEarlierResults(const Capture& capture, const std::vector<StageStep>&
       for (const StageStep& other : steps) among_steps |= other.stage == earlier;
       const fs::path file = capture.folder / ManifestPath(earlier);
       if (among_steps || fs::exists(file)) continue;
-      const bool imported = !capture.has_board && earlier == "rectify";
+      const bool imported = capture.imported() && earlier == "rectify";
       throw UserError(
           file, "", "no such file",
           imported

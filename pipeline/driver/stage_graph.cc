@@ -79,7 +79,7 @@ const std::vector<std::string>& StageNames() {
 std::string ManifestPath(const std::string& stage) { return "glint/" + stage + "/manifest.json"; }
 
 std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choices) {
-  const bool imported = !capture.has_board;
+  const bool imported = capture.imported();
   if (!imported && capture.photos.empty()) {
     throw UserError(capture.file, "photos.files", "no such key",
                     "write for example: [photos] files = [\"photos/*.jpg\"]");

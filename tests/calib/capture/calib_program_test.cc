@@ -12,6 +12,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "calib/colmap/colmap_camera.h"
+#include "calib/colmap/colmap_model.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/image.h"
 #include "tests/calib/testing/synthetic_photo.h"
@@ -180,6 +182,33 @@ TEST_F(CalibProgram, SaysHowFarTheResultCanBeTrusted) {
     EXPECT_TRUE(fs::exists(capture / "glint/calib" / picture)) << picture;
   }
   EXPECT_THAT(ReadText(capture / "glint/calib/residuals.json"), HasSubstr("row_motion_share"));
+}
+
+TEST_F(CalibProgram, ExportsAColmapModelWhoseCornersLieWhereTheyWereSeen) {
+  const fs::path capture = Copy("exported", true);
+  // Nothing is computed anew for it.
+  EXPECT_THAT(Calibrate(capture, "--export colmap").output, HasSubstr("up to date"));
+  const ColmapModel model = ReadColmapModel(capture / "glint/colmap");
+  ASSERT_EQ(model.images.size(), 6u);
+  ASSERT_EQ(model.cameras.size(), 1u);
+  EXPECT_GT(model.points.size(), 20u);
+  size_t seen = 0;
+  for (const ColmapPoint& point : model.points) {
+    EXPECT_EQ(point.position.z(), 0);
+    for (const ColmapTrackElement& element : point.track) {
+      const ColmapImage& image = model.images[element.image_id - 1];
+      EXPECT_EQ(image.name, "photos/p" + std::to_string(element.image_id - 1) + ".png");
+      const ColmapObservation& observation = image.observations[element.observation];
+      EXPECT_EQ(observation.point_id, point.id);
+      const Eigen::Vector3d in_camera = image.camera_from_model() * point.position;
+      const Eigen::Vector2d predicted =
+          ColmapImagePoint(model.cameras[0].model, model.cameras[0].parameters,
+                           in_camera.x() / in_camera.z(), in_camera.y() / in_camera.z());
+      EXPECT_LT((predicted - observation.point_px).norm(), 0.6);
+      ++seen;
+    }
+  }
+  EXPECT_GT(seen, 100u);
 }
 
 TEST_F(CalibProgram, NamesPhotosWithoutTheBoard) {

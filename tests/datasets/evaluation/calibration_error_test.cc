@@ -98,5 +98,35 @@ TEST(CompareCalibrations, LightPowerCountsOnlyWhereItIsClaimed) {
   EXPECT_EQ(CompareCalibrations(Truth(), estimate, kSize).light_power_percent, 0);
 }
 
+TEST(AlignCalibration, TakesFrameAndScaleAwayAndLeavesTheRest) {
+  Similarity3 other;
+  other.scale = 0.02;
+  other.rotation = Eigen::AngleAxisd(1.2, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  other.translation = {5, -3, 8};
+  Calibration estimate = Truth();
+  estimate.light_rgb *= other.scale * other.scale;
+  for (CalibratedPhoto& photo : estimate.photos) {
+    photo.camera_from_sample = MovedPose(photo.camera_from_sample, other);
+    photo.light_in_camera_mm *= other.scale;
+  }
+  Similarity3 found;
+  const Calibration aligned = AlignCalibration(Truth(), estimate, &found);
+  const CalibrationErrors errors = CompareCalibrations(Truth(), aligned, kSize);
+  EXPECT_LT(errors.largest_position_percent, 1e-9);
+  EXPECT_LT(errors.corner_rms_texel, 1e-6);
+  EXPECT_LT(errors.light_power_percent, 1e-9);
+  EXPECT_NEAR(found.scale, 50, 1e-9);
+  // One camera off by 3 mm is not taken away.
+  estimate.photos[1].camera_from_sample.translation.x() += 3 * other.scale;
+  const Calibration worse = AlignCalibration(Truth(), estimate);
+  EXPECT_GT(CompareCalibrations(Truth(), worse, kSize).largest_position_percent, 0.2);
+}
+
+TEST(AlignCalibration, NeedsThreePhotographs) {
+  Calibration estimate = Truth();
+  estimate.photos.resize(2);
+  EXPECT_THROW(AlignCalibration(Truth(), estimate), UserError);
+}
+
 }  // namespace
 }  // namespace glint

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -114,6 +115,28 @@ TEST_F(CaptureWriterTest, DoesNotReplaceACaptureUnlessTold) {
   options_.overwrite = true;
   WriteSyntheticCapture(folder_, material_, options_, 1);
   EXPECT_EQ(ReadCapture(folder_).photos.size(), 1u);
+}
+
+TEST_F(CaptureWriterTest, WithoutABoardTheTableHasAPatternAndTheCornersAreTold) {
+  options_.plan.has_board = false;
+  options_.format = "exr";
+  WriteSyntheticCapture(folder_, material_, options_, 1);
+  const Capture capture = ReadCapture(folder_);
+  EXPECT_FALSE(capture.has_board);
+  const CapturePlan plan = PlanCapture(options_.plan);
+  const Eigen::Vector2d top_left =
+      ImageFromCamera(plan.camera, plan.photos[0].camera_from_sample * Eigen::Vector3d(-50, 50, 0));
+  ASSERT_EQ(capture.poses.corners_px.size(), 8u);
+  EXPECT_NEAR(capture.poses.corners_px[0], top_left.x(), 0.051);
+  EXPECT_NEAR(capture.poses.corners_px[1], top_left.y(), 0.051);
+  // The top rows show the table alone: bright and dark spots, a millimetre or more each.
+  const Image photo = ReadExr(folder_ / capture.photos[0]);
+  float lowest = 1e9f, highest = 0;
+  for (int i = 0; i < 20 * photo.width; ++i) {
+    lowest = std::min(lowest, photo.samples[static_cast<size_t>(i)]);
+    highest = std::max(highest, photo.samples[static_cast<size_t>(i)]);
+  }
+  EXPECT_GT(highest, 3 * lowest);
 }
 
 }  // namespace

@@ -100,5 +100,29 @@ TEST_F(CaptureTest, BoardThatCannotBePrintedIsRefused) {
   EXPECT_THAT(Complaint(Replaced("marker_mm = 11", "marker_mm = 16")), HasSubstr("marker_mm"));
 }
 
+TEST_F(CaptureTest, ReadsWhereTheSampleLiesInACOLMAPModel) {
+  const std::string poses =
+      "[poses]\nphoto = \"photos/a.jpg\"\ncorners_px = [[1, 2], [3, 2.5], [3, 4], [1, 4]]\n";
+  const Capture capture = Read(Replaced("[light]", poses + "[light]"));
+  EXPECT_EQ(capture.poses.photo, "photos/a.jpg");
+  EXPECT_THAT(capture.poses.corners_px, ElementsAre(1, 2, 3, 2.5, 3, 4, 1, 4));
+  EXPECT_FALSE(capture.imported());
+}
+
+TEST_F(CaptureTest, HalfALengthOrTwoAreRefused) {
+  const auto complaint = [&](const std::string& poses) {
+    return Complaint(Replaced("[light]", "[poses]\n" + poses + "\n[light]"));
+  };
+  EXPECT_THAT(complaint("points_mm = 3"), HasSubstr("poses.points_px: found no such key"));
+  EXPECT_THAT(complaint("origin_px = [1, 2]"), HasSubstr("poses.photo"));
+  EXPECT_THAT(complaint("photo = \"photos/c.jpg\""), HasSubstr("'photos/c.jpg'"));
+  EXPECT_THAT(complaint("cameras = [\"photos/a.jpg\"]\ncameras_mm = 4"), HasSubstr("1 names"));
+  EXPECT_THAT(complaint("height_mm = -1"), HasSubstr("poses.height_mm"));
+  EXPECT_THAT(complaint("corners_px = [[1, 2], [3, 4]]"), HasSubstr("four points"));
+  EXPECT_THAT(complaint("photo = \"photos/a.jpg\"\nheight_mm = 300\npoints_mm = 3\npoints_px = "
+                        "[[1, 2], [3, 4]]"),
+              HasSubstr("2 lengths"));
+}
+
 }  // namespace
 }  // namespace glint

@@ -1,4 +1,4 @@
-#include "datasets/evaluation/subprocess.h"
+#include "pipeline/contract/subprocess.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,6 +32,27 @@ TEST(RunToLog, AProgramThatIsNotThereIsTheEnvironmentsFault) {
   const test::TemporaryFolder folder;
   EXPECT_THROW(RunToLog({"/nonexistent/program"}, folder.path() / "log"), EnvironmentError);
   EXPECT_THROW(SiblingProgram("glint-nothing"), EnvironmentError);
+}
+
+TEST(RunToLog, AddsVariablesAndCallsWhileItRuns) {
+  const test::TemporaryFolder folder;
+  int calls = 0;
+  ::setenv("GLINT_TEST_VARIABLE", "outer", 1);
+  RunToLog({"/bin/sh", "-c", "sleep 0.3; echo $GLINT_TEST_VARIABLE"}, folder.path() / "log",
+           {{"GLINT_TEST_VARIABLE=inner"}, [&] { ++calls; }});
+  EXPECT_EQ(test::ReadAll(folder.path() / "log"), "inner\n");
+  EXPECT_GE(calls, 2);
+}
+
+TEST(ProgramOnPath, FindsOrSaysHowToInstall) {
+  EXPECT_EQ(ProgramOnPath("sh", "").filename(), "sh");
+  try {
+    ProgramOnPath("no-such-program", "apt-get install it");
+    FAIL() << "did not throw";
+  } catch (const EnvironmentError& error) {
+    EXPECT_STREQ(error.what(),
+                 "no-such-program: no such program; install it with: apt-get install it");
+  }
 }
 
 }  // namespace

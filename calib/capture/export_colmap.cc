@@ -1,0 +1,126 @@
+#include "calib/capture/export_colmap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "calib/board/board.h"
+#include "calib/camera/orientation.h"
+#include "calib/colmap/colmap_camera.h"
+#include "pipeline/contract/calibration.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
+#include "pipeline/contract/manifest.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ModelBuilder {
+ public:
+  ModelBuilder(const Capture& capture, const fs::path& manifest_file)
+      : manifest_file_(manifest_file),
+        calibration_(ReadCalibration(manifest_file)),
+        metrics_(ReadManifest(manifest_file, "calib").metrics),
+        residuals_file_(manifest_file.parent_path() / "residuals.json") {
+    residuals_ = Json::parse(ReadTextFile(residuals_file_), nullptr, false);
+    for (const BoardCorner& corner : BoardCorners(capture.board)) {
+      corners_[corner.id].position = {corner.position_in_sample_mm.x(),
+                                      corner.position_in_sample_mm.y(), 0};
+    }
+  }
+
+  ColmapModel Build() {
+    for (const CalibratedPhoto& photo : calibration_.photos) AddPhoto(photo);
+    for (auto& [id, point] : corners_) {
+      if (point.track.empty()) continue;
+      point.id = PointId(id);
+      point.rgb = {128, 128, 128};
+      point.error_px /= static_cast<double>(point.track.size());
+      model_.points.push_back(point);
+    }
+    return std::move(model_);
+  }
+
+ private:
+  static std::uint64_t PointId(int corner) { return static_cast<std::uint64_t>(corner) + 1; }
+
+  int TurnsOf(const std::string& name) const {
+    for (const Json& photo : RequireField(manifest_file_, metrics_, "metrics", "photos")) {
+      if (RequireString(manifest_file_, photo, "metrics.photos", "photo") != name) continue;
+      return static_cast<int>(
+          RequireNumber(manifest_file_, photo, "metrics.photos", "quarter_turns"));
+    }
+    throw UserError(manifest_file_, "metrics.photos", "nothing on " + name, "run calib again");
+  }
+
+  // Number of the camera, one for each that differs.
+  std::uint32_t CameraId(const Camera& stored) {
+    const ColmapCamera camera =
+        ToColmapCamera(stored, static_cast<std::uint32_t>(model_.cameras.size() + 1));
+    for (const ColmapCamera& known : model_.cameras) {
+      if (known.model == camera.model && known.parameters == camera.parameters &&
+          known.width_px == camera.width_px && known.height_px == camera.height_px) {
+        return known.id;
+      }
+    }
+    model_.cameras.push_back(camera);
+    return camera.id;
+  }
+
+  void AddPhoto(const CalibratedPhoto& photo) {
+    const int turns = TurnsOf(photo.photo);
+    const Camera& upright = calibration_.cameras[static_cast<size_t>(photo.camera)];
+    ColmapImage image;
+    image.id = static_cast<std::uint32_t>(model_.images.size() + 1);
+    image.name = photo.photo;
+    image.camera_id = CameraId(TurnedCamera(upright, -turns));
+    image.set_camera_from_model(TurnedPose(photo.camera_from_sample, -turns));
+    const Json& all = RequireField(residuals_file_, residuals_, "", "photos");
+    const Json& rows = RequireField(residuals_file_, all, "photos", photo.photo);
+    for (const Json& row : rows) AddCorner(row, &image);
+    model_.images.push_back(std::move(image));
+  }
+
+  // [corner id, x, y, residual x, residual y, inlier], of the stored picture.
+  void AddCorner(const Json& row, ColmapImage* image) {
+    if (!row.is_array() || row.size() != 6 || !row[5].is_boolean()) {
+      throw UserError(residuals_file_, "photos", row.dump(), "run calib again");
+    }
+    if (!row[5].get<bool>()) return;
+    const auto corner = corners_.find(row[0].get<int>());
+    if (corner == corners_.end()) return;
+    corner->second.track.push_back(
+        {image->id, static_cast<std::uint32_t>(image->observations.size())});
+    corner->second.error_px += std::hypot(row[3].get<double>(), row[4].get<double>());
+    image->observations.push_back(
+        {{row[1].get<double>(), row[2].get<double>()}, PointId(corner->first)});
+  }
+
+  fs::path manifest_file_;
+  Calibration calibration_;
+  Json metrics_;
+  fs::path residuals_file_;
+  Json residuals_;
+  std::map<int, ColmapPoint> corners_;
+  ColmapModel model_;
+};
+
+}  // namespace
+
+ColmapModel ModelOfCalibration(const Capture& capture, const fs::path& manifest_file) {
+  const Json metrics = ReadManifest(manifest_file, "calib").metrics;
+  if (metrics.contains("poses")) return ReadColmapModel(manifest_file.parent_path() / "colmap");
+  return ModelBuilder(capture, manifest_file).Build();
+}
+
+fs::path ExportColmap(const Capture& capture, const fs::path& manifest_file) {
+  const ColmapModel model = ModelOfCalibration(capture, manifest_file);
+  const fs::path folder = capture.work() / "colmap";
+  fs::create_directories(folder);
+  WriteColmapModel(folder, model, ColmapFormat::kBinary);
+  return folder;
+}
+
+}  // namespace glint

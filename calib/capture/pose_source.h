@@ -1,0 +1,30 @@
+// Where poses come from, and which of a COLMAP model's images are the capture's photographs.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "calib/capture/calib_options.h"
+#include "calib/capture/detect_photos.h"
+#include "calib/colmap/colmap_model.h"
+#include "pipeline/contract/capture.h"
+
+namespace glint {
+
+// --poses: "board", "colmap" (the program is run) or "colmap:DIR" (a model is read). Throws
+// UserError for another text.
+enum class PoseSource { kBoard, kColmapProgram, kColmapModel };
+PoseSource PoseSourceOf(const CalibOptions& options);
+// The folder after "colmap:", from the working folder or else from the capture's.
+std::filesystem::path PosesFolder(const Capture& capture, const CalibOptions& options);
+
+// Stops early: no colmap program, no photographs, or nothing that tells the scale.
+void CheckPoses(const Capture& capture, const CalibOptions& options);
+
+// Index of the model's image of each photograph, by its path from the capture's folder or else by
+// its file name; −1: the model does not hold it. `source` is named in errors. Throws UserError
+// where it holds none, or two of one name.
+std::vector<int> MatchByName(const Capture& capture, const std::filesystem::path& source,
+                             const std::vector<DetectedPhoto>& photos, const ColmapModel& model);
+
+}  // namespace glint

@@ -1,0 +1,112 @@
+#include "pipeline/contract/subprocess.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string_view>
+#include <thread>
+
+#include "pipeline/contract/errors.h"
+
+extern char** environ;
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kTailBytes = 600;
+
+std::string Tail(const fs::path& log) {
+  std::ifstream stream(log, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (text.size() > kTailBytes) text = "…" + text.substr(text.size() - kTailBytes);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text;
+}
+
+// Whether one of `environment` ("NAME=value") is of the same name.
+bool Replaced(std::string_view variable, const std::vector<std::string>& environment) {
+  const std::string_view name = variable.substr(0, variable.find('=') + 1);
+  return std::any_of(environment.begin(), environment.end(),
+                     [&](const std::string& ours) { return ours.starts_with(name); });
+}
+
+pid_t Spawn(const std::vector<std::string>& argv, const fs::path& log,
+            const std::vector<std::string>& environment) {
+  std::vector<char*> variables;
+  for (const std::string& variable : environment) {
+    variables.push_back(const_cast<char*>(variable.c_str()));
+  }
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    if (!Replaced(*variable, environment)) variables.push_back(*variable);
+  }
+  variables.push_back(nullptr);
+  std::vector<char*> pointers;
+  for (const std::string& argument : argv) pointers.push_back(const_cast<char*>(argument.c_str()));
+  pointers.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0666);
+  posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  pid_t process = 0;
+  const int error =
+      posix_spawn(&process, argv[0].c_str(), &actions, nullptr, pointers.data(), variables.data());
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) {
+    throw EnvironmentError(argv[0] + ": cannot be started: " + std::strerror(error));
+  }
+  return process;
+}
+
+}  // namespace
+
+fs::path SiblingProgram(const std::string& name) {
+  const fs::path program = fs::canonical("/proc/self/exe").parent_path() / name;
+  if (!fs::exists(program)) {
+    throw EnvironmentError(program.string() + ": no such program; build it first");
+  }
+  return program;
+}
+
+fs::path ProgramOnPath(const std::string& name, const std::string& install) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path program = fs::path(folder.empty() ? "." : folder) / name;
+    if (fs::is_regular_file(program) && ::access(program.c_str(), X_OK) == 0) return program;
+  }
+  throw EnvironmentError(name + ": no such program; install it with: " + install);
+}
+
+void RunToLog(const std::vector<std::string>& argv, const fs::path& log,
+              const RunToLogOptions& options) {
+  const pid_t process = Spawn(argv, log, options.environment);
+  int status = 0;
+  const int patience = options.while_running ? WNOHANG : 0;
+  for (pid_t ended = 0; ended != process;) {
+    ended = waitpid(process, &status, patience);
+    if (ended < 0 && errno != EINTR) break;
+    if (ended != 0) continue;
+    options.while_running();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  const std::string how = WIFEXITED(status) ? "exit code " + std::to_string(WEXITSTATUS(status))
+                                            : "signal " + std::to_string(WTERMSIG(status));
+  throw ComputationError(argv[0] + " ended with " + how + "; see " + log.string() + ":\n" +
+                         Tail(log));
+}
+
+}  // namespace glint
