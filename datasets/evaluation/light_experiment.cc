@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/evaluation/subprocess.h"
+#include "pipeline/contract/subprocess.h"
 #include "datasets/evaluation/view_error.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
