@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/contract/subprocess.h"
 #include "datasets/evaluation/view_error.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
+#include "pipeline/contract/subprocess.h"
 #include "pipeline/contract/svbrdf_file.h"
 
 namespace glint {

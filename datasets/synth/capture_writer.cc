@@ -275,7 +275,7 @@ SyntheticCaptureSummary WriteSyntheticCapture(const fs::path& folder,
     progress.Advance();
   }
   WriteTruth(folder / "truth", plan, material, options);
-  if (options.plan.board) {
+  if (options.plan.has_board && options.plan.board) {
     WriteFileAtomically(folder / "board.json", ToJson(BoardFile{plan.board, {}}).dump(1) + "\n");
   }
   WriteFileAtomically(folder / "capture.toml", CaptureToml(plan, options));
