@@ -173,6 +173,10 @@ Reference ReadReference(const fs::path& path) {
     return {ReadCalibration(path / "calib" / "manifest.json"), {size[0], size[1]}};
   }
   const fs::path file = ManifestIn(path);
+  if (!fs::exists(file)) {
+    throw UserError(path, "", "neither truth.json nor a calibration's manifest.json",
+                    "give a synthetic capture's truth/ or CAPTURE/glint/calib");
+  }
   Calibration calibration = ReadCalibration(file);
   // CAPTURE/glint/calib/manifest.json
   const Capture capture = ReadCapture(fs::absolute(file).parent_path().parent_path().parent_path());
