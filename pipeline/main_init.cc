@@ -1,4 +1,5 @@
 // glint-init: writes a capture.toml.
+#include "calib/triage/list_photos.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/driver/init.h"
 
@@ -16,8 +17,11 @@ void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
   options->Add("full-board", &o->full_board, "no window");
   options->Add("sample-mm", &o->sample_mm, "WIDTH,HEIGHT of the sample");
   options->AddRange("resolution", &o->resolution_px, 8, 16384, "width of the maps in texels");
-  options->AddChoice("encoding", &o->encoding, {"auto", "srgb", "gamma2.2", "linear"},
-                     "how the photographs store radiance");
+  options->Add("encoding", &o->encoding,
+               "how the photographs store radiance: auto, srgb, gamma2.2, linear, or the file of a "
+               "response curve (glint-response writes one)");
+  options->AddRange("every", &o->every, 1, 1000000,
+                    "one frame in so many of a video becomes a photograph");
   options->Add("light-offset-mm", &o->light_offset_mm,
                "X,Y,Z of the flash in the camera frame: x right, y down, z forward");
 }
@@ -26,15 +30,23 @@ void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
 
 int main(int argc, char** argv) {
   glint::InitOptions o;
+  bool list = false;
   glint::OptionSet options;
   AddOptions(&options, &o);
+  options.Add("list", &list,
+              "write nothing; list what is read from each photograph in the folder (EXIF, size)");
   return glint::RunProgram(
       argc, argv,
       {"glint-init", "Writes a commented capture.toml, never over one that is there.",
        GLINT_VERSION,
        "A board.json in the folder (glint board) is taken for the board; else the options describe "
-       "it.\nExample: glint init wood --squares 12,12 --square-mm 15 --sample-mm 100,100"},
+       "it.\nExamples:\n  glint init wood --squares 12,12 --square-mm 15 --sample-mm 100,100\n"
+       "  glint init wood --list"},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
+        if (list) {
+          const auto photos = glint::ListPhotos(o.folder);
+          return {glint::TableOf(photos), glint::ToJson(photos)};
+        }
         const glint::InitResult result = glint::WriteCapture(o);
         return {result.BriefReport(),
                 {{"file", result.file.generic_string()},

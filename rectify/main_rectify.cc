@@ -45,9 +45,9 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RectifyOp
   const Calibration calibration = ReadCalibration(calibration_file);
   CheckPhotos(capture, calibration, calibration_file);
   std::vector<std::filesystem::path> inputs = {calibration_file};
-  for (const CalibratedPhoto& photo : calibration.photos) {
-    inputs.push_back(capture.folder / photo.photo);
-  }
+  std::vector<std::string> photos;
+  for (const CalibratedPhoto& photo : calibration.photos) photos.push_back(photo.photo);
+  for (const auto& file : capture.FilesBehind(photos)) inputs.push_back(file);
   Stage stage(capture.work() / "rectify", {"rectify", kRectifyVersion}, *set, common, inputs);
   if (stage.UpToDate()) {
     return {

@@ -35,6 +35,7 @@ struct BundlePhoto {
 struct BundleCamera {
   int width_px = 0, height_px = 0;
   std::optional<Camera> known;  // held as it is; only poses are solved for
+  double told_focal_px = 0;     // by EXIF: the start, unless the board contradicts it; 0: not told
 };
 
 // How far the board stands off its plane: two parabolas, after mrcal's "calibration object warp".

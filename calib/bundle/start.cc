@@ -68,22 +68,31 @@ struct View {
 
 // The focal length under which the homographies look most like views of a plane. Every photo counts
 // by its median error, so that neither a few wrong corners nor a wrong photo lead astray.
-double FocalLength(const std::vector<View>& views, const Eigen::Vector2d& centre, double size_px) {
+// What EXIF tells wins where the views are about as well explained by it: seen from straight above,
+// a plane says little about the focal length.
+double FocalLength(const std::vector<View>& views, const Eigen::Vector2d& centre, double size_px,
+                   double told_px) {
   constexpr int kSteps = 160;
   constexpr double kLowest = 0.3, kHighest = 12;  // of the longer side
-  double best = size_px, best_cost = INFINITY;
-  for (int i = 0; i <= kSteps; ++i) {
-    const double focal = size_px * kLowest * std::pow(kHighest / kLowest, double(i) / kSteps);
+  constexpr double kAsWell = 1.3;
+  const auto cost_of = [&](double focal) {
     double cost = 0;
     for (const View& view : views) {
       cost += MedianError(*view.photo, centre, PoseFromHomography(view.homography, focal), focal);
     }
+    return cost;
+  };
+  double best = size_px, best_cost = INFINITY;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double focal = size_px * kLowest * std::pow(kHighest / kLowest, double(i) / kSteps);
+    const double cost = cost_of(focal);
     if (cost < best_cost) {
       best_cost = cost;
       best = focal;
     }
   }
-  return best;
+  const bool plausible = told_px > kLowest * size_px && told_px < kHighest * size_px;
+  return plausible && cost_of(told_px) <= kAsWell * best_cost ? told_px : best;
 }
 
 Camera StartCamera(const BundleCamera& description, CameraModel model, double focal_px) {
@@ -162,8 +171,9 @@ State Start(const BundleProblem& problem, const BundleOptions& options) {
         state.photos[indices[k]].rejected = "its corners lie on a line or are too few";
       }
     }
-    const double focal = description.known ? description.known->focal_length_x()
-                                           : FocalLength(views, centre, size_px);
+    const double focal = description.known
+                             ? description.known->focal_length_x()
+                             : FocalLength(views, centre, size_px, description.told_focal_px);
     state.cameras.push_back(StartCamera(description, options.model, focal));
     for (size_t k = 0; k < views.size(); ++k) {
       const Rigid3 pose = PoseFromHomography(views[k].homography, focal);

@@ -82,6 +82,9 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   set->AddRange("feature-px", &options->feature_px, 200, 20000,
                 "--poses colmap: features are looked for in a copy whose longer side is at most "
                 "this");
+  set->AddChoice("triage", &options->triage, {"warn", "drop", "off"},
+                 "blurred, dark, overexposed and doubled photographs: warn names them, drop leaves "
+                 "them out too, off does not look");
   set->AddRange("paper-reflectance", &options->paper_reflectance, 0.05, 1,
                 "of the board's white, from which the light's power is estimated");
 }

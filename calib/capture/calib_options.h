@@ -28,6 +28,7 @@ struct CalibOptions {
   std::string light = "board";      // or camera, see capture_light.h
   double plane_tolerance = 0.005;   // COLMAP: see FrameOptions
   int feature_px = 2000;            // COLMAP: features are looked for in a copy of this size
+  std::string triage = "warn";      // warn, drop, off: what becomes of bad photographs
   double paper_reflectance = 0.85;  // of the board's white, for the light's power
   int quick_px = 0;  // no option: read photographs reduced to this for a quick look; 0: whole
 };

@@ -15,6 +15,7 @@
 #include "calib/capture/guide_capture.h"
 #include "calib/capture/phone_library.h"
 #include "calib/capture/pose_source.h"
+#include "calib/capture/triage_photos.h"
 #include "calib/guidance/coverage_picture.h"
 #include "calib/guidance/polar_picture.h"
 #include "pipeline/contract/board_file.h"
@@ -112,6 +113,22 @@ void WarnOfUncertainty(const BundleResult& bundle) {
         "the focal length is uncertain by {:.1f} %; photographs tilted by 20 to 40 degrees in "
         "several directions mend that",
         100 * sigma);
+  }
+}
+
+// The 35 mm equivalent is a whole number of millimetres; beyond that and the lens's own tolerance,
+// one of the two is wrong, and it is mostly the board's description or EXIF after cropping.
+void WarnOfToldFocal(const BundleProblem& problem, const BundleResult& bundle) {
+  constexpr double kTolerance = 0.12;
+  for (size_t c = 0; c < bundle.cameras.size(); ++c) {
+    const double told_px = problem.cameras[c].told_focal_px;
+    if (bundle.cameras[c].photos == 0 || told_px <= 0) continue;
+    const double found_px = bundle.cameras[c].camera.focal_length_x();
+    if (std::abs(found_px / told_px - 1) < kTolerance) continue;
+    spdlog::warn(
+        "EXIF's 35 mm equivalent makes a focal length of {:.0f} px, the board {:.0f} px; were the "
+        "photographs cropped, or is the board another than described?",
+        told_px, found_px);
   }
 }
 
@@ -213,9 +230,9 @@ int CalibSummary::BundleIndex(size_t photo) const {
 
 std::vector<std::filesystem::path> CalibInputs(const Capture& capture,
                                                const CalibOptions& options) {
-  std::vector<std::filesystem::path> inputs;
-  for (const std::string& name : capture.photos) inputs.push_back(capture.folder / name);
-  for (const std::string& name : capture.board_photos) inputs.push_back(capture.folder / name);
+  std::vector<std::string> photos = capture.photos;
+  photos.insert(photos.end(), capture.board_photos.begin(), capture.board_photos.end());
+  std::vector<std::filesystem::path> inputs = capture.FilesBehind(photos);
   if (!capture.board_file.empty()) inputs.push_back(capture.folder / capture.board_file);
   if (!options.fix_intrinsics.empty()) inputs.push_back(options.fix_intrinsics);
   if (!options.library.empty()) {
@@ -231,6 +248,7 @@ CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, 
   TellOfPrintScale(capture.board);
   CalibSummary summary;
   summary.photos = DetectPhotos(capture, options, threads);
+  summary.remarks = TriagePhotos(options, &summary.photos);
   summary.groups = GroupCameras(capture.file, options.cameras, summary.photos);
   RequireBoard(capture, options, summary.photos);
   return summary;
@@ -241,8 +259,9 @@ void SolveCapture(const Capture& capture, const CalibOptions& options,
   summary->photo_index.clear();
   BundleProblem problem = MakeProblem(summary->photos, summary->groups, &summary->photo_index);
   for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
-  Adjust(capture, options, std::move(problem), summary);
+  Adjust(capture, options, problem, summary);
   WarnOfUncertainty(summary->bundle);
+  if (assumed.empty()) WarnOfToldFocal(problem, summary->bundle);
   FinishCapture(capture, options, !assumed.empty(), summary);
 }
 

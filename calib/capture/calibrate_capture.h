@@ -12,13 +12,14 @@
 #include "calib/guidance/verdict.h"
 #include "calib/light/light.h"
 #include "calib/light/power.h"
+#include "calib/triage/triage.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/contract/stage.h"
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 5;
+inline constexpr int kCalibVersion = 7;
 
 struct RejectedPhoto {
   std::string name, reason;
@@ -27,6 +28,7 @@ struct RejectedPhoto {
 struct CalibSummary {
   Calibration calibration;
   std::vector<DetectedPhoto> photos;
+  std::vector<Remark> remarks;  // of triage
   CameraGroups groups;
   BundleResult bundle;              // of the stored pictures
   Trust trust;                      // in that result; empty unless from_board()

@@ -92,11 +92,30 @@ CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::
   return groups;
 }
 
+double ToldFocal_px(const std::vector<DetectedPhoto>& photos, const CameraGroup& group) {
+  constexpr double kFilmDiagonal_mm = 43.2666;  // 36 × 24
+  for (const size_t index : group.photos) {
+    const DetectedPhoto& photo = photos[index];
+    const ExifFacts& exif = photo.measures.file.exif;
+    if (photo.focal_length_35mm <= 0 || exif.digital_zoom > 1.01) continue;
+    // A cropped picture has another diagonal than the tag is about.
+    const double diagonal_px = std::hypot(group.width_px, group.height_px);
+    const double exif_px = std::hypot(exif.width_px, exif.height_px);
+    const bool cropped =
+        exif_px > 0 && std::abs(std::max(exif.width_px, exif.height_px) * diagonal_px /
+                                    (std::max(group.width_px, group.height_px) * exif_px) -
+                                1) > 0.01;
+    if (!cropped) return photo.focal_length_35mm / kFilmDiagonal_mm * diagonal_px;
+  }
+  return 0;
+}
+
 BundleProblem MakeProblem(const std::vector<DetectedPhoto>& photos, const CameraGroups& groups,
                           std::vector<size_t>* photo_index) {
   BundleProblem problem;
   for (const CameraGroup& group : groups.groups) {
-    problem.cameras.push_back({group.width_px, group.height_px, std::nullopt});
+    problem.cameras.push_back(
+        {group.width_px, group.height_px, std::nullopt, ToldFocal_px(photos, group)});
   }
   for (size_t i = 0; i < photos.size(); ++i) {
     if (photos[i].detection.corners.empty()) continue;

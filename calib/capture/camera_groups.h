@@ -29,6 +29,10 @@ struct CameraGroups {
 CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::string& cameras,
                           const std::vector<DetectedPhoto>& photos);
 
+// Focal length in pixels by EXIF's 35 mm equivalent, which is about the diagonal (CIPA DCG-001); 0:
+// no photograph of the group tells it, or they were cropped or zoomed.
+double ToldFocal_px(const std::vector<DetectedPhoto>& photos, const CameraGroup& group);
+
 // The bundle adjustment of all photographs with corners, in stored pictures. `photo_index` returns
 // which detected photograph each of its photos is.
 BundleProblem MakeProblem(const std::vector<DetectedPhoto>& photos, const CameraGroups& groups,

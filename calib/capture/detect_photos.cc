@@ -22,7 +22,12 @@ void Enlarge(int reduction, std::pair<int, int> size, DetectedPhoto* photo) {
   for (CornerObservation& corner : photo->detection.corners) {
     corner.point_px *= reduction;
     corner.sigma_px *= reduction;
+    corner.blur_px *= reduction;
   }
+  PhotoMeasures& measures = photo->measures;
+  std::tie(measures.file.image.width, measures.file.image.height) = size;
+  measures.blur_px *= reduction;
+  measures.edge_px *= reduction;
 }
 
 DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
@@ -41,16 +46,17 @@ DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
   detected.focal_length_35mm = photo.focal_length_35mm;
   detected.camera_model = photo.camera_model;
   detected.clips = !photo.is_float();
-  if (photo.exposure_time_s > 0 && photo.iso > 0 && photo.f_number > 0) {
-    detected.exposure = photo.exposure_time_s * photo.iso / (photo.f_number * photo.f_number);
-  }
+  detected.exposure = photo.exposure();
   if (!capture.has_board) return detected;
   DetectorOptions detector;
   detector.longest_px = options.detect_px;
   detector.min_corners = options.min_corners;
-  detected.detection = DetectBoard(GrayFromPhoto(photo), capture.board, detector);
+  const GrayImage gray = GrayFromPhoto(photo);
+  detected.detection = DetectBoard(gray, capture.board, detector);
+  detected.measures = MeasurePhoto(name, photo, gray, detected.detection);
+  detected.measures.flash_photo = !board_photo;
   if (!board_photo && !detected.detection.corners.empty()) {
-    const Encoding encoding = ResolveEncoding(capture.encoding, file, photo.bits);
+    const Encoding encoding = ResolveEncoding(capture.resolved_encoding(), file, photo.bits);
     detected.paper = SamplePaper(photo, encoding, capture.board, spots, detected.detection.corners);
     detected.sample_clipped_share =
         ClippedShareOfSample(photo, detected.detection.corners, capture.sample_size_mm);

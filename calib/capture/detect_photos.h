@@ -7,6 +7,7 @@
 #include "calib/capture/calib_options.h"
 #include "calib/corners/detector.h"
 #include "calib/light/paper.h"
+#include "calib/triage/measure.h"
 #include "pipeline/contract/capture.h"
 
 namespace glint {
@@ -23,6 +24,7 @@ struct DetectedPhoto {
   BoardDetection detection;         // corners in the upright picture
   std::vector<PaperSample> paper;   // of flash photographs
   double sample_clipped_share = 0;  // see guidance/clipping.h
+  PhotoMeasures measures;           // what triage goes by
 };
 
 // In the capture's order, flash photographs first. At most `threads` photographs are in memory at a

@@ -62,6 +62,12 @@ Json PhotoMetrics(const CalibSummary& summary, size_t index) {
   return json;
 }
 
+Json TriageOf(const CalibSummary& summary) {
+  std::vector<PhotoMeasures> measures;
+  for (const DetectedPhoto& photo : summary.photos) measures.push_back(photo.measures);
+  return ToJson(measures, summary.remarks);
+}
+
 }  // namespace
 
 Json MetricsOf(const CalibSummary& summary) {
@@ -86,6 +92,7 @@ Json MetricsOf(const CalibSummary& summary) {
     metrics["rejected_photos"].push_back({{"photo", photo.name}, {"reason", photo.reason}});
   }
   if (summary.from_board()) AddTrustMetrics(summary.bundle, summary.trust, &metrics);
+  metrics["triage"] = TriageOf(summary);
   metrics["light"] = LightMetrics(summary);
   metrics["guidance"] = ToJson(summary.guidance);
   if (!summary.poses.is_null()) metrics["poses"] = summary.poses;
@@ -97,6 +104,7 @@ Json ResidualsOf(const CalibSummary& summary) {
   json["about"] =
       "per photo [corner id, x_px, y_px, residual x, residual y, inlier]: seen - predicted, in the "
       "stored picture; the centre of the top-left pixel is (0.5, 0.5)";
+  json["triage"] = TriageOf(summary);
   json["photos"] = Json::object();
   for (const PhotoEstimate& photo : summary.bundle.photos) {
     Json corners = Json::array();

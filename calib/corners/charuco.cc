@@ -35,8 +35,9 @@ int FindCorners(const GrayImage& image, const Board& board, const DetectorOption
     if (!guess) continue;
     const SaddleFit fit = FitSaddle(image, *guess, options.saddle);
     if (!fit.ok) continue;
-    (*found)[corner.id] = {{corner.id, corner.position_in_sample_mm, fit.centre_px, fit.sigma_px},
-                           {at, fit.centre_px}};
+    (*found)[corner.id] = {
+        {corner.id, corner.position_in_sample_mm, fit.centre_px, fit.sigma_px, fit.blur_px},
+        {at, fit.centre_px}};
     ++added;
   }
   return added;

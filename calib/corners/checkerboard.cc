@@ -215,7 +215,7 @@ BoardDetection DetectCheckerboard(const GrayImage& image, const Board& board,
     const auto [column, row] = cell;
     detection.corners.push_back({row * columns + column,
                                  GridPointInSample(board, column + 1, row + 1), fit.centre_px,
-                                 fit.sigma_px});
+                                 fit.sigma_px, fit.blur_px});
   }
   std::sort(detection.corners.begin(), detection.corners.end(),
             [](const CornerObservation& a, const CornerObservation& b) { return a.id < b.id; });

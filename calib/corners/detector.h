@@ -34,6 +34,7 @@ struct CornerObservation {
   Eigen::Vector2d position_in_sample_mm;  // on the board
   Eigen::Vector2d point_px;               // centre of the top-left pixel: (0.5, 0.5)
   double sigma_px = 0;                    // standard deviation by the fit's residuals
+  double blur_px = 0;                     // σ of the edges' blur there
 };
 
 struct BoardDetection {

@@ -28,7 +28,7 @@ GrayImage GrayFromPhoto(const Photo& photo) {
   if (image.pixels() == 0) return gray;
   std::vector<float> luma(image.pixels());
   for (size_t i = 0; i < luma.size(); ++i) luma[i] = Luma(image, i);
-  if (photo.is_float()) {
+  if (photo.is_float() || photo.format == "raw") {
     const float white = std::max(Percentile99(luma), 1e-12f);
     for (float& value : luma) {
       value = std::pow(std::clamp(value / white, 0.0f, 1.0f), 1.0f / 2.2f);

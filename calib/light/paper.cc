@@ -34,7 +34,7 @@ std::optional<Mean> DiscMean(const Photo& photo, Encoding encoding,
       for (int c = 0; c < 3; ++c) {
         const float stored = image.channel(c)[static_cast<size_t>(y) * image.width + x];
         if (!photo.is_float() && stored >= kClipped) return std::nullopt;
-        sum[c] += LinearFromEncoded(encoding, stored);
+        sum[c] += LinearFromEncoded(encoding, stored, c);
       }
       ++count;
     }

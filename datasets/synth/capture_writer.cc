@@ -63,6 +63,10 @@ std::string PosesToml(const CapturePlan& plan, const std::string& format) {
       PhotoName(0, format), corners);
 }
 
+fs::path PhotoFile(const fs::path& folder, int index, const std::string& format) {
+  return folder / PhotoName(index, format);
+}
+
 std::string CaptureToml(const CapturePlan& plan, const SyntheticCaptureOptions& options) {
   const double side = plan.options.sample_mm;
   std::string text;
@@ -271,7 +275,7 @@ SyntheticCaptureSummary WriteSyntheticCapture(const fs::path& folder,
   summary.height_px = plan.camera.height_px;
   Progress progress("photographs", summary.photos);
   for (int i = 0; i < summary.photos; ++i) {
-    summary.clipped_share.push_back(shoot.Take(i, folder / PhotoName(i, options.format)));
+    summary.clipped_share.push_back(shoot.Take(i, PhotoFile(folder, i, options.format)));
     progress.Advance();
   }
   WriteTruth(folder / "truth", plan, material, options);

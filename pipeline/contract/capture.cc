@@ -1,6 +1,7 @@
 #include "pipeline/contract/capture.h"
 
 #include <fnmatch.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,9 @@
 #include "calib/board/dictionary.h"
 #include "pipeline/contract/board_file.h"
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/photo_name.h"
 #include "pipeline/contract/toml_file.h"
+#include "pipeline/contract/video.h"
 
 namespace glint {
 namespace {
@@ -18,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxPhotos = 10000;
 constexpr int kMaxResolution_px = 16384;
+constexpr int kUsualEvery = 15;  // half a second of most videos
 
 // One table of the file, read key by key; what is not asked for is unknown in the end.
 class TableReader {
@@ -33,6 +37,7 @@ class TableReader {
   }
 
   bool present() const { return table_ != nullptr; }
+  const std::string& name() const { return name_; }
 
   const toml::node* Find(const std::string& key) {
     known_.push_back(key);
@@ -193,18 +198,43 @@ std::vector<std::string> Match(const fs::path& folder, const std::string& patter
   return found;
 }
 
-std::vector<std::string> MatchAll(const fs::path& folder, const std::vector<std::string>& patterns,
-                                  const fs::path& file, const std::string& field) {
+// One frame in `every` of a video, from the first.
+std::vector<std::string> FramesOf(const fs::path& folder, const std::string& video, int every) {
+  const VideoInfo info = ReadVideoInfo(folder / video);
+  if (info.missing > 0) {
+    spdlog::warn("{}: the video is cut off; its {} whole frames are used, {} are missing",
+                 (folder / video).string(), info.frames, info.missing);
+  }
+  std::vector<std::string> names;
+  for (int frame = 0; frame < info.frames; frame += every) names.push_back(FrameName(video, frame));
+  return names;
+}
+
+// Photographs of the table's `key` (patterns) and `video` (patterns too), each once.
+std::vector<std::string> ReadPhotos(const fs::path& folder, const std::string& key,
+                                    TableReader* table, const fs::path& file) {
+  const auto patterns = table->Texts(key, "give a list of patterns such as [\"photos/*.jpg\"]");
+  const auto videos = table->Texts("video", "give a name such as \"clip.mp4\", or a list of them");
+  const int every = static_cast<int>(
+      std::lround(table->Number("every", kUsualEvery, 1, 1e6, " of frames, at least 1")));
   std::vector<std::string> all;
   std::set<std::string> seen;
+  const auto add = [&](const std::string& name) {
+    if (seen.insert(name).second) all.push_back(name);
+  };
   for (const std::string& pattern : patterns) {
-    for (const std::string& name : Match(folder, pattern, file, field)) {
-      if (seen.insert(name).second) all.push_back(name);
+    for (const std::string& name : Match(folder, pattern, file, table->name() + "." + key)) {
+      add(name);
+    }
+  }
+  for (const std::string& pattern : videos) {
+    for (const std::string& video : Match(folder, pattern, file, table->name() + ".video")) {
+      for (const std::string& name : FramesOf(folder, video, every)) add(name);
     }
   }
   if (all.size() > kMaxPhotos) {
-    throw UserError(file, field, std::to_string(all.size()) + " files",
-                    "at most " + std::to_string(kMaxPhotos) + " photographs are read");
+    throw UserError(file, table->name(), std::to_string(all.size()) + " photographs",
+                    "at most " + std::to_string(kMaxPhotos) + " are read");
   }
   return all;
 }
@@ -304,8 +334,7 @@ void ReadBoard(const fs::path& file, const toml::table& document, Capture* captu
   } else {
     DescribeBoard(&table, capture);
   }
-  const auto patterns = table.Texts("photos", "give a list of patterns such as [\"board/*.jpg\"]");
-  capture->board_photos = MatchAll(capture->folder, patterns, file, "board.photos");
+  capture->board_photos = ReadPhotos(capture->folder, "photos", &table, file);
   table.RejectUnknown();
   if (from_file) return;  // checked already
   const Board& board = capture->board;
@@ -317,7 +346,13 @@ void ReadBoard(const fs::path& file, const toml::table& document, Capture* captu
 
 void ReadRadiometry(const fs::path& file, const toml::table& document, Capture* capture) {
   TableReader radiometry(file, document, "radiometry");
-  capture->encoding = radiometry.Text("encoding", "auto", {"auto", "srgb", "gamma2.2", "linear"});
+  capture->encoding = radiometry.Text("encoding", "auto");
+  if (capture->encoding_is_file()) {
+    Match(capture->folder, capture->encoding, file, "radiometry.encoding");
+  } else {
+    radiometry.Text("encoding", "auto",
+                    {"auto", "srgb", "gamma2.2", "linear", "a response curve's file (.json)"});
+  }
   radiometry.RejectUnknown();
   TableReader light(file, document, "light");
   const auto offset = light.Numbers("offset_mm", 3, false, "give [x, y, z] in millimetres");
@@ -402,6 +437,19 @@ void RejectUnknownTables(const fs::path& file, const toml::table& document) {
 
 }  // namespace
 
+bool Capture::encoding_is_file() const { return fs::path(encoding).extension() == ".json"; }
+
+std::string Capture::resolved_encoding() const {
+  return encoding_is_file() ? (folder / encoding).string() : encoding;
+}
+
+std::vector<fs::path> Capture::FilesBehind(const std::vector<std::string>& names) const {
+  std::vector<fs::path> files;
+  for (const std::string& name : FilesOfPhotos(names)) files.push_back(folder / name);
+  if (encoding_is_file()) files.push_back(folder / encoding);
+  return files;
+}
+
 Capture ReadCapture(const fs::path& folder) {
   Capture capture;
   capture.folder = folder.filename() == "capture.toml" ? folder.parent_path() : folder;
@@ -418,9 +466,8 @@ Capture ReadCapture(const fs::path& folder) {
   RejectUnknownTables(capture.file, *document);
   ReadSample(capture.file, *document, &capture);
   TableReader photos(capture.file, *document, "photos");
-  const auto patterns = photos.Texts("files", "give a list of patterns such as [\"photos/*.jpg\"]");
+  capture.photos = ReadPhotos(capture.folder, "files", &photos, capture.file);
   photos.RejectUnknown();
-  capture.photos = MatchAll(capture.folder, patterns, capture.file, "photos.files");
   ReadBoard(capture.file, *document, &capture);
   ReadPoses(capture.file, *document, &capture);
   ReadRadiometry(capture.file, *document, &capture);

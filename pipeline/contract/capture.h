@@ -30,6 +30,7 @@ struct Capture {
   std::filesystem::path file;    // folder / "capture.toml"
 
   // [photos] files: patterns relative to the folder; found files, sorted, relative to the folder.
+  // Then the frames of [photos] video, one in `every`: "clip.mp4#0030" (see photo_name.h).
   std::vector<std::string> photos;
   // [board] photos: more photographs of the board, for the intrinsics alone.
   std::vector<std::string> board_photos;
@@ -44,7 +45,9 @@ struct Capture {
   std::array<double, 2> sample_size_mm{0, 0};  // [sample] size_mm = [width, height]
   std::array<int, 2> resolution_px{0, 0};      // [sample] resolution_px = width, or [width, height]
 
-  std::string encoding = "auto";  // [radiometry] encoding: auto, srgb, gamma2.2, linear
+  // [radiometry] encoding: auto, srgb, gamma2.2, linear, or a response curve's file (.json),
+  // relative to the folder.
+  std::string encoding = "auto";
   std::array<double, 3> light_offset_mm{0, 0, 0};  // [light] offset_mm, in the camera frame
   std::array<double, 3> light_power{0, 0, 0};      // [light] power, radiance·mm²; zeros: estimate
   std::array<double, 3> ambient{0, 0, 0};          // [light] ambient
@@ -52,6 +55,12 @@ struct Capture {
   // Rectified by another program: nothing to calibrate or rectify.
   bool imported() const { return !has_board && photos.empty(); }
   std::filesystem::path work() const { return folder / "glint"; }
+  bool encoding_is_file() const;
+  // The encoding as programs resolve it: the folder stands before the name of a file.
+  std::string resolved_encoding() const;
+  // Files behind the names of photographs, and the response curve where there is one: what a stage
+  // that reads these photographs depends on.
+  std::vector<std::filesystem::path> FilesBehind(const std::vector<std::string>& names) const;
 };
 
 // Reads and checks the file; the stage tables [calib] … [report] are left to OptionSet::LoadToml.

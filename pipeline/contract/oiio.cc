@@ -1,10 +1,64 @@
 #include "pipeline/contract/oiio.h"
 
+#include <fstream>
 #include <mutex>
+#include <set>
 
 #include "pipeline/contract/image.h"
+#include "pipeline/contract/photo_name.h"
 
 namespace glint {
+namespace {
+
+// The brand of an ISO media file: "heic", "mif1"…; "" for other files.
+std::string MediaBrand(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string head(12, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (stream.gcount() < 12 || head.substr(4, 4) != "ftyp") return "";
+  return head.substr(8, 4);
+}
+
+bool IsHeic(const std::filesystem::path& file) {
+  static const std::set<std::string> brands = {"heic", "heix", "heim", "heis",
+                                               "hevc", "mif1", "msf1"};
+  return brands.count(MediaBrand(file)) > 0;
+}
+
+// libheif's words where the file is whole and a plug-in is missing.
+bool LacksDecoder(const std::string& reason) {
+  for (const char* words : {"Unsupported codec", "No decoding plugin", "Unsupported feature"}) {
+    if (reason.find(words) != std::string::npos) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void RejectUnreadable(const std::filesystem::path& file, std::string reason,
+                      const std::string& formats) {
+  if (reason.size() > 200) reason.resize(200);
+  while (!reason.empty() && reason.back() == '\n') reason.pop_back();
+  if (IsHeic(file) &&
+      (LacksDecoder(reason) || ("," + formats + ",").find(",heif,") == std::string::npos)) {
+    throw EnvironmentError(file.string() + ": found a HEIC photograph, for which no decoder is " +
+                           "installed (" + reason + "); install libheif1 with libde265-0 and an " +
+                           "OpenImageIO built with it, or convert the photographs to JPEG");
+  }
+  if (IsRawFileName(file)) {
+    throw UserError(
+        file, "",
+        "a RAW file of a camera that LibRaw does not know, or a damaged one (" + reason + ")",
+        "convert it to DNG or to 16-bit TIFF, or take it out");
+  }
+  if (IsVideoFileName(file)) {
+    throw UserError(
+        file, "", "a video where a photograph is expected",
+        "name it in capture.toml: [photos] video = \"" + file.filename().string() + "\"");
+  }
+  throw UserError(file, "", "no image that can be read (" + reason + ")",
+                  "give a JPEG, PNG, TIFF, EXR, HEIC or RAW file, or take it out");
+}
 
 void SetUpOiio() {
   static std::once_flag once;
@@ -28,10 +82,7 @@ std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
   }
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), configuration);
   if (!input) {
-    std::string reason = OIIO::geterror();
-    if (reason.size() > 200) reason.resize(200);
-    throw UserError(file, "", "no image that can be read (" + reason + ")",
-                    "give a JPEG, PNG, TIFF, EXR, HEIC or RAW file, or take it out");
+    RejectUnreadable(file, OIIO::geterror(), OIIO::get_string_attribute("input_format_list"));
   }
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width < 1 || spec.height < 1 || spec.depth != 1 || spec.nchannels < 1 ||

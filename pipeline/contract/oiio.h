@@ -14,9 +14,15 @@ namespace glint {
 // Limits on size and channels, one thread inside the library (ours run outside); done once.
 void SetUpOiio();
 
-// Opens an image and checks its header. Throws UserError: missing, empty, not an image, too large.
+// Opens an image and checks its header. Throws UserError: missing, empty, not an image, too large;
+// EnvironmentError: a HEIC file where no decoder is installed.
 std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
                                             const OIIO::ImageSpec* configuration = nullptr);
+
+// What OpenImage throws for a file that does not open. `reason` is OpenImageIO's own, and `formats`
+// the formats it was built with ("bmp,heif,jpeg,…").
+[[noreturn]] void RejectUnreadable(const std::filesystem::path& file, std::string reason,
+                                   const std::string& formats);
 
 [[noreturn]] void RejectTruncated(const std::filesystem::path& file, OIIO::ImageInput* input);
 

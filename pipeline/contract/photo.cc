@@ -2,13 +2,18 @@
 #include <OpenImageIO/imageio.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/exif.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/jpeg_end.h"
 #include "pipeline/contract/oiio.h"
 #include "pipeline/contract/photo_header.h"
+#include "pipeline/contract/photo_name.h"
+#include "pipeline/contract/upright.h"
+#include "pipeline/contract/video.h"
 
 namespace glint {
 namespace {
@@ -16,75 +21,16 @@ namespace {
 constexpr int kSmallestSide_px = 16;
 constexpr std::size_t kMaxJpegBytes = 512u << 20;
 
-// EXIF orientations 5–8 exchange width and height.
-bool ExchangesAxes(int orientation) { return orientation >= 5; }
-
-// Source pixel of the upright pixel (x, y) in an image stored as width × height.
-std::pair<int, int> StoredPixel(int orientation, int x, int y, int width, int height) {
-  switch (orientation) {
-    case 2:
-      return {width - 1 - x, y};
-    case 3:
-      return {width - 1 - x, height - 1 - y};
-    case 4:
-      return {x, height - 1 - y};
-    case 5:
-      return {y, x};
-    case 6:
-      return {y, height - 1 - x};
-    case 7:
-      return {width - 1 - y, height - 1 - x};
-    case 8:
-      return {width - 1 - y, x};
-    default:
-      return {x, y};
-  }
-}
-
 OIIO::ImageSpec Configuration() {
   OIIO::ImageSpec configuration;
   configuration.attribute("oiio:UnassociatedAlpha", 1);
   configuration.attribute("raw:ColorSpace", "linear");
-  configuration.attribute("oiio:reorient", 0);  // HEIC: leave the turning to us
+  // One scale for all photographs of a camera: nothing that follows the picture's content.
+  configuration.attribute("raw:use_camera_wb", 1);
+  configuration.attribute("raw:auto_bright", 0);
+  configuration.attribute("raw:adjust_maximum_thr", 0.0f);
+  configuration.attribute("raw:HighlightMode", 0);  // clip: saturated pixels have a channel at 1
   return configuration;
-}
-
-int Orientation(const OIIO::ImageSpec& spec) {
-  const int orientation = spec.get_int_attribute("Orientation", 1);
-  return orientation >= 1 && orientation <= 8 ? orientation : 1;
-}
-
-template <class T>
-void Unpack(const std::vector<T>& samples, const OIIO::ImageSpec& spec, double scale,
-            Image* image) {
-  const int orientation = Orientation(spec);
-  const int stored_channels = spec.nchannels;
-  const bool grey = stored_channels < 3;
-  const float factor = static_cast<float>(scale);
-  for (int y = 0; y < image->height; ++y) {
-    for (int x = 0; x < image->width; ++x) {
-      const auto [sx, sy] = StoredPixel(orientation, x, y, spec.width, spec.height);
-      const T* pixel =
-          samples.data() + (static_cast<size_t>(sy) * spec.width + sx) * stored_channels;
-      const size_t at = static_cast<size_t>(y) * image->width + x;
-      for (int c = 0; c < 3; ++c) {
-        image->samples[c * image->pixels() + at] = static_cast<float>(pixel[grey ? 0 : c]) * factor;
-      }
-    }
-  }
-}
-
-void ReadExif(const OIIO::ImageSpec& spec, Photo* photo) {
-  photo->orientation = Orientation(spec);
-  photo->focal_length_35mm = spec.get_float_attribute("Exif:FocalLengthIn35mmFilm", 0);
-  photo->exposure_time_s = spec.get_float_attribute("ExposureTime", 0);
-  photo->f_number = spec.get_float_attribute("FNumber", 0);
-  photo->iso = spec.get_float_attribute("Exif:PhotographicSensitivity", 0);
-  if (photo->iso == 0) photo->iso = spec.get_float_attribute("Exif:ISOSpeedRatings", 0);
-  photo->camera_model = spec.get_string_attribute("Make");
-  const std::string model = spec.get_string_attribute("Model");
-  if (!photo->camera_model.empty() && !model.empty()) photo->camera_model += " ";
-  photo->camera_model += model;
 }
 
 void RequireWholeJpeg(const std::filesystem::path& file, const OIIO::ImageInput& input) {
@@ -105,57 +51,106 @@ void RequireFinite(const std::filesystem::path& file, const Image& image) {
   }
 }
 
+// LibRaw leaves what it could not read black, and reports it to nobody.
+void RequireWholeRaw(const std::filesystem::path& file, const Photo& photo) {
+  if (photo.format != "raw") return;
+  for (const float value : photo.image.samples) {
+    if (value > 0) return;
+  }
+  throw UserError(file, "", "a RAW file without a picture: cut off or damaged",
+                  "copy the photograph again, or take it out");
+}
+
+// The turn that is left to do, 1 … 8.
+int TurnToApply(const Orientation& orientation) {
+  return orientation.applied ? 1 : orientation.exif;
+}
+
+template <class T>
+Image ReadUpright(const std::filesystem::path& file, OIIO::ImageInput* input, OIIO::TypeDesc type,
+                  double scale, int turn) {
+  const std::vector<T> samples = ReadSamples<T>(file, input, type);
+  const OIIO::ImageSpec& spec = input->spec();
+  return UprightImage(samples, {spec.width, spec.height, spec.nchannels}, turn, scale);
+}
+
+void ReadPixels(const std::filesystem::path& file, OIIO::ImageInput* input, int turn,
+                Photo* photo) {
+  const OIIO::TypeDesc format = input->spec().format;
+  if (format.is_floating_point()) {
+    photo->bits = 32;
+    photo->image = ReadUpright<float>(file, input, OIIO::TypeFloat, 1.0, turn);
+    RequireFinite(file, photo->image);
+  } else if (format.basesize() > 1) {
+    photo->bits = 16;
+    photo->image = ReadUpright<std::uint16_t>(file, input, OIIO::TypeUInt16, 1.0 / 65535, turn);
+  } else {
+    photo->bits = 8;
+    photo->image = ReadUpright<std::uint8_t>(file, input, OIIO::TypeUInt8, 1.0 / 255, turn);
+  }
+}
+
+void RequireSize(const std::filesystem::path& file, int width, int height) {
+  if (width >= kSmallestSide_px && height >= kSmallestSide_px) return;
+  throw UserError(file, "size", std::to_string(width) + "x" + std::to_string(height) + " pixels",
+                  "a photograph of at least " + std::to_string(kSmallestSide_px) +
+                      " pixels a side is expected");
+}
+
+std::unique_ptr<OIIO::ImageInput> OpenPhoto(const std::filesystem::path& file) {
+  const OIIO::ImageSpec configuration = Configuration();
+  auto input = OpenImage(file, &configuration);
+  // RAW formats are TIFF files too, whose first picture is a thumbnail.
+  const std::string_view format = input->format_name();
+  if (IsRawFileName(file) && format != "raw") {
+    throw UserError(file, "",
+                    "no RAW picture that LibRaw can read, but a " + std::string(format) +
+                        " file or the preview of an unknown camera",
+                    "convert it to DNG or to 16-bit TIFF, or rename it if it is no RAW file");
+  }
+  return input;
+}
+
 }  // namespace
 
 Photo ReadPhoto(const std::filesystem::path& file) {
-  const OIIO::ImageSpec configuration = Configuration();
-  const auto input = OpenImage(file, &configuration);
-  const OIIO::ImageSpec spec = input->spec();
-  if (spec.width < kSmallestSide_px || spec.height < kSmallestSide_px) {
-    throw UserError(file, "size",
-                    std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels",
-                    "a photograph of at least " + std::to_string(kSmallestSide_px) +
-                        " pixels a side is expected");
-  }
+  const PhotoName name = SplitPhotoName(file);
+  if (name.frame >= 0) return ReadVideoFrame(name.file, name.frame);
+  const auto input = OpenPhoto(file);
+  RequireSize(file, input->spec().width, input->spec().height);
   RequireWholeJpeg(file, *input);
   Photo photo;
-  const bool turned = ExchangesAxes(Orientation(spec));
-  photo.image =
-      Image(turned ? spec.height : spec.width, turned ? spec.width : spec.height, {"R", "G", "B"});
-  if (spec.format.is_floating_point()) {
-    photo.bits = 32;
-    Unpack(ReadSamples<float>(file, input.get(), OIIO::TypeFloat), spec, 1.0, &photo.image);
-    RequireFinite(file, photo.image);
-  } else if (spec.format.basesize() > 1) {
-    photo.bits = 16;
-    Unpack(ReadSamples<std::uint16_t>(file, input.get(), OIIO::TypeUInt16), spec, 1.0 / 65535,
-           &photo.image);
-  } else {
-    photo.bits = 8;
-    Unpack(ReadSamples<std::uint8_t>(file, input.get(), OIIO::TypeUInt8), spec, 1.0 / 255,
-           &photo.image);
-  }
-  ReadExif(spec, &photo);
+  ReadExif(*input, &photo);
+  const Orientation orientation = OrientationOf(file, *input);
+  photo.orientation = orientation.exif;
+  ReadPixels(file, input.get(), TurnToApply(orientation), &photo);
+  RequireWholeRaw(file, photo);
   return photo;
 }
 
 PhotoHeader ReadPhotoHeader(const std::filesystem::path& file) {
-  const OIIO::ImageSpec configuration = Configuration();
-  const auto input = OpenImage(file, &configuration);
-  const OIIO::ImageSpec& spec = input->spec();
   PhotoHeader header;
+  const PhotoName name = SplitPhotoName(file);
+  if (name.frame >= 0) {
+    header.photo.format = "video";
+    std::tie(header.stored_width, header.stored_height) = VideoFrameSize(name.file);
+    return header;
+  }
+  const auto input = OpenPhoto(file);
   header.is_jpeg = std::string_view(input->format_name()) == "jpeg";
-  header.stored_width = spec.width;
-  header.stored_height = spec.height;
-  ReadExif(spec, &header.photo);
+  header.stored_width = input->spec().width;
+  header.stored_height = input->spec().height;
+  ReadExif(*input, &header.photo);
+  header.photo.orientation = OrientationOf(file, *input).exif;
   return header;
 }
 
 std::pair<int, int> PhotoSize(const std::filesystem::path& file) {
-  const OIIO::ImageSpec configuration = Configuration();
-  const auto input = OpenImage(file, &configuration);
+  const PhotoName name = SplitPhotoName(file);
+  if (name.frame >= 0) return VideoFrameSize(name.file);
+  const auto input = OpenPhoto(file);
   const OIIO::ImageSpec& spec = input->spec();
-  if (ExchangesAxes(Orientation(spec))) return {spec.height, spec.width};
+  if (TurnExchangesAxes(TurnToApply(OrientationOf(file, *input)))) return {spec.height, spec.width};
   return {spec.width, spec.height};
 }
 

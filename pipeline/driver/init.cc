@@ -10,14 +10,15 @@
 #include "pipeline/contract/board_file.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
+#include "pipeline/contract/photo_name.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kPhotoExtensions = {".jpg",  ".jpeg", ".png", ".tif", ".tiff", ".exr",
-                                         ".heic", ".dng",  ".nef", ".cr2", ".cr3",  ".arw"};
+constexpr std::array kPhotoExtensions = {".jpg",  ".jpeg", ".png",  ".tif",
+                                         ".tiff", ".exr",  ".heic", ".heif"};
 constexpr double kFrameSquares = 3;     // squares left standing at each side of the default window
 constexpr double kSampleMargin_mm = 5;  // between the window's edge and the sample
 
@@ -26,25 +27,30 @@ std::string Lower(std::string text) {
   return text;
 }
 
-// Extensions of photographs in a folder, and how many files have each.
-std::map<std::string, size_t> CountPhotos(const fs::path& folder) {
+bool IsPhoto(const fs::path& file) {
+  return IsRawFileName(file) || std::find(kPhotoExtensions.begin(), kPhotoExtensions.end(),
+                                          Lower(file.extension())) != kPhotoExtensions.end();
+}
+
+// Extensions of photographs (or videos) in a folder, and how many files have each.
+std::map<std::string, size_t> CountFiles(const fs::path& folder,
+                                         bool (*wanted)(const fs::path& file)) {
   std::map<std::string, size_t> counts;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string extension = Lower(entry.path().extension());
-    const bool known = std::find(kPhotoExtensions.begin(), kPhotoExtensions.end(), extension) !=
-                       kPhotoExtensions.end();
     const bool hidden = entry.path().filename().string()[0] == '.';
-    if (known && !hidden && entry.is_regular_file()) ++counts[extension];
+    if (hidden || !wanted(entry.path()) || !entry.is_regular_file()) continue;
+    ++counts[Lower(entry.path().extension())];
   }
   return counts;
 }
 
 // ["photos/*.jpg", "photos/*.png"], and the number of files that match.
-std::string Patterns(const fs::path& folder, const std::string& subfolder, size_t* files) {
+std::string Patterns(const fs::path& folder, const std::string& subfolder,
+                     bool (*wanted)(const fs::path& file), size_t* files) {
   *files = 0;
   std::string list;
-  for (const auto& [extension, count] : CountPhotos(folder / subfolder)) {
+  for (const auto& [extension, count] : CountFiles(folder / subfolder, wanted)) {
     *files += count;
     list += (list.empty() ? "" : ", ") + ("\"" + subfolder + "/*" + extension + "\"");
   }
@@ -166,9 +172,28 @@ std::string BoardText(const InitOptions& options, const std::vector<double>& win
   return text + BoardPhotosText(board_photos);
 }
 
-std::string PhotoPatterns(const fs::path& folder, size_t* files) {
-  const std::string patterns = Patterns(folder, "photos", files);
-  return patterns.empty() ? "[\"photos/*.jpg\"]" : patterns;
+void CheckEncoding(const std::string& encoding) {
+  constexpr std::array kNames = {"auto", "srgb", "gamma2.2", "linear"};
+  if (std::find(kNames.begin(), kNames.end(), encoding) != kNames.end()) return;
+  if (fs::path(encoding).extension() == ".json") return;
+  throw UserError("--encoding: found '" + encoding +
+                  "'; use auto, srgb, gamma2.2, linear or the file of a response curve (.json)");
+}
+
+std::string PhotoText(const InitOptions& options, size_t* files) {
+  size_t videos = 0;
+  const std::string patterns = Patterns(options.folder, "photos", IsPhoto, files);
+  const std::string video = Patterns(options.folder, "photos", IsVideoFileName, &videos);
+  std::string text = "[photos]\n";
+  if (!patterns.empty() || video.empty()) {
+    text += "files = " + (patterns.empty() ? "[\"photos/*.jpg\"]" : patterns) + "\n";
+  }
+  if (!video.empty()) {
+    text += "video = " + video + "\nevery = " + std::to_string(options.every) +
+            "                       # one frame in so many becomes a photograph\n";
+  }
+  *files += videos;
+  return text + "\n";
 }
 
 }  // namespace
@@ -190,18 +215,20 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   const bool has_file = fs::exists(board_file);
   const Board board = has_file ? ReadBoardFile(board_file).board : DescribedBoard(options, &window);
   RequireCount(options.light_offset_mm, 3, "light-offset-mm", "X,Y,Z");
-  const std::string board_photos = Patterns(options.folder, "board", &result->board_photos);
+  CheckEncoding(options.encoding);
+  const std::string board_photos =
+      Patterns(options.folder, "board", IsPhoto, &result->board_photos);
   std::string text = "# A capture for Glint; docs/capture.md explains every key.\n\n";
   text += "[sample]                         # the part of the surface that becomes maps\n";
   text += "size_mm = " + List(SampleSize_mm(options, board)) + "             # width, height\n";
   text += "# centre_mm = [0, 0]             # from the board's centre, x right, y up\n";
   text += "resolution_px = " + std::to_string(options.resolution_px) +
           "             # width of the maps, or [width, height]\n\n";
-  text += "[photos]\nfiles = " + PhotoPatterns(options.folder, &result->photos) + "\n\n";
+  text += PhotoText(options, &result->photos);
   text += has_file ? BoardFileText(board, board_photos) : BoardText(options, window, board_photos);
   text += "\n";
   text += "[radiometry]\nencoding = \"" + options.encoding +
-          "\"                # auto, srgb, gamma2.2, linear\n\n";
+          "\"                # auto, srgb, gamma2.2, linear, a curve\n\n";
   text += "[light]\noffset_mm = " + List(options.light_offset_mm) +
           "           # the flash from the lens: x right, y down, z forward\n";
   text += "# power = 30000                  # radiance times mm^2; left out: estimated\n";

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/photo_name.h"
 
 namespace glint {
 namespace {
@@ -88,9 +89,15 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
   if (!imported) {
     std::vector<std::string> all = capture.photos;
     all.insert(all.end(), capture.board_photos.begin(), capture.board_photos.end());
-    if (!capture.board_file.empty()) all.push_back(capture.board_file);
-    steps.push_back(Step("calib", all, {}));
-    steps.push_back(Step("rectify", capture.photos, {"calib"}));
+    std::vector<std::string> calib_files = FilesOfPhotos(all);
+    std::vector<std::string> rectify_files = FilesOfPhotos(capture.photos);
+    if (!capture.board_file.empty()) calib_files.push_back(capture.board_file);
+    if (capture.encoding_is_file()) {
+      calib_files.push_back(capture.encoding);
+      rectify_files.push_back(capture.encoding);
+    }
+    steps.push_back(Step("calib", calib_files, {}));
+    steps.push_back(Step("rectify", rectify_files, {"calib"}));
   }
   steps.push_back(Step("fit", {}, {"rectify"}));
   const std::string& method = choices.method;

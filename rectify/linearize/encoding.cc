@@ -1,8 +1,6 @@
 #include "rectify/linearize/encoding.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 
 #include "pipeline/contract/errors.h"
@@ -16,69 +14,74 @@ std::optional<Encoding> EncodingFromName(std::string_view name) {
   return std::nullopt;
 }
 
-std::string_view EncodingName(Encoding encoding) {
-  switch (encoding) {
+std::string_view EncodingName(const Encoding& encoding) {
+  switch (encoding.kind()) {
     case Encoding::kLinear:
       return "linear";
     case Encoding::kSrgb:
       return "srgb";
     case Encoding::kGamma22:
       return "gamma2.2";
+    case Encoding::kResponse:
+      return "response";
   }
   return "";
 }
 
-float LinearFromEncoded(Encoding encoding, float value) {
+float LinearFromEncoded(const Encoding& encoding, float value, int channel) {
   const double v = std::max(value, 0.0f);
-  switch (encoding) {
+  switch (encoding.kind()) {
     case Encoding::kLinear:
       return static_cast<float>(v);
     case Encoding::kSrgb:
       return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
     case Encoding::kGamma22:
       return static_cast<float>(std::pow(v, 2.2));
+    case Encoding::kResponse:
+      return encoding.curve().Linear(channel, value);
   }
   return 0;
 }
 
-float EncodedFromLinear(Encoding encoding, float value) {
+float EncodedFromLinear(const Encoding& encoding, float value, int channel) {
   const double v = std::max(value, 0.0f);
-  switch (encoding) {
+  switch (encoding.kind()) {
     case Encoding::kLinear:
       return static_cast<float>(v);
     case Encoding::kSrgb:
       return static_cast<float>(v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
     case Encoding::kGamma22:
       return static_cast<float>(std::pow(v, 1 / 2.2));
+    case Encoding::kResponse:
+      return encoding.curve().Stored(channel, value);
   }
   return 0;
 }
 
-std::vector<float> LinearTable(Encoding encoding, int codes) {
+std::vector<float> LinearTable(const Encoding& encoding, int codes, int channel) {
   std::vector<float> table(codes);
   for (int i = 0; i < codes; ++i) {
-    table[i] = LinearFromEncoded(encoding, static_cast<float>(i) / static_cast<float>(codes - 1));
+    table[i] =
+        LinearFromEncoded(encoding, static_cast<float>(i) / static_cast<float>(codes - 1), channel);
   }
   return table;
 }
 
-bool IsRawFileName(const std::filesystem::path& file) {
-  static constexpr std::array kEndings = {".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dng",
-                                          ".erf", ".iiq", ".kdc", ".mrw", ".nef", ".nrw",
-                                          ".orf", ".pef", ".raf", ".raw", ".rw2", ".srw"};
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+bool IsResponseFileName(const std::string& name) {
+  return std::filesystem::path(name).extension() == ".json";
 }
 
 Encoding ResolveEncoding(const std::string& name, const std::filesystem::path& file, int bits) {
-  if (name == "auto") {
-    return bits > 16 || IsRawFileName(file) ? Encoding::kLinear : Encoding::kGamma22;
+  const bool linear = bits > 16 || IsRawFileName(file);
+  if (name == "auto") return linear ? Encoding::kLinear : Encoding::kGamma22;
+  if (IsResponseFileName(name)) {
+    return linear ? Encoding(Encoding::kLinear) : Encoding(ReadResponseCurve(name));
   }
   const std::optional<Encoding> encoding = EncodingFromName(name);
   if (!encoding) {
-    throw UserError("encoding: found '" + name + "'; use auto, srgb, gamma2.2 or linear");
+    throw UserError("encoding: found '" + name +
+                    "'; use auto, srgb, gamma2.2, linear or the name of a response curve's file "
+                    "(.json)");
   }
   return *encoding;
 }

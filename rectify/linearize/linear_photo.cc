@@ -23,11 +23,16 @@ std::vector<Code> Pack(const Image& image) {
 
 }  // namespace
 
-LinearPhoto::LinearPhoto(Photo photo, Encoding encoding, const SaturationRule& saturation)
+LinearPhoto::LinearPhoto(Photo photo, const Encoding& encoding, const SaturationRule& saturation)
     : width_(photo.image.width), height_(photo.image.height), bits_(photo.bits) {
   if (bits_ == 8 || bits_ == 16) {
     const int codes = bits_ == 8 ? 256 : 65536;
-    table_ = LinearTable(encoding, codes);
+    codes_ = static_cast<size_t>(codes);
+    const int tables = encoding.kind() == Encoding::kResponse ? 3 : 1;
+    for (int c = 0; c < tables; ++c) {
+      const std::vector<float> table = LinearTable(encoding, codes, c);
+      table_.insert(table_.end(), table.begin(), table.end());
+    }
     saturated_code_ = static_cast<int>(std::ceil(saturation.stored_level * (codes - 1)));
     if (bits_ == 8) {
       codes8_ = Pack<uint8_t>(photo.image);
@@ -42,7 +47,10 @@ LinearPhoto::LinearPhoto(Photo photo, Encoding encoding, const SaturationRule& s
   if (std::isfinite(saturation.float_level)) {
     saturated_value_ = LinearFromEncoded(encoding, saturated_value_);
   }
-  for (float& value : planes_) value = LinearFromEncoded(encoding, value);
+  const size_t pixels = planes_.size() / 3;
+  for (size_t i = 0; i < planes_.size(); ++i) {
+    planes_[i] = LinearFromEncoded(encoding, planes_[i], static_cast<int>(i / pixels));
+  }
 }
 
 }  // namespace glint

@@ -33,12 +33,12 @@ class LinearPhoto {
   template <class Code>
   struct Codes {
     const Code* data;
-    const float* table;
+    std::array<const float*, 3> table;
     int saturated_from;  // first code that is clipped
     Pixel At(size_t i) const {
       const Code* p = data + 3 * i;
       const int brightest = std::max({p[0], p[1], p[2]});
-      return {{table[p[0]], table[p[1]], table[p[2]]}, brightest >= saturated_from};
+      return {{table[0][p[0]], table[1][p[1]], table[2][p[2]]}, brightest >= saturated_from};
     }
   };
   struct Floats {
@@ -52,7 +52,7 @@ class LinearPhoto {
   };
 
   // Takes the photo's samples (the float copy of an 8 or 16 bit photo is freed).
-  LinearPhoto(Photo photo, Encoding encoding, const SaturationRule& saturation = {});
+  LinearPhoto(Photo photo, const Encoding& encoding, const SaturationRule& saturation = {});
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -61,13 +61,21 @@ class LinearPhoto {
   // Calls `f` with the storage's reader (Codes<uint8_t>, Codes<uint16_t> or Floats).
   template <class F>
   auto Visit(F&& f) const {
-    if (bits_ == 8) return f(Codes<uint8_t>{codes8_.data(), table_.data(), saturated_code_});
-    if (bits_ == 16) return f(Codes<uint16_t>{codes16_.data(), table_.data(), saturated_code_});
+    if (bits_ == 8) return f(Codes<uint8_t>{codes8_.data(), Tables(), saturated_code_});
+    if (bits_ == 16) return f(Codes<uint16_t>{codes16_.data(), Tables(), saturated_code_});
     return f(Floats{planes_.data(), static_cast<size_t>(width_) * height_, saturated_value_});
   }
 
  private:
+  // One for all channels, or three.
+  std::array<const float*, 3> Tables() const {
+    const float* table = table_.data();
+    const size_t step = table_.size() == codes_ ? 0 : codes_;
+    return {table, table + step, table + 2 * step};
+  }
+
   int width_, height_, bits_;
+  size_t codes_ = 0;
   std::vector<float> table_;
   int saturated_code_ = 0;
   float saturated_value_ = 0;

@@ -9,10 +9,7 @@ StreamedPhoto Read(const std::filesystem::path& file, const std::string& encodin
                    const SaturationRule& saturation) {
   Photo photo = ReadPhoto(file);
   const bool ldr = !photo.is_float();
-  double exposure = 0;
-  if (photo.exposure_time_s > 0 && photo.iso > 0 && photo.f_number > 0) {
-    exposure = photo.exposure_time_s * photo.iso / (photo.f_number * photo.f_number);
-  }
+  const double exposure = photo.exposure();
   const Encoding encoding = ResolveEncoding(encoding_name, file, photo.bits);
   return {LinearPhoto(std::move(photo), encoding, saturation), ldr, exposure};
 }

@@ -3,9 +3,11 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <set>
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
+#include "pipeline/contract/photo_name.h"
 #include "pipeline/contract/progress.h"
 #include "rectify/linearize/light_guess.h"
 #include "rectify/views/frame_mask.h"
@@ -72,9 +74,11 @@ void CheckPhotos(const Capture& capture, const Calibration& calibration,
   }
   const Manifest manifest = ReadManifest(calibration_file, "calib");
   const fs::path folder = fs::absolute(calibration_file).parent_path();
+  std::set<fs::path> checked;
   for (const CalibratedPhoto& photo : calibration.photos) {
-    const fs::path file = capture.folder / photo.photo;
-    CheckSize(file, calibration.cameras[static_cast<size_t>(photo.camera)]);
+    const fs::path name = capture.folder / photo.photo, file = SplitPhotoName(name).file;
+    CheckSize(name, calibration.cameras[static_cast<size_t>(photo.camera)]);
+    if (!checked.insert(file).second) continue;  // another frame of the same video
     const fs::path relative = fs::absolute(file).lexically_normal().lexically_relative(folder);
     for (const ManifestInput& input : manifest.inputs) {
       if (fs::path(input.path).lexically_normal() != relative || input.hash == HashFile(file)) {
@@ -98,7 +102,8 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
   for (const CalibratedPhoto& photo : calibration.photos) {
     files.push_back(capture.folder / photo.photo);
   }
-  PhotoStream stream(files, task.encoding, SaturationRuleOf(options), common.threads > 1);
+  PhotoStream stream(files, capture.resolved_encoding(), SaturationRuleOf(options),
+                     common.threads > 1);
   LightGuess guess(set.plane, set.convention.falloff);
   std::vector<double> exposures;
   summary.metrics["views"] = Json::array();

@@ -29,6 +29,36 @@ TEST(Encoding, KnowsPublishedValues) {
   EXPECT_NEAR(LinearFromEncoded(Encoding::kGamma22, 0.5f), 0.21763764, 1e-6);
 }
 
+TEST(Encoding, MeasuredCurvesAreReadPerChannelAndForDevelopedPhotosAlone) {
+  ResponseCurve curve;
+  for (int c = 0; c < 3; ++c) {
+    for (int i = 0; i < 256; ++i) {
+      curve.linear[c].push_back(std::pow(static_cast<float>(i) / 255, 1.5f + c));
+    }
+  }
+  const std::string file = ::testing::TempDir() + "/response.json";
+  WriteResponseCurve(file, curve);
+  const Encoding encoding = ResolveEncoding(file, "a.jpg", 8);
+  ASSERT_EQ(encoding.kind(), Encoding::kResponse);
+  EXPECT_EQ(ResolveEncoding(file, "a.dng", 16), Encoding::kLinear);
+  EXPECT_EQ(ResolveEncoding(file, "a.exr", 32), Encoding::kLinear);
+  for (const int bits : {8, 16}) {
+    Photo photo;
+    photo.bits = bits;
+    photo.image = Image(16, 16, {"R", "G", "B"});
+    std::fill(photo.image.samples.begin(), photo.image.samples.end(), 102 / 255.0f);
+    const auto pixel =
+        LinearPhoto(photo, encoding).Visit([](const auto& reader) { return reader.At(5); });
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(pixel.rgb[c], std::pow(0.4f, 1.5f + c), 1e-5) << bits << " " << c;
+      EXPECT_NEAR(EncodedFromLinear(encoding, pixel.rgb[c], c), 0.4f, 1e-5);
+    }
+  }
+  std::swap(curve.linear[1][100], curve.linear[1][101]);
+  WriteResponseCurve(file, curve);
+  EXPECT_THROW(ResolveEncoding(file, "a.jpg", 8), UserError);  // it falls
+}
+
 // Encoding the table's value gives the code back, for every code of 8 and 16 bits.
 TEST(Encoding, TablesRoundTripEveryCode) {
   for (const Encoding encoding : {Encoding::kLinear, Encoding::kSrgb, Encoding::kGamma22}) {

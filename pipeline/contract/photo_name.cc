@@ -1,0 +1,64 @@
+#include "pipeline/contract/photo_name.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <set>
+#include <string_view>
+
+namespace glint {
+namespace {
+
+template <size_t N>
+bool HasEnding(const std::filesystem::path& file, const std::array<const char*, N>& endings) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::find(endings.begin(), endings.end(), std::string_view(ending)) != endings.end();
+}
+
+}  // namespace
+
+bool IsRawFileName(const std::filesystem::path& file) {
+  static constexpr std::array kEndings = {".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dng",
+                                          ".erf", ".iiq", ".kdc", ".mrw", ".nef", ".nrw",
+                                          ".orf", ".pef", ".raf", ".raw", ".rw2", ".srw"};
+  return HasEnding(file, kEndings);
+}
+
+bool IsVideoFileName(const std::filesystem::path& file) {
+  static constexpr std::array kEndings = {".3gp", ".avi", ".m4v", ".mkv",
+                                          ".mov", ".mp4", ".mts", ".webm"};
+  return HasEnding(file, kEndings);
+}
+
+PhotoName SplitPhotoName(const std::filesystem::path& name) {
+  constexpr size_t kMostDigits = 8;
+  const std::string text = name.string();
+  const size_t mark = text.rfind('#');
+  if (mark == std::string::npos || mark == 0) return {name, -1};
+  const std::string digits = text.substr(mark + 1);
+  const bool number = !digits.empty() && digits.size() <= kMostDigits &&
+                      digits.find_first_not_of("0123456789") == std::string::npos;
+  if (!number || !IsVideoFileName(text.substr(0, mark))) return {name, -1};
+  return {text.substr(0, mark), std::stoi(digits)};
+}
+
+std::string FrameName(const std::string& video, int frame) {
+  char number[16];
+  std::snprintf(number, sizeof(number), "#%04d", frame);
+  return video + number;
+}
+
+std::vector<std::string> FilesOfPhotos(const std::vector<std::string>& names) {
+  std::vector<std::string> files;
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    const std::string file = SplitPhotoName(name).file.generic_string();
+    if (seen.insert(file).second) files.push_back(file);
+  }
+  return files;
+}
+
+}  // namespace glint
