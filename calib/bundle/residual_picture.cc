@@ -6,6 +6,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "calib/canvas/canvas.h"
+
 namespace glint {
 namespace {
 
@@ -67,16 +69,7 @@ Image ResidualPicture(const BundleResult& result, int camera, int width_px) {
       result.cameras[camera].photos, result.rms_px, lengthening / scale);
   cv::putText(canvas, text, {10, height + 23}, cv::FONT_HERSHEY_SIMPLEX, 0.55,
               cv::Scalar(40, 40, 40), 1, cv::LINE_AA);
-  Image image(canvas.cols, canvas.rows, {"R", "G", "B"});
-  for (int y = 0; y < canvas.rows; ++y) {
-    for (int x = 0; x < canvas.cols; ++x) {
-      const auto& pixel = canvas.at<cv::Vec3b>(y, x);
-      for (int c = 0; c < 3; ++c) {
-        image.channel(c)[static_cast<size_t>(y) * canvas.cols + x] = pixel[c] / 255.0f;
-      }
-    }
-  }
-  return image;
+  return ImageOf(canvas);
 }
 
 }  // namespace glint

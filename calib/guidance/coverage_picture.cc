@@ -7,6 +7,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "calib/canvas/canvas.h"
+
 namespace glint {
 namespace {
 
@@ -68,16 +70,8 @@ Image CoveragePicture(const Verdict& verdict) {
         cv::FILLED);
   }
   DrawScale(verdict.limits.highlight_deg, height, &canvas);
-  Image image(canvas.cols, canvas.rows, {"R", "G", "B"});
-  for (int y = 0; y < canvas.rows; ++y) {
-    for (int x = 0; x < canvas.cols; ++x) {
-      const auto& pixel = canvas.at<cv::Vec3b>(y, x);
-      for (int c = 0; c < 3; ++c) {
-        image.channel(c)[static_cast<size_t>(y) * canvas.cols + x] = pixel[2 - c] / 255.0f;
-      }
-    }
-  }
-  return image;
+  cv::cvtColor(canvas, canvas, cv::COLOR_BGR2RGB);
+  return ImageOf(canvas);
 }
 
 }  // namespace glint

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "calib/canvas/canvas.h"
+
 namespace glint {
 namespace {
 
@@ -31,19 +33,6 @@ void DrawPanel(const LightOfPhoto& photo, double scale, double full_percent, cv:
     cv::circle(panel, at, 2, Colour(100 * spot.relative.mean() / full_percent), cv::FILLED,
                cv::LINE_AA);
   }
-}
-
-Image ImageOf(const cv::Mat& canvas) {
-  Image image(canvas.cols, canvas.rows, {"R", "G", "B"});
-  for (int y = 0; y < canvas.rows; ++y) {
-    for (int x = 0; x < canvas.cols; ++x) {
-      const auto& pixel = canvas.at<cv::Vec3b>(y, x);
-      for (int c = 0; c < 3; ++c) {
-        image.channel(c)[static_cast<size_t>(y) * canvas.cols + x] = pixel[c] / 255.0f;
-      }
-    }
-  }
-  return image;
 }
 
 }  // namespace

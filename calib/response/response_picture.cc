@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "calib/canvas/canvas.h"
 #include "rectify/linearize/encoding.h"
 
 namespace glint {
@@ -96,16 +97,7 @@ Image ResponsePicture(const ResponseCurve& curve, int side_px) {
   cv::Mat canvas(side_px, 2 * side_px, CV_8UC3, cv::Scalar(255, 255, 255));
   DrawCurves(curve, Plot(side_px, 0, &canvas));
   DrawDifference(curve, Plot(side_px, side_px, &canvas));
-  Image image(canvas.cols, canvas.rows, {"R", "G", "B"});
-  for (int y = 0; y < canvas.rows; ++y) {
-    for (int x = 0; x < canvas.cols; ++x) {
-      const auto& pixel = canvas.at<cv::Vec3b>(y, x);
-      for (int c = 0; c < 3; ++c) {
-        image.channel(c)[static_cast<size_t>(y) * image.width + x] = pixel[c] / 255.0f;
-      }
-    }
-  }
-  return image;
+  return ImageOf(canvas);
 }
 
 }  // namespace glint

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "calib/canvas/canvas.h"
+
 namespace glint {
 namespace {
 
@@ -20,19 +22,6 @@ cv::Point At(const Eigen::Vector2d& point) {
 
 void Write(const std::string& text, const cv::Point& at, double size, cv::Mat* canvas) {
   cv::putText(*canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, size, kInk, 1, cv::LINE_AA);
-}
-
-Image ImageOf(const cv::Mat& canvas) {
-  Image image(canvas.cols, canvas.rows, {"R", "G", "B"});
-  for (int y = 0; y < canvas.rows; ++y) {
-    for (int x = 0; x < canvas.cols; ++x) {
-      const auto& pixel = canvas.at<cv::Vec3b>(y, x);
-      for (int c = 0; c < 3; ++c) {
-        image.channel(c)[static_cast<size_t>(y) * canvas.cols + x] = pixel[c] / 255.0f;
-      }
-    }
-  }
-  return image;
 }
 
 // White at 0, red above, blue below.
