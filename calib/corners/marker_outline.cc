@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "calib/corners/damped_descent.h"
+
 namespace glint {
 namespace {
 
@@ -173,41 +175,18 @@ void Normal(const Band& band, const Vector& p, Matrix* jtj, Vector* jtr) {
     *jtr += pixel.weight * r * g;
   }
   *jtj = jtj->selfadjointView<Eigen::Lower>();
-  for (int i = band.active; i < kAll; ++i) {
-    jtj->row(i).setZero();
-    jtj->col(i).setZero();
-    (*jtj)(i, i) = 1;
-    (*jtr)[i] = 0;
-  }
+  HoldFrom(band.active, jtj, jtr);
 }
 
 bool Minimize(const Band& band, double max_blur_px, Vector* p) {
-  constexpr int kMaxSteps = 40;
-  double cost = SumOfSquares(band, *p), damping = 1e-3;
-  Matrix jtj;
-  Vector jtr;
-  bool fresh = true;
-  for (int step = 0; step < kMaxSteps; ++step) {
-    if (fresh) Normal(band, *p, &jtj, &jtr);
-    Matrix damped = jtj;
-    damped.diagonal() += damping * jtj.diagonal() + Vector::Constant(1e-12);
-    const Vector delta = -damped.ldlt().solve(jtr);
-    if (!delta.allFinite()) return false;
-    Vector trial = *p + delta;
-    trial[kLogBlur] = std::clamp(trial[kLogBlur], std::log(kLeastBlur_px), std::log(max_blur_px));
-    const double trial_cost = SumOfSquares(band, trial);
-    fresh = trial_cost <= cost;
-    if (!fresh) {
-      damping *= 8;
-      if (damping > 1e8) return true;
-      continue;
-    }
-    *p = trial;
-    cost = trial_cost;
-    damping = std::max(1e-9, damping / 5);
-    if (delta.head<8>().cwiseAbs().maxCoeff() < 1e-5 && damping < 1e-4) return true;
-  }
-  return true;
+  return MinimizeDamped<kAll>(
+      [&](const Vector& trial) { return SumOfSquares(band, trial); },
+      [&](const Vector& at, Matrix* jtj, Vector* jtr) { Normal(band, at, jtj, jtr); },
+      [&](Vector* trial) {
+        (*trial)[kLogBlur] =
+            std::clamp((*trial)[kLogBlur], std::log(kLeastBlur_px), std::log(max_blur_px));
+      },
+      [](const Vector& delta) { return delta.head<8>().cwiseAbs().maxCoeff() < 1e-5; }, p);
 }
 
 // Paper and ink from the pixels that lie clearly on either side.

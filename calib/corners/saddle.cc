@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/corners/damped_descent.h"
+
 namespace glint {
 namespace {
 
@@ -95,12 +97,7 @@ void Normal(const Window& window, const Vector& p, int active, Matrix* jtj, Vect
     *jtr += pixel.weight * r * g;
   }
   *jtj = jtj->selfadjointView<Eigen::Lower>();
-  for (int i = active; i < kAll; ++i) {
-    jtj->row(i).setZero();
-    jtj->col(i).setZero();
-    (*jtj)(i, i) = 1;
-    (*jtr)[i] = 0;
-  }
+  HoldFrom(active, jtj, jtr);
 }
 
 // Pixels in the ellipse of the guess, clipped at the image's edge. Weights fade toward the rim:
@@ -160,33 +157,14 @@ Vector Start(const Window& window, const SaddleGuess& guess) {
 }
 
 bool Minimize(const Window& window, int active, Vector* p) {
-  constexpr int kMaxSteps = 40;
-  double cost = SumOfSquares(window, *p), damping = 1e-3;
-  Matrix jtj;
-  Vector jtr;
-  bool fresh = true;
-  for (int step = 0; step < kMaxSteps; ++step) {
-    if (fresh) Normal(window, *p, active, &jtj, &jtr);
-    Matrix damped = jtj;
-    damped.diagonal() += damping * jtj.diagonal() + Vector::Constant(1e-12);
-    const Vector delta = -damped.ldlt().solve(jtr);
-    if (!delta.allFinite()) return false;
-    Vector trial = *p + delta;
-    trial[kLogBlur] =
-        std::clamp(trial[kLogBlur], std::log(kLeastBlur_px), std::log(window.radius_px));
-    const double trial_cost = SumOfSquares(window, trial);
-    fresh = trial_cost <= cost;
-    if (!fresh) {
-      damping *= 8;
-      if (damping > 1e8) return true;
-      continue;
-    }
-    *p = trial;
-    cost = trial_cost;
-    damping = std::max(1e-9, damping / 5);
-    if (delta.head<2>().norm() < 1e-5 && damping < 1e-4) return true;
-  }
-  return true;
+  return MinimizeDamped<kAll>(
+      [&](const Vector& trial) { return SumOfSquares(window, trial); },
+      [&](const Vector& at, Matrix* jtj, Vector* jtr) { Normal(window, at, active, jtj, jtr); },
+      [&](Vector* trial) {
+        (*trial)[kLogBlur] =
+            std::clamp((*trial)[kLogBlur], std::log(kLeastBlur_px), std::log(window.radius_px));
+      },
+      [](const Vector& delta) { return delta.head<2>().norm() < 1e-5; }, p);
 }
 
 // Mean residuals of eight sectors round the centre; what hides a part of a corner stands out.
