@@ -138,8 +138,8 @@ TEST_F(LeftCamera, OurCornersAgreeAndFitBetter) {
   EXPECT_LT(result.rms_px, 0.5 * kPublishedRms_px);
 }
 
-// Odd against even photographs: the difference is what the covariances predict, or the fault is
-// named. Zhang's five images are too few for it.
+// Odd against even photographs differ by no more than twice what the covariances predict. Zhang's
+// five images are too few for it.
 TEST_F(LeftCamera, OddAndEvenPhotographsAgree) {
   for (const std::string side : {"left", "right"}) {
     const BundleProblem& problem = Problem(side);
@@ -156,7 +156,7 @@ TEST_F(LeftCamera, OddAndEvenPhotographsAgree) {
           side, bend ? "bent" : "flat", result.rms_px, validation.held_out_rms_px,
           validation.cameras[0].rms_px, validation.cameras[0].predicted_px, validation.ratio(),
           fmt::join(diagnosis.words, "\n"));
-      EXPECT_TRUE(validation.ratio() <= kTrustedRatio || !diagnosis.words.empty());
+      EXPECT_LE(validation.ratio(), kTrustedRatio);
     }
   }
 }
