@@ -19,7 +19,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 7;
+inline constexpr int kCalibVersion = 8;
 
 struct RejectedPhoto {
   std::string name, reason;

@@ -95,7 +95,6 @@ void WritePng(const std::filesystem::path& file, const Image& image, int bits) {
   OIIO::ImageSpec spec(image.width, image.height, channels,
                        bits == 16 ? OIIO::TypeUInt16 : OIIO::TypeUInt8);
   spec.attribute("DateTime", kNoDate);
-  spec.attribute("oiio:ColorSpace", "Linear");  // values are written as they are
   std::vector<int> order(static_cast<size_t>(channels));
   for (int c = 0; c < channels; ++c) order[static_cast<size_t>(c)] = c;
   const std::vector<float> interleaved = Interleave(image, order);

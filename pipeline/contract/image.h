@@ -42,7 +42,8 @@ void WriteExr(const std::filesystem::path& file, const Image& image,
 Image ReadExr(const std::filesystem::path& file,
               std::map<std::string, std::string>* attributes = nullptr);
 
-// 8 or 16 bit PNG (1, 3 or 4 channels), values clamped to [0, 1] and rounded. Throws
+// 8 or 16 bit PNG (1, 3 or 4 channels), values clamped to [0, 1], rounded and written as they are;
+// no gamma is told, so that viewers show them as they show any picture (sRGB). Throws
 // EnvironmentError.
 void WritePng(const std::filesystem::path& file, const Image& image, int bits = 8);
 

@@ -19,7 +19,7 @@
 
 namespace glint {
 
-inline constexpr int kExportVersion = 1;
+inline constexpr int kExportVersion = 2;
 
 struct ExportOptions {
   std::string from = "refine";  // stage whose maps are taken: refine, fit
