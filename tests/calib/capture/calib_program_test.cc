@@ -39,17 +39,7 @@ dictionary = "DICT_5X5_100"
 offset_mm = [12, 0, 0]
 )";
 
-Board CaptureBoard() {
-  Board board;
-  board.squares_x = 8;
-  board.squares_y = 6;
-  board.square_mm = 20;
-  board.marker_mm = 12;
-  board.dictionary = "DICT_5X5_100";
-  return board;
-}
-
-const Camera kCamera{CameraModel::kRadial, 640, 480, {560, 323.3, 237.1, 0.06, -0.08}};
+const Camera kCamera = testing::SmallCamera();
 
 void WriteText(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());
@@ -63,20 +53,11 @@ std::string ReadText(const fs::path& file) {
   return text.str();
 }
 
-void WritePhoto(const fs::path& file, const GrayImage& gray) {
-  fs::create_directories(file.parent_path());
-  Image image(gray.width, gray.height, {"R", "G", "B"});
-  for (size_t i = 0; i < gray.samples.size(); ++i) {
-    for (int c = 0; c < 3; ++c) image.channel(c)[i] = gray.samples[i] / 255.0f;
-  }
-  WritePng(file, image);
-}
-
 GrayImage TakePhoto(int index, double tilt_scale = 1) {
   testing::PhotoSettings settings;
   settings.samples = 2;
   settings.seed = index;
-  return Photograph(CaptureBoard(), kCamera,
+  return Photograph(testing::SmallBoard(), kCamera,
                     LookAt(230 + 5 * index, tilt_scale * (6 + 6 * index), 100 * index, 20 * index),
                     settings);
 }
@@ -105,7 +86,7 @@ class CalibProgram : public ::testing::Test {
   static void SetUpTestSuite() {
     root_ = fs::temp_directory_path() / ("glint_calib_" + std::to_string(::getpid()));
     for (int i = 0; i < 6; ++i) {
-      WritePhoto(root_ / "good/photos" / ("p" + std::to_string(i) + ".png"), TakePhoto(i));
+      testing::WritePhoto(root_ / "good/photos" / ("p" + std::to_string(i) + ".png"), TakePhoto(i));
     }
     WriteText(root_ / "good/capture.toml", kCaptureToml);
   }
@@ -215,16 +196,17 @@ TEST_F(CalibProgram, NamesPhotosWithoutTheBoard) {
   const fs::path capture = Copy("noboard", true);
   const GrayImage gray{640, 480, std::vector<unsigned char>(640 * 480, 120)};
   for (int i = 1; i < 6; ++i)
-    WritePhoto(capture / "photos" / ("p" + std::to_string(i) + ".png"), gray);
+    testing::WritePhoto(capture / "photos" / ("p" + std::to_string(i) + ".png"), gray);
   ExpectUserError(capture, {"capture.toml", "photos: found the board in only one of the 6",
                             "photos/p0.png", "photos/p3.png", "at least two are needed"});
-  WritePhoto(capture / "photos/p0.png", gray);
+  testing::WritePhoto(capture / "photos/p0.png", gray);
   ExpectUserError(capture, {"found the board in none of the 6 photographs", "photos/p0.png"});
 }
 
 TEST_F(CalibProgram, LeavesOutAPhotoWithoutTheBoardAndSaysSo) {
   const fs::path capture = Copy("onewithout");
-  WritePhoto(capture / "photos/p2.png", {640, 480, std::vector<unsigned char>(640 * 480, 120)});
+  testing::WritePhoto(capture / "photos/p2.png",
+                      {640, 480, std::vector<unsigned char>(640 * 480, 120)});
   const Result result = Calibrate(capture);
   EXPECT_EQ(result.code, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("left out: photos/p2.png"));
@@ -253,14 +235,14 @@ TEST_F(CalibProgram, NamesAPhotoOfAnotherSize) {
   GrayImage small = TakePhoto(3);
   int factor = 1;
   small = Reduced(small, 320, &factor);
-  WritePhoto(capture / "photos/p3.png", small);
+  testing::WritePhoto(capture / "photos/p3.png", small);
   ExpectUserError(capture, {"photos/p3.png: size: found 320x240 pixels", "640x480"});
 }
 
 TEST_F(CalibProgram, RefusesPhotosThatAllLookStraightDown) {
   const fs::path capture = Copy("flat", true);
   for (int i = 0; i < 6; ++i) {
-    WritePhoto(capture / "photos" / ("p" + std::to_string(i) + ".png"), TakePhoto(i, 0));
+    testing::WritePhoto(capture / "photos" / ("p" + std::to_string(i) + ".png"), TakePhoto(i, 0));
   }
   ExpectUserError(capture, {"capture.toml", "6 photographs", "tilt the phone"});
   // The intrinsics of the good capture mend that.

@@ -18,34 +18,19 @@ using ::testing::HasSubstr;
 using testing::LookAt;
 using ::testing::Not;
 
-const Camera kCamera{CameraModel::kRadial, 640, 480, {560, 323.3, 237.1, 0.06, -0.08}};
+const Camera kCamera = testing::SmallCamera();
 
 // Tilt and azimuth of the photographs.
 const std::map<std::string, std::pair<double, double>> kPhotos = {
     {"top", {2, 40}},   {"near_top", {12, 90}}, {"near_left", {12, 210}}, {"near_right", {12, 330}},
     {"side0", {30, 0}}, {"side1", {32, 120}},   {"side2", {28, 240}}};
 
-Board CaptureBoard() {
-  Board board;
-  board.squares_x = 8;
-  board.squares_y = 6;
-  board.square_mm = 20;
-  board.marker_mm = 12;
-  board.dictionary = "DICT_5X5_100";
-  return board;
-}
-
 void TakePhoto(const fs::path& file, double tilt_deg, double azimuth_deg) {
   testing::PhotoSettings settings;
   settings.samples = 2;
   const GrayImage gray =
-      Photograph(CaptureBoard(), kCamera, LookAt(240, tilt_deg, azimuth_deg, 5), settings);
-  Image image(gray.width, gray.height, {"R", "G", "B"});
-  for (size_t i = 0; i < gray.samples.size(); ++i) {
-    for (int c = 0; c < 3; ++c) image.channel(c)[i] = gray.samples[i] / 255.0f;
-  }
-  fs::create_directories(file.parent_path());
-  WritePng(file, image);
+      Photograph(testing::SmallBoard(), kCamera, LookAt(240, tilt_deg, azimuth_deg, 5), settings);
+  testing::WritePhoto(file, gray);
 }
 
 class Guidance : public ::testing::Test {

@@ -52,18 +52,6 @@ int RunGlint(const std::string& program, const fs::path& capture, const std::str
   return WEXITSTATUS(pclose(pipe));
 }
 
-Board SomeBoard() {
-  Board board;
-  board.squares_x = 8;
-  board.squares_y = 6;
-  board.square_mm = 20;
-  board.marker_mm = 12;
-  board.dictionary = "DICT_5X5_100";
-  return board;
-}
-
-Camera SomeCamera() { return {CameraModel::kRadial, 640, 480, {560, 323.3, 237.1, 0.06, -0.08}}; }
-
 // Six poses, each held for three frames, the last for six; then it is out of focus.
 void WriteVideo(const fs::path& file) {
   cv::VideoWriter writer(file.string(), cv::CAP_FFMPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'),
@@ -75,7 +63,7 @@ void WriteVideo(const fs::path& file) {
     settings.samples = 2;
     settings.seed = static_cast<std::uint64_t>(i);
     const GrayImage gray =
-        Photograph(SomeBoard(), SomeCamera(),
+        Photograph(testing::SmallBoard(), testing::SmallCamera(),
                    LookAt(230 + 5 * pose, 6 + 6 * pose, 100 * pose, 20 * pose), settings);
     cv::Mat frame(480, 640, CV_8UC1, const_cast<unsigned char*>(gray.samples.data())), colour;
     if (i == 6) cv::GaussianBlur(frame, frame, cv::Size(0, 0), 6);
@@ -127,8 +115,8 @@ void WriteCapture(const fs::path& capture, const std::string& ending,
     settings.seed = static_cast<std::uint64_t>(i);
     const auto write = ending == "dng" ? WriteRaw : WriteTiff;
     write(capture / "photos" / ("p" + std::to_string(i) + "." + ending),
-          Photograph(SomeBoard(), SomeCamera(), LookAt(230 + 5 * i, 6 + 6 * i, 100 * i, 20 * i),
-                     settings),
+          Photograph(testing::SmallBoard(), testing::SmallCamera(),
+                     LookAt(230 + 5 * i, 6 + 6 * i, 100 * i, 20 * i), settings),
           orientations[static_cast<size_t>(i)]);
   }
   std::string toml = kCaptureToml;

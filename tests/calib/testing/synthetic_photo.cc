@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/contract/image.h"
+
 namespace glint::testing {
 namespace {
 
@@ -135,6 +137,27 @@ GrayImage Photograph(const Board& board, const Camera& camera, const Rigid3& cam
         std::clamp(std::lround(level + settings.noise * random.Normal()), 0L, 255L));
   }
   return image;
+}
+
+Board SmallBoard() {
+  Board board;
+  board.squares_x = 8;
+  board.squares_y = 6;
+  board.square_mm = 20;
+  board.marker_mm = 12;
+  board.dictionary = "DICT_5X5_100";
+  return board;
+}
+
+Camera SmallCamera() { return {CameraModel::kRadial, 640, 480, {560, 323.3, 237.1, 0.06, -0.08}}; }
+
+void WritePhoto(const std::filesystem::path& file, const GrayImage& gray) {
+  std::filesystem::create_directories(file.parent_path());
+  Image image(gray.width, gray.height, {"R", "G", "B"});
+  for (size_t i = 0; i < gray.samples.size(); ++i) {
+    for (int c = 0; c < 3; ++c) image.channel(c)[i] = gray.samples[i] / 255.0f;
+  }
+  WritePng(file, image);
 }
 
 Rigid3 LookAt(double distance_mm, double tilt_deg, double azimuth_deg, double roll_deg,

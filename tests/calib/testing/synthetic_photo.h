@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 
@@ -27,6 +28,14 @@ struct PhotoSettings {
 // Gamma 2.2, 8 bits. The scene's radiance is averaged over each pixel before it is encoded.
 GrayImage Photograph(const Board& board, const Camera& camera, const Rigid3& camera_from_sample,
                      const PhotoSettings& settings = {});
+
+// A ChArUco board of 8 × 6 squares of 20 mm, and a camera of 640 × 480 that sees it whole from some
+// 240 mm: enough of a capture for programs' tests.
+Board SmallBoard();
+Camera SmallCamera();
+
+// A grey picture as an RGB file; missing folders are made.
+void WritePhoto(const std::filesystem::path& file, const GrayImage& gray);
 
 // A camera above the sample that looks at `target_mm`: tilted by `tilt_deg` toward direction
 // `azimuth_deg`, rolled by `roll_deg`, `distance_mm` away.
