@@ -9,7 +9,7 @@
 #include "pipeline/contract/board_file.h"
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/files.h"
-#include "tests/pipeline/contract/temp_folder.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -46,7 +46,7 @@ Result CheckSchema(const fs::path& file) {
 }
 
 TEST(BoardProgram, PrintsABoardThatInitAndCalibTake) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const fs::path a = folder / "a", b = folder / "b";
   const Result first = RunGlint("board", a.string() + " --sample-mm 90,60 --patches 0.85,0.18");
   ASSERT_EQ(first.code, 0) << first.output;
@@ -67,7 +67,7 @@ TEST(BoardProgram, PrintsABoardThatInitAndCalibTake) {
 }
 
 TEST(BoardProgram, CorrectsWhatAPrinterScaled) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const fs::path file = folder / "board.json";
   ASSERT_EQ(RunGlint("board", folder.path().string()).code, 0);
   const Board designed = ReadBoardFile(file).board;
@@ -88,7 +88,7 @@ TEST(BoardProgram, CorrectsWhatAPrinterScaled) {
 }
 
 TEST(BoardProgram, PrintsTheFrameOfTheDocumentation) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const fs::path example = fs::path(GLINT_SOURCE_DIR) / "docs/boards/materialgan.json";
   const Result schema = CheckSchema(example);
   EXPECT_EQ(schema.code, 0) << schema.output;
@@ -101,7 +101,7 @@ TEST(BoardProgram, PrintsTheFrameOfTheDocumentation) {
 }
 
 TEST(BoardProgram, SaysWhatIsWrong) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const std::string where = folder.path().string();
   const Result paper = RunGlint("board", where + " --paper B4");
   EXPECT_EQ(paper.code, 2);

@@ -11,7 +11,8 @@
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 #include "tests/calib/printing/raster_check.h"
-#include "tests/pipeline/contract/temp_folder.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -86,7 +87,7 @@ TEST(PlanSheet, SaysWhatDoesNotFit) {
   const auto complaint = [](auto change) {
     SheetOptions options;
     change(&options);
-    return MessageOf<UserError>([&] { PlanSheet(options); });
+    return test::MessageOf<UserError>([&] { PlanSheet(options); });
   };
   EXPECT_THAT(complaint([](SheetOptions* o) { o->paper = "B4"; }),
               AllOf(HasSubstr("--paper: found 'B4'"), HasSubstr("Letter")));
@@ -124,7 +125,7 @@ TEST(PrintedFiles, AreTheSameEachTimeAndTellAPersonWhatTheyAre) {
 }
 
 TEST(PrintedFiles, CornersOfTheRasterAreWhereTheDescriptionHasThem) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const auto sheets = TenSheets();
   const auto check = [&](size_t index, int dpi, const std::string& program) {
     const BoardFile file = PlanSheet(sheets[index].options);
@@ -146,7 +147,7 @@ TEST(PrintedFiles, CornersOfTheRasterAreWhereTheDescriptionHasThem) {
 }
 
 TEST(PrintedFiles, TheSvgIsWellFormed) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   WriteFileAtomically(folder / "board.svg", SvgOf(DrawSheet(PlanSheet({}), 0.85)));
   const std::string command =
       "python3 -c \"import sys, xml.dom.minidom as m; "

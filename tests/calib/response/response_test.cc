@@ -11,7 +11,8 @@
 #include "calib/response/sample_photos.h"
 #include "pipeline/contract/errors.h"
 #include "rectify/linearize/encoding.h"
-#include "tests/pipeline/contract/temp_folder.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
 #include "tests/support/data_folder.h"
 
 namespace glint {
@@ -104,11 +105,11 @@ TEST(Response, TheCurveRisesWhateverItIsGiven) {
 TEST(Response, TooFewSpotsAreRefused) {
   ResponseProblem few = Series(Srgb, 0.5);
   few.observations.resize(8);
-  EXPECT_THAT(MessageOf<ComputationError>([&] { EstimateResponse(few); }), HasSubstr("series"));
+  EXPECT_THAT(test::MessageOf<ComputationError>([&] { EstimateResponse(few); }), HasSubstr("series"));
 }
 
 TEST(Response, GreyPatchesAreASeriesToo) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   Image image(320, 40, {"R", "G", "B"});
   std::string patches;
   for (int p = 0; p < 20; ++p) {
@@ -134,11 +135,11 @@ TEST(Response, GreyPatchesAreASeriesToo) {
 }
 
 TEST(Response, SeriesOfOneExposureIsRefused) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   WritePng(folder / "a.png", Image(64, 64, {"R", "G", "B"}));
-  EXPECT_THAT(MessageOf<UserError>([&] { SampleSeries({folder / "a.png"}, {}); }),
+  EXPECT_THAT(test::MessageOf<UserError>([&] { SampleSeries({folder / "a.png"}, {}); }),
               HasSubstr("--exposures"));
-  EXPECT_THAT(MessageOf<UserError>([&] {
+  EXPECT_THAT(test::MessageOf<UserError>([&] {
                 SampleSeries({folder / "a.png", folder / "a.png"}, {1, 1});
               }),
               HasSubstr("same exposure"));

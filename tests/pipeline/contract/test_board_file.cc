@@ -5,7 +5,8 @@
 
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/errors.h"
-#include "tests/pipeline/contract/temp_folder.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -34,9 +35,9 @@ class BoardFileTest : public ::testing::Test {
   }
   std::string Complaint(std::string text, const std::string& what, const std::string& with) {
     text.replace(text.find(what), what.size(), with);
-    return MessageOf<UserError>([&] { Read(text); });
+    return test::MessageOf<UserError>([&] { Read(text); });
   }
-  TempFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(BoardFileTest, ListsMarkersByCentreOrByCorners) {
@@ -86,7 +87,7 @@ TEST_F(BoardFileTest, SaysWhatIsWrong) {
               HasSubstr("no square's"));
   EXPECT_THAT(Complaint(kMarkerFrame, "[-25, -25, 25, 25]", "[-25, -25, 45, 25]"),
               AllOf(HasSubstr("opening_mm"), HasSubstr("marker 7")));
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadBoardFile(folder_ / "none.json"); }),
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadBoardFile(folder_ / "none.json"); }),
               HasSubstr("none.json"));
 }
 
@@ -121,20 +122,21 @@ TEST_F(CaptureWithBoardFile, AMeasuredRulerCorrectsEveryLength) {
   EXPECT_DOUBLE_EQ(board.ruler->length_mm(), 145.5);
   EXPECT_THAT(PrintScaleInWords(board), HasSubstr("97.00 %"));
   EXPECT_THAT(PrintScaleInWords(board), HasSubstr("ruler of 150 mm is 145.50 mm long"));
-  EXPECT_THAT(
-      MessageOf<UserError>([&] { ReadWith("file = \"board.json\"\nmeasured_ruler_mm = 14.55\n"); }),
-      AllOf(HasSubstr("14.55 mm measured on a ruler of 150 mm"), HasSubstr("millimetres")));
+  EXPECT_THAT(test::MessageOf<UserError>(
+                  [&] { ReadWith("file = \"board.json\"\nmeasured_ruler_mm = 14.55\n"); }),
+              AllOf(HasSubstr("14.55 mm measured on a ruler of 150 mm"), HasSubstr("millimetres")));
 }
 
 TEST_F(CaptureWithBoardFile, SaysTwoDescriptionsAreOneTooMany) {
   folder_.Write("board.json", kCharuco);
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadWith("file = \"board.json\"\nsquare_mm = 15\n"); }),
-              HasSubstr("board.square_mm"));
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadWith("file = \"other.json\"\n"); }),
+  EXPECT_THAT(
+      test::MessageOf<UserError>([&] { ReadWith("file = \"board.json\"\nsquare_mm = 15\n"); }),
+      HasSubstr("board.square_mm"));
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadWith("file = \"other.json\"\n"); }),
               HasSubstr("no file 'other.json'"));
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadWith("kind = \"markers\"\n"); }),
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadWith("kind = \"markers\"\n"); }),
               HasSubstr("file = \"board.json\""));
-  EXPECT_THAT(MessageOf<UserError>([&] {
+  EXPECT_THAT(test::MessageOf<UserError>([&] {
                 ReadWith("squares = [5, 5]\nsquare_mm = 5\nmarker_mm = 4\nmeasured_ruler_mm = 9\n");
               }),
               HasSubstr("measured_ruler_mm"));

@@ -11,8 +11,9 @@
 #include "pipeline/contract/oiio.h"
 #include "pipeline/contract/photo_name.h"
 #include "pipeline/contract/upright.h"
-#include "tests/pipeline/contract/temp_folder.h"
 #include "tests/support/data_folder.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -147,7 +148,7 @@ TEST(Photo, HeicAndRawAreReadWithTheirExif) {
   EXPECT_GT(raw.exif.white_balance[0], 1.5);
 
   // The same sensor held upright (orientation 6 in the file's first directory).
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   std::string bytes = ReadTextFile(dng, 64u << 20);
   const std::string tag("\x12\x01\x03\x00\x01\x00\x00\x00\x01\x00", 10);
   const size_t at = bytes.find(tag);
@@ -159,31 +160,31 @@ TEST(Photo, HeicAndRawAreReadWithTheirExif) {
   EXPECT_EQ(upright.image.width, raw.image.height);
   EXPECT_EQ(PhotoSize(folder / "upright.dng"), std::pair(raw.image.height, raw.image.width));
   folder.Write("cut.dng", bytes.substr(0, bytes.size() / 2));
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadPhoto(folder / "cut.dng"); }),
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadPhoto(folder / "cut.dng"); }),
               HasSubstr("copy the photograph again"));
 }
 
 TEST(Photo, RawThatIsNoneIsRefused) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   WritePng(folder / "a.png", Image(64, 64, {"R", "G", "B"}));
   fs::rename(folder / "a.png", folder / "preview.nef");
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadPhoto(folder / "preview.nef"); }),
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadPhoto(folder / "preview.nef"); }),
               HasSubstr("convert it to DNG"));
   folder.Write("unknown.cr3", std::string(5000, 'x'));
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadPhoto(folder / "unknown.cr3"); }),
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadPhoto(folder / "unknown.cr3"); }),
               HasSubstr("a camera that LibRaw does not know"));
 }
 
 TEST(Photo, HeicWithoutDecoderIsTheEnvironmentsFault) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   const fs::path heic = folder.Write("a.heic", Heic(Box("irot", BigEndian(1, 1))));
   const auto complaint = [&](const std::string& reason, const std::string& formats) {
-    return MessageOf<EnvironmentError>([&] { RejectUnreadable(heic, reason, formats); });
+    return test::MessageOf<EnvironmentError>([&] { RejectUnreadable(heic, reason, formats); });
   };
   EXPECT_THAT(complaint("no reader", "bmp,jpeg,png"), HasSubstr("convert the photographs to JPEG"));
   EXPECT_THAT(complaint("Unsupported codec", "bmp,heif,png"), HasSubstr("install libheif1"));
   EXPECT_THROW(RejectUnreadable(heic, "Unexpected end of file", "bmp,heif,png"), UserError);
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadPhoto(heic); }), HasSubstr("a.heic"));
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadPhoto(heic); }), HasSubstr("a.heic"));
 }
 
 }  // namespace

@@ -11,7 +11,8 @@
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/photo_name.h"
 #include "pipeline/contract/video.h"
-#include "tests/pipeline/contract/temp_folder.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -41,7 +42,7 @@ float At(const Photo& photo, int x, int y) {
 }
 
 TEST(Video, AnyFrameIsReadExactlyInAnyOrder) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   for (const auto& [name, codec] : {std::pair{"a.mp4", "mp4v"}, std::pair{"a.avi", "MJPG"}}) {
     WriteVideo(folder / name, codec);
     EXPECT_EQ(ReadVideoInfo(folder / name).frames, kFrames);
@@ -57,7 +58,7 @@ TEST(Video, AnyFrameIsReadExactlyInAnyOrder) {
 }
 
 TEST(Video, OneThatIsHeldUprightIsTurned) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   WriteVideo(folder / "a.mp4", "mp4v");
   std::string bytes = ReadTextFile(folder / "a.mp4");
   // The matrix of the track header stands 44 bytes behind the box's name (ISO/IEC 14496-12, 8.3.2).
@@ -74,12 +75,12 @@ TEST(Video, OneThatIsHeldUprightIsTurned) {
 }
 
 TEST(Video, CutOffIsSaidOrItsWholeFramesAreUsed) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   WriteVideo(folder / "a.mp4", "mp4v");
   WriteVideo(folder / "a.avi", "MJPG");
   const std::string mp4 = ReadTextFile(folder / "a.mp4"), avi = ReadTextFile(folder / "a.avi");
   folder.Write("cut.mp4", mp4.substr(0, mp4.size() / 2));  // its index stood at the end
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadVideoInfo(folder / "cut.mp4"); }),
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadVideoInfo(folder / "cut.mp4"); }),
               HasSubstr("cut off"));
   folder.Write("cut.avi", avi.substr(0, avi.size() / 2));
   const VideoInfo info = ReadVideoInfo(folder / "cut.avi");
@@ -88,15 +89,16 @@ TEST(Video, CutOffIsSaidOrItsWholeFramesAreUsed) {
   EXPECT_EQ(info.frames + info.missing, kFrames);
   const Photo last = ReadPhoto(folder / FrameName("cut.avi", info.frames - 1));
   EXPECT_NEAR(At(last, 120, 90), GreyOf(info.frames - 1), 2);
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadPhoto(folder / FrameName("cut.avi", info.frames)); }),
-              HasSubstr("whole frames"));
+  EXPECT_THAT(
+      test::MessageOf<UserError>([&] { ReadPhoto(folder / FrameName("cut.avi", info.frames)); }),
+      HasSubstr("whole frames"));
   folder.Write("text.mp4", "no video at all");
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadVideoInfo(folder / "text.mp4"); }),
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadVideoInfo(folder / "text.mp4"); }),
               HasSubstr("text.mp4"));
 }
 
 TEST(Video, ACaptureNamesOneFrameInSoMany) {
-  const TempFolder folder;
+  const test::TemporaryFolder folder;
   WriteVideo(folder / "clip.mp4", "mp4v");
   const std::string sample = "[sample]\nsize_mm = [50, 50]\n";
   folder.Write("capture.toml", sample + "[photos]\nvideo = \"clip.mp4\"\nevery = 15\n");
@@ -104,7 +106,8 @@ TEST(Video, ACaptureNamesOneFrameInSoMany) {
   EXPECT_THAT(capture.photos, ElementsAre("clip.mp4#0000", "clip.mp4#0015", "clip.mp4#0030"));
   EXPECT_THAT(capture.FilesBehind(capture.photos), ElementsAre(folder / "clip.mp4"));
   folder.Write("capture.toml", sample + "[photos]\nvideo = \"none.mp4\"\n");
-  EXPECT_THAT(MessageOf<UserError>([&] { ReadCapture(folder.path()); }), HasSubstr("photos.video"));
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadCapture(folder.path()); }),
+              HasSubstr("photos.video"));
 }
 
 }  // namespace
