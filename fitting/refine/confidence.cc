@@ -29,10 +29,11 @@ void InvertFactor(const TexelGram& matrix, TexelGram* inverse) {
 
 std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
                                                      const TexelValues& texel, int residuals,
-                                                     double residual_sigma) {
+                                                     double residual_sigma, double shared_noise) {
   const double squares = gram[kTexelParameters][kTexelParameters];
-  const double variance =
-      (kCommonWeight * residual_sigma * residual_sigma + squares) / (kCommonWeight + residuals);
+  const double variance = shared_noise *
+                          (kCommonWeight * residual_sigma * residual_sigma + squares) /
+                          (kCommonWeight + residuals);
   // What nothing is known of keeps the widest deviation: it stands in for a missing prior.
   TexelGram information = gram;
   for (int i = 0; i < kTexelParameters; ++i) information[i][i] += variance / (kWidest * kWidest);

@@ -11,17 +11,21 @@ namespace {
 
 constexpr int kRowsPerBlock = 4;
 
-// Weighted mean and spread.
+// Weighted mean and spread of values that are known to `sigma` each.
 struct Moments {
-  double weight = 0, sum = 0, squares = 0;
+  double weight = 0, sum = 0, squares = 0, noise = 0;
 
-  void Add(double w, double value) {
+  void Add(double w, double value, double sigma) {
     weight += w;
     sum += w * value;
     squares += w * value * value;
+    noise += w * sigma * sigma;
   }
   double Mean() const { return sum / weight; }
-  double Spread() const { return std::sqrt(std::max(0.0, squares / weight - Mean() * Mean())); }
+  double Variance() const { return std::max(0.0, squares / weight - Mean() * Mean()); }
+  double Spread() const { return std::sqrt(Variance()); }
+  // What is left of it when what the values' own uncertainty spreads is taken off.
+  double TrueSpread() const { return std::sqrt(std::max(0.0, Variance() - noise / weight)); }
 };
 
 class Pooling {
@@ -55,8 +59,11 @@ class Pooling {
     }
     return std::exp(-0.5 * squares / (options_.likeness * options_.likeness));
   }
+  double Sigma(int plane, size_t texel) const {
+    return refined_.confidence[plane * refined_.maps.texels() + texel];
+  }
   double Sure(int plane, size_t texel, double least) const {
-    const double sigma = refined_.confidence[plane * refined_.maps.texels() + texel];
+    const double sigma = Sigma(plane, texel);
     return 1 / (sigma * sigma + least * least);
   }
 
@@ -84,16 +91,16 @@ void Pooling::Pool(int row, int column, HighlightPool* pool) const {
                                near_[static_cast<size_t>(std::abs(j))] * Likeness(texel, other) +
                            1e-9;
       roughness.Add(alike * Sure(kSigmaRoughness, other, options_.least_sigma),
-                    maps.plane(kRoughness)[other]);
+                    maps.plane(kRoughness)[other], Sigma(kSigmaRoughness, other));
       for (int k = 0; k < 3; ++k) {
         specular[static_cast<size_t>(k)].Add(
             alike * Sure(kSigmaSpecularR + k, other, 0.5 * options_.least_sigma),
-            maps.plane(kSpecularR + k)[other]);
+            maps.plane(kSpecularR + k)[other], Sigma(kSigmaSpecularR + k, other));
       }
     }
   }
   pool->start.plane(kRoughness)[texel] = static_cast<float>(roughness.Mean());
-  pool->roughness_error[texel] = static_cast<float>(options_.least_error + roughness.Spread());
+  pool->roughness_error[texel] = static_cast<float>(options_.least_error + roughness.TrueSpread());
   for (int k = 0; k < 3; ++k) {
     pool->start.plane(kSpecularR + k)[texel] =
         static_cast<float>(specular[static_cast<size_t>(k)].Mean());

@@ -6,6 +6,8 @@
 // weighted by likeness of diffuse albedo, nearness, and how sure each texel is of its own values;
 // and the spread among those neighbours is the error that is expected of that start (empirical
 // Bayes: what varies little nearby is held firmly, what varies is left to the photographs).
+// Of roughness, what the texels' own uncertainty spreads is taken off first. Specular albedo keeps
+// its whole spread: metals beside dielectrics look alike in diffuse albedo and differ in truth.
 #pragma once
 
 #include <vector>

@@ -15,6 +15,7 @@
 #include "fitting/refine/gather.h"
 #include "fitting/refine/highlight_pool.h"
 #include "fitting/refine/refine_prior.h"
+#include "fitting/refine/residual_noise.h"
 #include "fitting/refine/texel_parameters.h"
 #include "fitting/refine/texel_search.h"
 
@@ -155,6 +156,7 @@ void Refiner::EstimateNoise() {
   const size_t sampled = std::min(kSampled, texels);
   const PriorWeights weak = HoldToStart(1.0, 0.005, summary.distinct_views, {});
   std::vector<double> variances(sampled, -1.0);
+  std::vector<ResidualNoise> noise(sampled);
   ForEachPieceByWorker(static_cast<int>(sampled), threads_, [&](int i, int worker) {
     Worker& w = *workers_[worker];
     const size_t texel = texels * i / sampled;
@@ -165,7 +167,12 @@ void Refiner::EstimateNoise() {
     const TexelPrior prior(weak, start);
     const TexelSolution solution = w.search.FromStart(w.observations, prior, start).solution;
     variances[i] = (2.0 * solution.cost - prior.SquaredNorm(solution.values)) / freedom;
+    w.search.solver().Cost(w.observations, prior, solution.values);  // for its residuals
+    noise[i].Add(w.search.solver().rows(), w.observations.views(), variances[i]);
   });
+  ResidualNoise all;
+  for (const ResidualNoise& one : noise) all.Add(one);
+  summary.shared_noise = all.Shared();
   std::erase_if(variances, [](double v) { return v < 0.0; });
   summary.residual_sigma = kTypicalSigma;
   if (variances.size() >= sampled / 4 && !variances.empty()) {
@@ -174,7 +181,7 @@ void Refiner::EstimateNoise() {
     summary.residual_sigma = std::sqrt(std::max(*middle, 1e-8));
   }
   for (auto& worker : workers_) worker->search.SetNoise(summary.residual_sigma);
-  weights_ = HoldToStart(options_.prior, summary.residual_sigma, summary.distinct_views, {});
+  weights_ = HoldToStart(options_.prior, summary.telling_sigma(), summary.distinct_views, {});
 }
 
 PriorWeights Refiner::WeightsAt(size_t texel) const {
@@ -266,13 +273,13 @@ void Refiner::ConcludeTexel(size_t texel, Worker* worker) {
   const TexelValues start = ReadTexel(start_, texel);
   // The start is believed as far as its expected errors say: not held harder, as the fit does.
   const PriorWeights believed =
-      options_.prior > 0.0 ? BelieveStart(result_.summary.residual_sigma, {}) : PriorWeights{};
+      options_.prior > 0.0 ? BelieveStart(result_.summary.telling_sigma(), {}) : PriorWeights{};
   TexelGram gram;
   worker->search.solver().Gram(worker->observations, TexelPrior({}, start), values, &gram);
   const double squares = gram[kTexelParameters][kTexelParameters];
   TexelPrior(believed, values).AddTo(values, &gram);
   const auto planes = TexelConfidence(gram, values, 3 * worker->observations.views(),
-                                      result_.summary.residual_sigma);
+                                      result_.summary.residual_sigma, result_.summary.shared_noise);
   for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];
 
   double* sum = &sums_[texel / kTexelsPerPiece * SumColumns()];
@@ -346,8 +353,8 @@ std::string RefineSummary::BriefReport() const {
   std::ostringstream text;
   text.precision(4);
   text << "cost " << start_cost << " -> " << final_cost << " per texel, " << 100.0 * converged
-       << " % converged, residual sigma " << residual_sigma << ", " << distinct_views
-       << " distinct views, " << 100.0 * other_start << " % from another start, "
+       << " % converged, residual sigma " << residual_sigma << " (shared " << shared_noise << "), "
+       << distinct_views << " distinct views, " << 100.0 * other_start << " % from another start, "
        << 100.0 * neighbour << " % from a neighbour";
   return text.str();
 }

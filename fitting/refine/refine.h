@@ -17,6 +17,7 @@
 // Texels are independent within a step, so the result does not depend on the number of threads.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -79,12 +80,15 @@ struct RefineSummary {
   double start_cost = 0;  // means over texels
   double final_cost = 0;
   double residual_sigma = 0;      // noise found in the photographs, log units
+  double shared_noise = 1;        // 1 to 3: how much of it the channels share (residual_noise.h)
   double distinct_views = 0;      // how many views tell something of their own (refine_prior.h)
   double converged = 0;           // share of texels
   double other_start = 0;         // share of texels whose solution came from another start …
   double neighbour = 0;           // … or from a neighbour
   std::vector<double> view_loss;  // per view: mean |log(I + 0.01) − log(R + 0.01)|, NaN: masked
 
+  // What residuals are worth as evidence.
+  double telling_sigma() const { return residual_sigma * std::sqrt(shared_noise); }
   std::string BriefReport() const;
 };
 

@@ -68,6 +68,7 @@ Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& vie
           {"from_other_start", summary.other_start},
           {"from_neighbour", summary.neighbour},
           {"residual_sigma", summary.residual_sigma},
+          {"shared_noise", summary.shared_noise},
           {"distinct_views", summary.distinct_views},
           {"log_l1", usable > 0 ? sum / usable : 0.0},
           {"views", losses}};

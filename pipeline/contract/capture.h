@@ -13,9 +13,9 @@ namespace glint {
 // [poses]: where the sample lies in a COLMAP model, and how large it is. Points are pixels of the
 // upright photograph `photo`; of corners, points, cameras and height at most one is given.
 struct PosesTable {
-  std::string photo;               // relative to the folder, one of [photos]
-  std::vector<double> corners_px;  // x y of the sample's corners: top left, top right, bottom
-                                   // right, bottom left
+  std::string photo;                 // relative to the folder, one of [photos]
+  std::vector<double> corners_px;    // x y of the sample's corners: top left, top right, bottom
+                                     // right, bottom left
   std::vector<double> points_px;     // x y of two points of the sample's plane …
   double points_mm = 0;              // … and their distance
   std::vector<std::string> cameras;  // two photographs …

@@ -11,9 +11,9 @@
 #include "calib/response/sample_photos.h"
 #include "pipeline/contract/errors.h"
 #include "rectify/linearize/encoding.h"
+#include "tests/support/data_folder.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
-#include "tests/support/data_folder.h"
 
 namespace glint {
 namespace {
@@ -105,7 +105,8 @@ TEST(Response, TheCurveRisesWhateverItIsGiven) {
 TEST(Response, TooFewSpotsAreRefused) {
   ResponseProblem few = Series(Srgb, 0.5);
   few.observations.resize(8);
-  EXPECT_THAT(test::MessageOf<ComputationError>([&] { EstimateResponse(few); }), HasSubstr("series"));
+  EXPECT_THAT(test::MessageOf<ComputationError>([&] { EstimateResponse(few); }),
+              HasSubstr("series"));
 }
 
 TEST(Response, GreyPatchesAreASeriesToo) {

@@ -65,6 +65,18 @@ TEST(PoolHighlights, WhatVariesNearbyIsHeldLessFirmly) {
   EXPECT_GT(pool.roughness_error[20 * kSize + kSize - 6], 4 * pool.roughness_error[20 * kSize + 5]);
 }
 
+// Unsure values vary by their own uncertainty; that is no reason to hold their mean less firmly.
+TEST(PoolHighlights, NoiseOfTheTexelsIsNotTakenForVariety) {
+  RefineResult refined = Sure(TwoHalves(0.4f, 0.4f), 0.01f);
+  const auto roughness = refined.maps.plane(kRoughness);
+  for (size_t t = 0; t < refined.maps.texels(); ++t) roughness[t] += t % 2 ? 0.1f : -0.1f;
+  const float certain = PoolHighlights(refined, {}, 1).roughness_error[20 * kSize + 5];
+  refined.confidence.assign(refined.confidence.size(), 0.1f);
+  const float noisy = PoolHighlights(refined, {}, 1).roughness_error[20 * kSize + 5];
+  EXPECT_GT(certain, 0.1);
+  EXPECT_LT(noisy, 0.5 * certain);
+}
+
 TEST(PoolHighlights, KeepsNormalsAndDiffuseAndIsTheSameForAnyThreads) {
   const RefineResult refined = Sure(TwoHalves(0.2f, 0.7f), 0.05f);
   const HighlightPool one = PoolHighlights(refined, {}, 1), three = PoolHighlights(refined, {}, 3);

@@ -1,0 +1,84 @@
+#include "fitting/refine/residual_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/fitting/refine/synthetic_scene.h"
+
+namespace glint {
+namespace {
+
+using test::Photograph;
+using test::QuarteredMaps;
+using test::SyntheticScene;
+
+constexpr double kSigma = 0.02;  // of the logarithm of a radiance
+
+// Multiplies radiances by noise; of each channel its own, or the same for all three.
+void AddNoise(bool shared, SyntheticScene* scene) {
+  std::mt19937 random(31);
+  std::normal_distribution<float> normal(0.0f, static_cast<float>(kSigma));
+  const size_t texels = scene->truth.texels();
+  for (std::vector<float>& photograph : scene->photographs) {
+    for (size_t t = 0; t < texels; ++t) {
+      float noise = normal(random);
+      for (size_t c = 0; c < 3; ++c) {
+        if (!shared && c > 0) noise = normal(random);
+        photograph[c * texels + t] *= std::exp(noise);
+      }
+    }
+  }
+}
+
+RefineResult Refined(bool shared, int views) {
+  const SvbrdfMaps truth = QuarteredMaps(24, 32);
+  SyntheticScene scene = Photograph(truth, views);
+  AddNoise(shared, &scene);
+  return Refine(scene.Problem(), test::DisturbedMaps(truth, 0.5f, 33), {}, 1);
+}
+
+// Root mean square of error / stated deviation of roughness, the widest tenth left out.
+double ErrorOverSigma(const RefineResult& result) {
+  const SvbrdfMaps truth = QuarteredMaps(24, 32);
+  std::vector<double> squares;
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    const double ratio = (result.maps.plane(kRoughness)[t] - truth.plane(kRoughness)[t]) /
+                         result.confidence[kSigmaRoughness * truth.texels() + t];
+    squares.push_back(ratio * ratio);
+  }
+  std::sort(squares.begin(), squares.end());
+  squares.resize(squares.size() * 9 / 10);
+  double sum = 0;
+  for (const double square : squares) sum += square;
+  return std::sqrt(sum / static_cast<double>(squares.size()));
+}
+
+TEST(ResidualNoise, WhatChannelsShareIsToldFromWhatIsTheirOwn) {
+  EXPECT_NEAR(Refined(false, 16).summary.shared_noise, 1.0, 0.15);
+  EXPECT_NEAR(Refined(true, 16).summary.shared_noise, 3.0, 0.15);
+}
+
+TEST(ResidualNoise, FewViewsTellNothingOfIt) {
+  EXPECT_EQ(Refined(true, 5).summary.shared_noise, 1.0);
+}
+
+TEST(ResidualNoise, TheSizeOfNoiseIsTheSameEitherWay) {
+  for (const bool shared : {false, true}) {
+    EXPECT_NEAR(Refined(shared, 16).summary.residual_sigma, kSigma, 0.4 * kSigma) << shared;
+  }
+}
+
+// With the widest tenth left out, normal errors give 0.79.
+TEST(ResidualNoise, DeviationsHoldWhetherErrorsAreSharedOrNot) {
+  for (const bool shared : {false, true}) {
+    const double ratio = ErrorOverSigma(Refined(shared, 16));
+    EXPECT_GT(ratio, 0.5) << shared;
+    EXPECT_LT(ratio, 1.2) << shared;
+  }
+}
+
+}  // namespace
+}  // namespace glint
