@@ -14,6 +14,7 @@ constexpr std::array<double, kProfileBins> kBinEndDegrees{1.5, 3,  5,  7.5, 10.5
                                                           18,  23, 29, 36,  45,   90};
 constexpr double kBrightest = 4.0;  // of π·I/(E·NoL)
 constexpr double kClipped = 0.99;
+constexpr float kMaskedBright = 0.25f;  // radiance of a texel of which any pixel may have clipped
 constexpr double kLogOffset = 0.003;
 constexpr double kLeastCosine = 0.02;
 constexpr double kLogIrradianceRange = 3.0;
@@ -27,6 +28,16 @@ size_t RingOf(double angle) {
   const auto end = std::lower_bound(kBinEndDegrees.begin(), kBinEndDegrees.end(), degrees);
   return static_cast<size_t>(
       std::min<std::ptrdiff_t>(end - kBinEndDegrees.begin(), kProfileBins - 1));
+}
+
+// A rectified photograph masks texels of which any pixel clipped. To the estimator they are part of
+// the highlight, and not unknown: training shows it no holes.
+bool MaskedByClipping(const Photograph& photograph, size_t texel) {
+  if (!photograph.ldr || photograph.mask[texel] >= 0.5f) return false;
+  const size_t texels = photograph.mask.size();
+  float most = 0;
+  for (size_t c = 0; c < 3; ++c) most = std::max(most, photograph.rgb[c * texels + texel]);
+  return most >= kMaskedBright;
 }
 
 std::vector<float> Profile(const std::array<Ring, kProfileBins>& rings) {
@@ -68,9 +79,9 @@ PhotographFeatures FeaturesOf(const Photograph& photograph, const SamplePlane& p
     put(10, i,
         std::clamp(std::log(std::max(1e-9, mean_e * cosine / kPi)), -kLogIrradianceRange,
                    kLogIrradianceRange));
-    if (photograph.mask[i] < 0.5f) continue;
+    bool clipped = MaskedByClipping(photograph, i);
+    if (photograph.mask[i] < 0.5f && !clipped) continue;
     Ring& ring = rings[RingOf(angle)];
-    bool clipped = false;
     for (int c = 0; c < 3; ++c) {
       const double radiance = std::max(0.0f, photograph.rgb[c * texels + i]);
       clipped |= photograph.ldr && radiance >= kClipped;

@@ -3,7 +3,8 @@
 //
 //   plane 0–2  √(π·I / (E·NoL)) of R, G, B, at most 2: the albedo's root of a matte, flat texel
 //         3    1 where a channel is clipped (LDR photographs only)
-//         4    the mask; where it is below 1/2 planes 0–3 are 0
+//         4    1 where the mask is at least 1/2, and where it hides a texel because it is clipped
+//              (LDR and bright); elsewhere planes 0–4 are 0
 //         5–6  x and y of the direction to the light        7–8  of the direction to the camera
 //         9    angle between normal (the plane's) and half vector, in radians
 //        10    ln(E·NoL/π), clamped to ±3: how dark the photograph is there

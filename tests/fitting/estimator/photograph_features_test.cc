@@ -46,6 +46,26 @@ TEST(PhotographFeatures, ProfileRisesTowardAPolishedSamplesHighlight) {
   EXPECT_LT(rise(matte), 0.3f);
 }
 
+// Rectification masks what clipped; without it a highlight's middle would look like a hole.
+TEST(PhotographFeatures, WhatIsMaskedForClippingIsPartOfTheHighlight) {
+  PhotographSet set = PhotographMaps(UniformMaps(16, 0.3f, 0.04f, 0.5f), 1);
+  Photograph& photo = set.photographs[0];
+  const auto paint = [&](size_t texel, float radiance) {
+    photo.mask[texel] = 0;
+    for (size_t c = 0; c < 3; ++c) photo.rgb[c * 256 + texel] = radiance;
+  };
+  paint(0, 0.9f);
+  paint(1, 0.1f);
+  const PhotographFeatures f = FeaturesOf(photo, set.plane, set.convention);
+  EXPECT_GT(Plane(f, 0, 0, 0), 0.5f);
+  EXPECT_EQ(Plane(f, 3, 0, 0), 1.0f);
+  EXPECT_EQ(Plane(f, 4, 0, 0), 1.0f);
+  EXPECT_EQ(Plane(f, 0, 0, 1), 0.0f);
+  EXPECT_EQ(Plane(f, 4, 0, 1), 0.0f);
+  photo.ldr = false;  // a float photograph does not clip: the texel is masked for something else
+  EXPECT_EQ(Plane(FeaturesOf(photo, set.plane, set.convention), 4, 0, 0), 0.0f);
+}
+
 TEST(PhotographFeatures, MaskedTexelsSayNothing) {
   PhotographSet set = PhotographMaps(UniformMaps(16, 0.3f, 0.04f, 0.5f), 1);
   const PhotographFeatures before = FeaturesOf(set.photographs[0], set.plane, set.convention);
