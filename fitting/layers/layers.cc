@@ -60,7 +60,7 @@ class Interleave : public torch::autograd::Function<Interleave> {
 }  // namespace
 
 Tensor AsType(const Tensor& t, torch::Dtype type) {
-  return t.to(type).contiguous(torch::MemoryFormat::ChannelsLast);
+  return t.to(type, false, false, torch::MemoryFormat::ChannelsLast);  // one pass for both
 }
 
 Tensor DownConvolve(const Tensor& x, const Tensor& weight, const Tensor& bias,

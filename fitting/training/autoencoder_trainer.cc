@@ -15,16 +15,30 @@ using torch::Tensor;
 
 constexpr double kBatchStatisticsMomentum = 0.005;
 constexpr std::uint64_t kNoiseStream = 0x5EED0001;
-constexpr int kPrincipalSamples = 192;
+constexpr int kFirstSamples = 192;
+
+// Lets the running statistics of drawn weights begin at those of real crops: trainings normalise by
+// them, and a code of another scale drowns in the noise of the smoothness term.
+void MeasureStatistics(const Tensor& samples, AutoencoderNetwork* network) {
+  torch::NoGradGuard no_gradient;
+  constexpr double kAllNew = 1.0;
+  network->EncodeForTraining(samples, torch::kFloat32, kAllNew);
+  const Tensor z = network->EncodeForTraining(samples, torch::kFloat32, kAllNew);
+  network->DecodeForTraining(z, torch::kFloat32, kAllNew);
+}
 
 AutoencoderNetwork FirstWeights(const AutoencoderTrainOptions& options, std::int64_t first_batch,
                                 MapBatches* pool) {
   const Normalisation normalisation = ParseNormalisation(options.normalisation);
-  // The components stand on a code that is normalised and on levels that are not.
-  if (first_batch > 0 || !options.principal_start || normalisation != Normalisation::kCode) {
-    return AutoencoderNetwork::Random(options.channels, options.seed, normalisation);
+  const bool principal = options.principal_start && normalisation != Normalisation::kAll;
+  if (first_batch == 0 && principal) {
+    return StartFromPrincipalComponents(options.channels, pool->SampleFirst(kFirstSamples),
+                                        normalisation);
   }
-  return StartFromPrincipalComponents(options.channels, pool->SampleFirst(kPrincipalSamples));
+  AutoencoderNetwork drawn =
+      AutoencoderNetwork::Random(options.channels, options.seed, normalisation);
+  if (first_batch == 0) MeasureStatistics(pool->SampleFirst(kFirstSamples), &drawn);
+  return drawn;
 }
 
 class AutoencoderTraining : public MapTraining<AutoencoderNetwork, AutoencoderTrainOptions> {

@@ -1,6 +1,7 @@
 #include "fitting/training/principal_start.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <vector>
 
 #include "fitting/encoding/encoding.h"
@@ -70,13 +71,26 @@ void DecoderKernel(const Tensor& back, const Tensor& offset, Tensor* kernel, Ten
   }
 }
 
+// Moves the code's normalisation into the encoder's last convolution.
+void NormaliseByWeights(const Tensor& spread, AutoencoderNetwork* net) {
+  net->encoder_weights.back() /= spread.view({-1, 1, 1, 1});
+  net->encoder_biases.back() = -net->code_mean / spread;
+  net->code_mean = torch::zeros_like(net->code_mean);
+  net->code_variance = torch::ones_like(net->code_variance);
+}
+
 }  // namespace
 
 AutoencoderNetwork StartFromPrincipalComponents(const NetworkChannels& channels,
-                                                const Tensor& samples) {
+                                                const Tensor& samples,
+                                                Normalisation normalisation) {
+  if (normalisation == Normalisation::kAll) {
+    throw std::invalid_argument("principal components stand on levels that are not normalised");
+  }
   torch::NoGradGuard no_gradient;
   AutoencoderNetwork net;
   net.channels = channels;
+  net.normalisation = normalisation;
   net.decoder_weights.resize(kLevels);
   net.decoder_biases.resize(kLevels);
   const Tensor importance =
@@ -104,6 +118,7 @@ AutoencoderNetwork StartFromPrincipalComponents(const NetworkChannels& channels,
     if (last) {
       net.code_mean = level.mean.matmul(level.basis);
       net.code_variance = level.spread.square();
+      if (normalisation == Normalisation::kNone) NormaliseByWeights(level.spread, &net);
     } else {
       const auto n = features.size(0), h = features.size(2) / 2, w = features.size(3) / 2;
       features = at::leaky_relu(blocks.matmul(level.basis) + offset, 0.2)

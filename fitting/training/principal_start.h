@@ -12,8 +12,11 @@
 
 namespace glint {
 
-// `samples`: encoded maps [n, 9, S, S], S a multiple of 32.
+// `samples`: encoded maps [n, 9, S, S], S a multiple of 32. Without normalisation the code has unit
+// variance by the encoder's weights; levels that are normalised (std::invalid_argument) would undo
+// the lift.
 AutoencoderNetwork StartFromPrincipalComponents(const NetworkChannels& channels,
-                                                const torch::Tensor& samples);
+                                                const torch::Tensor& samples,
+                                                Normalisation normalisation = Normalisation::kCode);
 
 }  // namespace glint

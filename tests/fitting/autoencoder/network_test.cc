@@ -4,6 +4,7 @@
 
 #include "fitting/autoencoder/autoencoder.h"
 #include "fitting/encoding/encoding_torch.h"
+#include "fitting/layers/layers.h"
 #include "fitting/render/render_reference.h"
 #include "fitting/training/principal_start.h"
 #include "tests/fitting/training/toy_materials.h"
@@ -197,6 +198,32 @@ TEST(Network, CodesOfTheTrainingSamplesAreNormal) {
   // In training the values are the same; only their gradient knows of the batch.
   const Tensor training = network.NormaliseForTraining(raw, 0.01);
   EXPECT_LT((training - running).abs().max().item<double>(), 1e-3);
+}
+
+TEST(PrincipalStart, WithoutNormalisationIsTheSameFunction) {
+  const Tensor batch = ToyBatch(6, 64);
+  const AutoencoderNetwork with = StartFromPrincipalComponents(kTiny, batch);
+  const AutoencoderNetwork without =
+      StartFromPrincipalComponents(kTiny, batch, Normalisation::kNone);
+  const auto code = [&](const AutoencoderNetwork& network) {
+    return network.NormaliseByRunning(network.EncodeRaw(batch, torch::kFloat32));
+  };
+  const Tensor a = code(with), b = code(without);
+  EXPECT_TRUE(torch::allclose(a, b, 1e-3, 2e-3));
+  EXPECT_TRUE(torch::allclose(with.Decode(a, torch::kFloat32), without.Decode(b, torch::kFloat32),
+                              1e-3, 2e-3));
+  EXPECT_THROW(StartFromPrincipalComponents(kTiny, batch, Normalisation::kAll),
+               std::invalid_argument);
+}
+
+TEST(Layers, ChangingTypeAndLayoutAtOnceChangesNoValue) {
+  const Tensor kernel = torch::randn({5, 3, 4, 4});
+  for (const auto type : {torch::kBFloat16, torch::kFloat32, torch::kFloat64}) {
+    const Tensor changed = AsType(kernel, type);
+    EXPECT_TRUE(changed.is_contiguous(torch::MemoryFormat::ChannelsLast));
+    EXPECT_EQ(changed.scalar_type(), type);
+    EXPECT_TRUE(torch::equal(changed, kernel.to(type)));
+  }
 }
 
 }  // namespace

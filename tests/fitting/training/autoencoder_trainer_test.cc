@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "datasets/procedural/material.h"
 #include "fitting/autoencoder/autoencoder.h"
 #include "tests/fitting/training/toy_materials.h"
 #include "tests/support/process.h"
@@ -18,19 +19,46 @@ AutoencoderTrainOptions Tiny(std::int64_t steps) {
   return options;
 }
 
-TEST(Trainer, AShortTrainingTakesASeventhOffTheLossOnUnseenMaterials) {
+// The factor that docs/training.md states. 600 steps, some five seconds of one core; over three
+// seeds the loss fell by 2.7 to 2.9.
+TEST(Trainer, AShortTrainingOnProceduralMaterialsHalvesTheLossOnUnseenOnes) {
   const test::TemporaryFolder folder;
-  AutoencoderTrainOptions options = Tiny(150);
+  auto options = TinyTraining<AutoencoderTrainOptions>(600);
+  options.channels = {16, 24, 32, 48, 64};
   options.principal_start = false;
+  options.batch = 8;
+  options.warmup_steps = 20;
+  options.average_decay = 0.98;
+  options.render_views = 3;
+  options.pool.first = 32;
+  const auto seen = [](std::uint64_t k) { return MakeMaterial(k, 64, 64); };
+  const auto unseen = [](std::uint64_t k) { return MakeMaterial(kReservedSeedBase + k, 64, 64); };
   double first = 0;
   const TrainProgress last =
-      TrainAutoencoder(options, {folder.path() / "w.safetensors", {}, {}, false}, Toy, Unseen,
+      TrainAutoencoder(options, {folder.path() / "w.safetensors", {}, {}, false}, seen, unseen,
                        [&](const TrainProgress& p) {
                          if (p.step == 0) first = *p.validation_map_loss;
                        });
   ASSERT_TRUE(last.validation_map_loss.has_value());
-  EXPECT_GT(first, 0.1);
-  EXPECT_LT(*last.validation_map_loss, 0.86 * first);
+  EXPECT_GT(first, 0.3);
+  EXPECT_LT(*last.validation_map_loss, first / 2);
+}
+
+TEST(Trainer, CodesOfDrawnWeightsHaveUnitVarianceFromTheFirstStep) {
+  const test::TemporaryFolder folder;
+  AutoencoderTrainOptions options = Tiny(1);
+  options.principal_start = false;
+  options.learning_rate = 1e-9;
+  const fs::path weights = folder.path() / "w.safetensors";
+  TrainAutoencoder(options, {weights, {}, {}, false}, Toy, Unseen, {});
+  const Autoencoder network = Autoencoder::Load(weights);
+  double sum = 0, count = 0;
+  for (std::uint64_t k = 0; k < 32; ++k) {  // as large as the crops: the border counts
+    const SvbrdfMaps maps = ToyMaterial(k, options.crop, options.crop);
+    for (const float z : network.Encode(maps, 1).values) sum += double{z} * z, ++count;
+  }
+  EXPECT_GT(sum / count, 0.5);
+  EXPECT_LT(sum / count, 2);
 }
 
 TEST(Trainer, AResumedTrainingEndsWithTheSameBits) {
