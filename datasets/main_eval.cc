@@ -7,6 +7,7 @@
 #include "datasets/evaluation/calibration_error.h"
 #include "datasets/evaluation/experiment_verbs.h"
 #include "datasets/evaluation/light_verb.h"
+#include "datasets/evaluation/limits_verb.h"
 #include "datasets/evaluation/map_error.h"
 #include "datasets/evaluation/view_error.h"
 #include "datasets/synth/material_source.h"
@@ -228,6 +229,7 @@ int main(int argc, char** argv) {
        "  glint-eval cameras board/glint/calib colmap/glint/calib --align similarity",
        RunCameras}};
   verbs.push_back(LightVerb());
+  verbs.push_back(LimitsVerb());
   for (const Verb& verb : ExperimentVerbs()) verbs.push_back(verb);
   return RunVerb(argc, argv,
                  {"glint-eval", "Measures results: maps, renderings, cameras, the paper's tables.",

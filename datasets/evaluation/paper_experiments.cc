@@ -4,14 +4,13 @@
 
 #include <algorithm>
 
+#include "datasets/evaluation/named_weights.h"
 #include "datasets/evaluation/paper_figures.h"
 #include "datasets/evaluation/starts.h"
 #include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {
-
-namespace fs = std::filesystem;
 
 Condition Plain(const PaperExperimentOptions& options, int count) {
   Condition condition;
@@ -149,19 +148,7 @@ Experiment Ablation(const PaperExperimentOptions& options) {
   Experiment experiment = ByCount("ablation", options);
   const std::vector<Method> plain = std::move(experiment.methods);
   experiment.methods.clear();
-  for (const std::string& text : options.weights) {
-    const size_t equals = text.find('=');
-    if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {
-      throw UserError("weights: found \"" + text + "\"; write NAME=FILE");
-    }
-    const std::string name = text.substr(0, equals);
-    const fs::path file = fs::absolute(text.substr(equals + 1));
-    if (name.find('/') != std::string::npos) {
-      throw UserError("weights: found the name \"" + name + "\"; use one without '/'");
-    }
-    if (!fs::is_regular_file(file)) {
-      throw UserError(file, "weights", "no such file", "name a file of weights");
-    }
+  for (const auto& [name, file] : ReadNamedWeights(options.weights)) {
     for (Method method : plain) {
       if (method.fit != "latent") {
         throw UserError("methods: found \"" + method.name +

@@ -128,6 +128,19 @@ class Sheet {
 
 }  // namespace
 
+Image DrawBlocks(const std::vector<SheetBlock>& blocks, int threads) {
+  size_t lines = 1;
+  for (const SheetBlock& block : blocks) lines = std::max(lines, block.lines.size());
+  Sheet sheet(1, static_cast<int>(blocks.size()), static_cast<int>(lines));
+  for (int row = 0; row < std::ssize(blocks); ++row) {
+    const SheetBlock& block = blocks[static_cast<size_t>(row)];
+    sheet.Title(0, row, block.title);
+    int line = 0;
+    for (const auto& [name, maps] : block.lines) sheet.Line(0, row, line++, name, &maps, threads);
+  }
+  return sheet.ToImage();
+}
+
 Image DrawSheet(const Experiment& experiment, int threads) {
   const int columns = static_cast<int>(experiment.conditions.size());
   const int rows = std::min(kSheetMaterials, static_cast<int>(experiment.materials.size()));

@@ -1,12 +1,25 @@
 // What the figures of an experiment look like: truth and the methods' maps side by side.
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "datasets/evaluation/experiment.h"
 #include "pipeline/contract/image.h"
 
 namespace glint {
 
 inline constexpr int kSheetMaterials = 4;
+
+// A block of a sheet: a title, and maps below one another, each line with its name.
+struct SheetBlock {
+  std::string title;
+  std::vector<std::pair<std::string, SvbrdfMaps>> lines;
+};
+
+// Blocks below one another, columns as in DrawSheet().
+Image DrawBlocks(const std::vector<SheetBlock>& blocks, int threads);
 
 // One block for each of the first kSheetMaterials materials (downwards) and each condition (to the
 // right). A block's lines are the truth and the methods, its columns normal, diffuse, specular,

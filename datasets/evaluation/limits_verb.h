@@ -1,0 +1,10 @@
+// The verb of glint-eval that measures what auto-encoders can express at all.
+#pragma once
+
+#include "pipeline/contract/verbs.h"
+
+namespace glint {
+
+Verb LimitsVerb();
+
+}  // namespace glint
