@@ -66,9 +66,12 @@ class Table {
     return means;
   }
 
-  std::string Csv() const {
-    std::string text =
-        "material,maps,diffuse,specular,roughness,normal,map_average,render,detail,agreement\n";
+  static const char* CsvHeading() {
+    return "material,maps,diffuse,specular,roughness,normal,map_average,render,detail,agreement\n";
+  }
+
+  std::string CsvLines() const {
+    std::string text;
     for (const Row& row : rows_) {
       text += row.material + "," + row.made;
       for (const double value : Values(row.figures)) text += fmt::format(",{:.8g}", value);
@@ -169,7 +172,8 @@ ProgramResult Measure(const LimitsOptions& options, int threads) {
   const Table means = table.Means();
   const Json json = {{"means", means.ToJson()}, {"entries", table.ToJson()}};
   fs::create_directories(options.work);
-  WriteFileAtomically(options.work / "limits.csv", table.Csv() + means.Csv());
+  WriteFileAtomically(options.work / "limits.csv",
+                      Table::CsvHeading() + table.CsvLines() + means.CsvLines());
   WriteFileAtomically(options.work / "limits.json", json.dump(2) + "\n");
   WritePng(options.work / "limits.png", DrawBlocks(blocks, threads));
   return {means.Markdown(), json};
