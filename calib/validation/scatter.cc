@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -78,14 +79,58 @@ BundleProblem Noisy(BundleProblem problem, double noise_px, Noise* noise) {
   return problem;
 }
 
+// The lens can be undone over the whole picture.
+bool IsUsable(const Camera& camera) {
+  for (const Eigen::Vector2d& at : GridOver(camera, 12).points_px) {
+    const auto ray = NormalizedFromImage(camera, at);
+    if (!ray || (ImageFromCamera(camera, ray->homogeneous()) - at).norm() > 1e-3) return false;
+  }
+  return true;
+}
+
+// Camera 0 as it may be after all that `truth` knows.
+Camera DrawnCamera(const CameraEstimate& estimate, Noise* noise) {
+  constexpr int kTries = 100;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(estimate.covariance);
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    Eigen::VectorXd step = modes.eigenvalues().cwiseMax(0).cwiseSqrt();
+    for (double& value : step) value *= noise->Normal();
+    const Eigen::VectorXd moved = modes.eigenvectors() * step;
+    Camera camera = estimate.camera;
+    for (size_t i = 0; i < camera.parameters.size(); ++i) {
+      camera.parameters[i] += moved[static_cast<Eigen::Index>(i)];
+    }
+    if (IsUsable(camera)) return camera;
+  }
+  return estimate.camera;
+}
+
+// The corners of camera 0's photos as `camera` would have seen them.
+BundleProblem SeenBy(const Camera& camera, const BundleResult& truth, BundleProblem problem) {
+  for (size_t i = 0; i < problem.photos.size(); ++i) {
+    if (problem.photos[i].camera != 0) continue;
+    const Rigid3& pose = truth.photos[i].camera_from_sample;
+    for (BundleCorner& corner : problem.photos[i].corners) {
+      const Eigen::Vector2d& place = corner.position_in_sample_mm;
+      const Eigen::Vector3d point = pose * Eigen::Vector3d(place.x(), place.y(), 0);
+      corner.point_px +=
+          ImageFromCamera(camera, point) - ImageFromCamera(truth.cameras[0].camera, point);
+    }
+  }
+  return problem;
+}
+
 class Comparison {
  public:
-  Comparison(const BundleResult& truth, const Eigen::Vector2d& sample_size_mm)
-      : truth_(truth), sample_size_mm_(sample_size_mm), points_(SeenPoints(truth, 0)) {
-    intrinsics_.resize(truth.cameras[0].camera.parameters.size());
-    grid_ = GridOver(truth.cameras[0].camera, 12);
-    depth_mm_ = ProjectionUncertainty(truth.cameras[0], points_).median_depth_mm();
+  Comparison(BundleResult truth, const Eigen::Vector2d& sample_size_mm)
+      : truth_(std::move(truth)), sample_size_mm_(sample_size_mm), points_(SeenPoints(truth_, 0)) {
+    intrinsics_.resize(truth_.cameras[0].camera.parameters.size());
+    grid_ = GridOver(truth_.cameras[0].camera, 12);
+    depth_mm_ = ProjectionUncertainty(truth_.cameras[0], points_).median_depth_mm();
   }
+
+  // The truth of the draws to come.
+  void SetTrueCamera(const Camera& camera) { truth_.cameras[0].camera = camera; }
 
   void Add(const BundleResult& draw) {
     const CameraEstimate& camera = draw.cameras[0];
@@ -174,7 +219,7 @@ class Comparison {
     }
   }
 
-  const BundleResult& truth_;
+  BundleResult truth_;
   Eigen::Vector2d sample_size_mm_;
   std::vector<Eigen::Vector3d> points_;
   ImageGrid grid_;
@@ -187,14 +232,20 @@ class Comparison {
 
 Scatter MeasureScatter(const BundleProblem& problem, const BundleResult& truth,
                        const BundleOptions& options, const Eigen::Vector2d& sample_size_mm,
-                       double noise_px, int draws, std::uint64_t seed) {
+                       double noise_px, int draws, std::uint64_t seed, bool draw_camera) {
   BundleOptions plain = options;
   plain.reject = false;
   const BundleProblem perfect = Predicted(problem, truth);
   Comparison comparison(truth, sample_size_mm);
   for (int draw = 0; draw < draws; ++draw) {
     Noise noise(seed * 1000003 + static_cast<std::uint64_t>(draw));
-    comparison.Add(AdjustBundle(Noisy(perfect, noise_px, &noise), plain));
+    BundleProblem seen = perfect;
+    if (draw_camera) {
+      const Camera camera = DrawnCamera(truth.cameras[0], &noise);
+      comparison.SetTrueCamera(camera);
+      seen = SeenBy(camera, truth, seen);
+    }
+    comparison.Add(AdjustBundle(Noisy(std::move(seen), noise_px, &noise), plain));
   }
   return comparison.Summary(draws);
 }

@@ -3,6 +3,10 @@
 // A solved calibration is taken for the truth. Its corners, put where it predicts them, are given
 // Gaussian noise, and it is solved anew, many times. For each group of quantities the root of the
 // mean of (deviation / predicted σ)² is near 1 when the predictions are right.
+//
+// Terms that a prior holds (FULL_OPENCV's radial ones) do not scatter with the noise: their σ says
+// how far the truth may be from them. For those the truth is drawn too, anew each time, from what
+// the solved calibration leaves open: where its photographs tell nothing, that is the prior.
 #pragma once
 
 #include <cstdint>
@@ -31,9 +35,10 @@ struct Scatter {
 };
 
 // `truth` solves `problem` under `options`; camera 0 is looked at. `sample_size_mm` is for the line
-// on the sample. Rejection is switched off: it is not what is checked.
+// on the sample. Rejection is switched off: it is not what is checked. `draw_camera`: the true
+// intrinsics of camera 0 are drawn from their covariance in `truth`; for boards that are flat.
 Scatter MeasureScatter(const BundleProblem& problem, const BundleResult& truth,
                        const BundleOptions& options, const Eigen::Vector2d& sample_size_mm,
-                       double noise_px, int draws, std::uint64_t seed);
+                       double noise_px, int draws, std::uint64_t seed, bool draw_camera = false);
 
 }  // namespace glint
