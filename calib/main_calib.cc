@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <utility>
 
 #include "calib/capture/calibrate_capture.h"
 #include "calib/capture/export_colmap.h"
@@ -26,11 +27,29 @@ ProgramResult Check(const Capture& capture, const CalibOptions& options,
            {"guidance", ToJson(summary.guidance)}}};
 }
 
+// What would be ignored is refused.
+void CheckTogether(const PoseSource source, const CalibOptions& options) {
+  if (source == PoseSource::kBoard) return;
+  for (const auto& [name, value] : {std::pair{"library", options.library},
+                                    std::pair{"fix-intrinsics", options.fix_intrinsics}}) {
+    if (value.empty()) continue;
+    throw UserError(fmt::format(
+        "{}: found {} together with --poses {}, which takes intrinsics from COLMAP; leave one out",
+        name, value.string(), options.poses));
+  }
+}
+
 ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOptions* options,
-                  bool check, const CommonOptions& common) {
+                  const bool* check, const CommonOptions& common) {
   Capture capture = ReadCapture(folder);
+  const bool asked = *check;
   set->LoadToml(capture.file, "calib");
+  if (*check != asked) {
+    throw UserError(capture.file, "calib.check", *check ? "true" : "false",
+                    "take it out: a check is asked for when it is wanted, by glint-calib --check");
+  }
   const PoseSource source = PoseSourceOf(*options);
+  CheckTogether(source, *options);
   if (source == PoseSource::kBoard && !capture.has_board) {
     throw UserError(capture.file, "board", "no such table",
                     "describe the board that lies round the sample, give --poses colmap, or import "
@@ -40,7 +59,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOpti
     throw UserError(capture.file, "photos", "no photographs",
                     "give files = [\"photos/*.jpg\"] in [photos]");
   }
-  if (check) {
+  if (asked) {
     if (!capture.has_board) {
       throw UserError(capture.file, "board", "no such table",
                       "a check looks for the board; run without --check");
@@ -96,6 +115,6 @@ int main(int argc, char** argv) {
       "  glint calib wood --check\n  glint calib wood --poses colmap\n"
       "  glint calib wood --poses colmap:wood/sparse/0\n  glint calib wood --export colmap"};
   return glint::RunProgram(argc, argv, info, &set, [&](const glint::CommonOptions& common) {
-    return glint::Run(folder, &set, &options, check, common);
+    return glint::Run(folder, &set, &options, &check, common);
   });
 }

@@ -318,6 +318,16 @@ TEST_F(ColmapPoses, APhotographThatTheModelLacksIsLeftOutWithAWord) {
   EXPECT_EQ(Result().photos.size(), 5u);
 }
 
+// A library's intrinsics would have been ignored without a word.
+TEST_F(ColmapPoses, IntrinsicsFromElsewhereAreRefused) {
+  for (const std::string option : {"--library", "--fix-intrinsics"}) {
+    const test::Outcome outcome = Calibrate(Toml(Corners(2)), {option, folder_.path().string()});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(option.substr(2) + ": found "));
+    EXPECT_THAT(outcome.err, HasSubstr("leave one out"));
+  }
+}
+
 TEST_F(ColmapPoses, NoPlaneNoScaleAndWrongCornersSayWhatToDo) {
   const test::Outcome no_scale = Calibrate(Toml(""));
   EXPECT_EQ(no_scale.code, 2);

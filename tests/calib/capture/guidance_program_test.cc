@@ -131,6 +131,16 @@ TEST_F(Guidance, JudgesACaptureThatCannotBeCalibrated) {
   EXPECT_THAT(advice.at("few"), HasSubstr("4 photographs more"));
 }
 
+TEST_F(Guidance, ACheckIsNoPropertyOfACapture) {
+  LeaveOut({});
+  const std::string toml = test::ReadAll(capture() / "capture.toml");
+  test::WriteAll(capture() / "capture.toml", toml + "[calib]\ncheck = true\n");
+  const test::Outcome outcome = Calib({});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("calib.check"));
+  EXPECT_THAT(outcome.err, HasSubstr("--check"));
+}
+
 TEST_F(Guidance, NamesBadInputAsCalibDoes) {
   test::WriteAll(capture() / "capture.toml",
                  "[sample]\nsize_mm = [100, 100]\n[photos]\nfiles = \"photos/*.png\"\n");
