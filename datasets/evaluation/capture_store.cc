@@ -58,6 +58,20 @@ void CaptureStore::Provide(const fs::path& capture) {
   made_.push_back(capture);
 }
 
+void CaptureStore::ShareFit(const fs::path& fitted, const fs::path& capture) const {
+  const fs::path part = fs::path("glint") / "fit";
+  try {
+    fs::remove_all(capture / part);
+    for (const auto& entry : fs::directory_iterator(fitted / part)) {
+      if (entry.is_regular_file()) {
+        LinkOrCopy(entry.path(), capture / part / entry.path().filename());
+      }
+    }
+  } catch (const fs::filesystem_error& error) {
+    throw EnvironmentError(capture.string() + ": the fit cannot be shared: " + error.what());
+  }
+}
+
 ReflectanceConvention CaptureStore::convention() const {
   return views_.rule == "dir" ? ReflectanceConvention::Dir2019()
                               : ReflectanceConvention::Photograph();

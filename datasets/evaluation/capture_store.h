@@ -18,6 +18,9 @@ class CaptureStore {
   // Makes `capture` hold the views; its fits stay. Throws UserError, EnvironmentError.
   void Provide(const std::filesystem::path& capture);
 
+  // Makes `capture` hold the fit of `fitted` too: both have these views.
+  void ShareFit(const std::filesystem::path& fitted, const std::filesystem::path& capture) const;
+
   ReflectanceConvention convention() const;
 
  private:

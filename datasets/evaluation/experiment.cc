@@ -9,6 +9,7 @@
 #include <set>
 
 #include "datasets/evaluation/capture_store.h"
+#include "datasets/evaluation/corrected_lights.h"
 #include "datasets/evaluation/shipped_models.h"
 #include "datasets/evaluation/view_error.h"
 #include "datasets/statistics/population.h"
@@ -42,6 +43,7 @@ Json DisturbanceSettings(const ViewSetOptions& views) {
     if (value != 0) json[name] = value;
   };
   add("light_off_deg", disturbance.light_off_deg);
+  if (disturbance.light_together) json["light_together"] = true;
   add("registration_texel", disturbance.registration_texel);
   add("environment_percent", disturbance.environment_percent);
   add("exposure_stops", views.exposure_stops);
@@ -88,15 +90,34 @@ class Runs {
         store_(material, condition.views, common),
         models_(models) {}
 
-  // The errors of `method`, from the kept result when there is one.
-  Table1Row Evaluate(const Method& method, bool* kept) {
+  // Fills in the errors of `method`; true: from the kept result.
+  bool Evaluate(const Method& method, ExperimentEntry* entry) {
     const fs::path file = folder_ / (method.name + ".json");
     const Json settings = Settings(method);
-    if (const auto row = Kept(file, settings)) {
-      *kept = true;
-      return *row;
+    const std::optional<Json> kept = Kept(file, settings);
+    const Json json = kept ? *kept : Computed(method, settings);
+    if (!kept) WriteFileAtomically(file, json.dump(2) + "\n");
+    entry->errors = RowOf(file, RequireField(file, json, "", "errors"));
+    if (experiment_.compare_lights) {
+      const Json& lights = RequireField(file, json, "", "light_off_deg");
+      entry->light_mean_deg = RequireNumber(file, lights, "light_off_deg", "mean");
+      entry->light_worst_deg = RequireNumber(file, lights, "light_off_deg", "largest");
     }
-    *kept = false;
+    return kept.has_value();
+  }
+
+ private:
+  std::optional<Json> Kept(const fs::path& file, const Json& settings) const {
+    if (common_.force || !fs::exists(file)) return std::nullopt;
+    const Json json = Json::parse(ReadTextFile(file), nullptr, false);
+    if (!json.is_object() || json.value("settings", Json()) != settings) return std::nullopt;
+    if (json.value("truth", truth_) != truth_) return std::nullopt;
+    if (json.contains("models") && !models_->AreStill(json["models"])) return std::nullopt;
+    if (experiment_.compare_lights && !json.contains("light_off_deg")) return std::nullopt;
+    return json;
+  }
+
+  Json Computed(const Method& method, const Json& settings) {
     Run(method);
     const fs::path manifest = ResultManifest(experiment_, material_.name, condition_, method);
     const FittedMaps result = ReadFittedMaps(manifest);
@@ -104,20 +125,15 @@ class Runs {
         EvaluateMaps(ToUnitWeight(result.maps, result.convention), material_.maps, common_.threads);
     Json models = models_->UsedBy(manifest.parent_path().parent_path() / "fit" / "manifest.json");
     models.update(models_->UsedBy(manifest));
-    const Json json = {
+    Json json = {
         {"settings", settings}, {"truth", truth_}, {"models", models}, {"errors", ErrorsJson(row)}};
-    WriteFileAtomically(file, json.dump(2) + "\n");
-    return row;
-  }
-
- private:
-  std::optional<Table1Row> Kept(const fs::path& file, const Json& settings) const {
-    if (common_.force || !fs::exists(file)) return std::nullopt;
-    const Json json = Json::parse(ReadTextFile(file), nullptr, false);
-    if (!json.is_object() || json.value("settings", Json()) != settings) return std::nullopt;
-    if (json.value("truth", truth_) != truth_) return std::nullopt;
-    if (json.contains("models") && !models_->AreStill(json["models"])) return std::nullopt;
-    return RowOf(file, RequireField(file, json, "", "errors"));
+    if (experiment_.compare_lights) {
+      const PlannedViews planned =
+          PlanViews(condition_.views, common_.seed, material_.maps.width, material_.maps.height);
+      const LightAngles lights = CompareLights(planned, manifest);
+      json["light_off_deg"] = {{"mean", lights.mean_deg}, {"largest", lights.worst_deg}};
+    }
+    return json;
   }
 
   Json Settings(const Method& method) const {
@@ -140,14 +156,19 @@ class Runs {
   // interrupted experiment goes on where it was.
   void Run(const Method& method) {
     const fs::path capture = folder_ / method.capture;
-    store_.Provide(capture);
+    const fs::path fitted = method.fit_of.empty() ? capture : folder_ / method.fit_of;
+    store_.Provide(fitted);
     std::vector<std::string> arguments{"--method", method.fit};
     if (method.start) {
       const fs::path file = folder_ / (method.capture + "_start.exr");
       WriteSvbrdf(file, method.start(material_.maps), store_.convention());
       arguments.insert(arguments.end(), {"--start", file.string()});
     }
-    Program("glint-fit", capture, arguments, method.fit_arguments);
+    Program("glint-fit", fitted, arguments, method.fit_arguments);
+    if (fitted != capture) {
+      store_.Provide(capture);
+      store_.ShareFit(fitted, capture);
+    }
     if (method.refine) Program("glint-refine", capture, {}, method.refine_arguments);
   }
 
@@ -214,16 +235,24 @@ bool AppendRange(const std::string& text, std::vector<std::string>* list) {
 
 Method NamedMethod(const std::string& name, const std::vector<std::string>& fit_arguments,
                    const std::vector<std::string>& refine_arguments) {
-  static const std::vector<std::string> known{"start", "classic", "latent", "refined"};
+  static const std::vector<std::string> known{"start", "classic", "latent", "refined",
+                                              "uncorrected"};
   if (std::find(known.begin(), known.end(), name) == known.end()) {
-    throw UserError("methods: found \"" + name + "\"; use start, classic, latent, refined");
+    throw UserError("methods: found \"" + name +
+                    "\"; use start, classic, latent, refined, uncorrected");
   }
+  const bool uncorrected = name == "uncorrected";
   Method method;
   method.name = name;
-  method.refine = name == "refined";
-  method.fit = method.capture = method.refine ? "latent" : name;
+  method.refine = name == "refined" || uncorrected;
+  method.capture = name == "refined" ? "latent" : name;
+  method.fit = method.refine ? "latent" : name;
   method.fit_arguments = fit_arguments;
   method.refine_arguments = refine_arguments;
+  if (uncorrected) {
+    method.fit_of = "latent";
+    method.refine_arguments.insert(method.refine_arguments.end(), {"--correct-views", "never"});
+  }
   return method;
 }
 
@@ -271,9 +300,8 @@ ExperimentResult RunExperiment(const Experiment& experiment, const CommonOptions
         entry.saturated = SaturatedShare(material.maps, condition.views, common);
       }
       for (const Method& method : experiment.methods) {
-        bool kept = false;
         entry.method = method.name;
-        entry.errors = runs.Evaluate(method, &kept);
+        const bool kept = runs.Evaluate(method, &entry);
         result.entries.push_back(entry);
         said(fmt::format("{} n={}{}{} {}: map average {:.6f}, render {:.6f}{}", material.name,
                          entry.count, condition.name.empty() ? "" : ", ", condition.name,

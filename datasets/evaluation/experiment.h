@@ -30,7 +30,8 @@ struct Condition {
 // How maps are made from them.
 struct Method {
   std::string name;            // in tables and of the result's file: "refined"
-  std::string capture;         // folder of the capture; methods that share a fit share it
+  std::string capture;         // folder of the capture; methods that share a result share it
+  std::string fit_of;          // folder of the capture whose fit it takes over; empty: its own
   std::string fit = "latent";  // glint-fit --method
   bool refine = false;         // and glint-refine on that
   std::vector<std::string> fit_arguments, refine_arguments;
@@ -39,7 +40,8 @@ struct Method {
   std::function<SvbrdfMaps(const SvbrdfMaps& truth)> start;
 };
 
-// latent, classic, start (no fitting), or refined (of latent). Throws UserError for other names.
+// latent, classic, start (no fitting), refined (of latent) or uncorrected (refined from the views
+// as they are said to be). Throws UserError for other names.
 Method NamedMethod(const std::string& name, const std::vector<std::string>& fit_arguments,
                    const std::vector<std::string>& refine_arguments);
 
@@ -51,6 +53,7 @@ struct Experiment {
   std::filesystem::path work;
   int size = 256;                // texels a side
   bool count_saturated = false;  // measure the share of saturated texels of the views
+  bool compare_lights = false;   // measure how far refine's lights are from the true ones
 };
 
 // Materials from what a person names: maps, procedural:SEED, procedural:FIRST..LAST (all seeds

@@ -34,9 +34,10 @@ struct Shape {
     for (const ExperimentEntry& entry : entries) {
       conditions = conditions || !entry.condition.empty();
       saturated = saturated || entry.saturated >= 0;
+      lights = lights || entry.light_mean_deg >= 0;
     }
   }
-  bool conditions = false, saturated = false;
+  bool conditions = false, saturated = false, lights = false;
 };
 
 // Letters, not bytes: conditions have degree signs.
@@ -74,6 +75,10 @@ std::string Heading(const Shape& shape, const Widths& widths, bool paper) {
     names += " saturated |";
     rules += "----------:|";
   }
+  if (shape.lights) {
+    names += " light off, mean | largest |";
+    rules += "----------------:|--------:|";
+  }
   if (paper) {
     names += " paper: map | paper: render |";
     rules += "-----------:|--------------:|";
@@ -108,8 +113,14 @@ std::vector<ExperimentEntry> ExperimentResult::Means() const {
   for (const ExperimentEntry& entry : entries) {
     const size_t at = place(entry);
     Accumulate(entry.errors, 1.0 / members[at], &means[at].errors);
-    if (entry.saturated < 0) continue;
-    means[at].saturated = std::max(0.0, means[at].saturated) + entry.saturated / members[at];
+    if (entry.saturated >= 0) {
+      means[at].saturated = std::max(0.0, means[at].saturated) + entry.saturated / members[at];
+    }
+    if (entry.light_mean_deg >= 0) {
+      means[at].light_mean_deg =
+          std::max(0.0, means[at].light_mean_deg) + entry.light_mean_deg / members[at];
+      means[at].light_worst_deg = std::max(means[at].light_worst_deg, entry.light_worst_deg);
+    }
   }
   std::stable_sort(means.begin(), means.end(),
                    [](const auto& a, const auto& b) { return a.count < b.count; });
@@ -137,6 +148,9 @@ std::string ExperimentResult::Text(const Paper& paper) const {
     text += fmt::format(" | {:.6f} | {:.6f} | {:9.6f} | {:.6f} | {:11.6f} | {:.6f} |", f[0], f[1],
                         f[2], f[3], f[4], f[5]);
     if (shape.saturated) text += fmt::format(" {:8.2f}% |", 100 * std::max(0.0, mean.saturated));
+    if (shape.lights) {
+      text += fmt::format(" {:14.2f}° | {:6.2f}° |", mean.light_mean_deg, mean.light_worst_deg);
+    }
     if (paper) {
       const auto theirs = paper(mean);
       text += theirs ? fmt::format(" {:10.5f} | {:13.6f} |", theirs->map_average, theirs->render)
@@ -152,7 +166,9 @@ std::string ExperimentResult::Csv() const {
   std::string text =
       std::string("material,views,") + (shape.conditions ? "condition," : "") + "method";
   for (const char* column : kColumns) text += fmt::format(",{}", column);
-  text += shape.saturated ? ",saturated\n" : "\n";
+  if (shape.saturated) text += ",saturated";
+  if (shape.lights) text += ",light_mean_deg,light_worst_deg";
+  text += "\n";
   const std::vector<ExperimentEntry> means = Means();
   for (const auto* list : {&entries, &means}) {
     for (const ExperimentEntry& entry : *list) {
@@ -161,6 +177,9 @@ std::string ExperimentResult::Csv() const {
       text += entry.method;
       for (const double figure : Figures(entry.errors)) text += fmt::format(",{:.8g}", figure);
       if (shape.saturated) text += fmt::format(",{:.6g}", entry.saturated);
+      if (shape.lights) {
+        text += fmt::format(",{:.6g},{:.6g}", entry.light_mean_deg, entry.light_worst_deg);
+      }
       text += "\n";
     }
   }
@@ -177,6 +196,9 @@ Json ExperimentResult::ToJson() const {
       row["method"] = entry.method;
       row["errors"] = ErrorsJson(entry.errors);
       if (shape.saturated) row["saturated"] = entry.saturated;
+      if (shape.lights) {
+        row["light_off_deg"] = {{"mean", entry.light_mean_deg}, {"largest", entry.light_worst_deg}};
+      }
       json.push_back(row);
     }
     return json;

@@ -18,6 +18,9 @@ struct ExperimentEntry {
   std::string method;
   Table1Row errors;
   double saturated = -1;  // share of saturated texels; below 0: not measured
+  // Angle between the lights that were used and the true ones: mean and largest over the views (and
+  // in a mean over the materials); below 0: not measured.
+  double light_mean_deg = -1, light_worst_deg = -1;
 };
 
 // What the paper prints for a like entry.

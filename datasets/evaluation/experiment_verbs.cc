@@ -16,7 +16,7 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
                          "none: eight reserved seeds",
                          false);
   options->Add("counts", counts, "numbers of views");
-  options->Add("methods", &experiment->methods, "of start, classic, latent, refined");
+  options->Add("methods", &experiment->methods, "of start, classic, latent, refined, uncorrected");
   options->Add("work", &experiment->work, "folder that keeps views and results (needed)");
   options->AddRange("size", &experiment->size, 8, 4096, "texels a side");
   ViewSetOptions* views = &experiment->views;

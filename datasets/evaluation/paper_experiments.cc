@@ -90,6 +90,25 @@ Experiment Table2(const PaperExperimentOptions& options) {
   return experiment;
 }
 
+// Lights off by 10°, each in a direction of its own or all together.
+Experiment Lights(const PaperExperimentOptions& options) {
+  constexpr double kOff_deg = 10;
+  Experiment experiment = Base("lights", options);
+  experiment.compare_lights = true;
+  for (const int count : options.counts) {
+    const Condition plain = Plain(options, count);
+    experiment.conditions.push_back(Named(plain, "", kUndisturbed));
+    for (const bool together : {false, true}) {
+      Condition off = Named(plain, together ? "together10" : "light10",
+                            LightName(kOff_deg) + (together ? " together" : ""));
+      off.views.disturbance.light_off_deg = kOff_deg;
+      off.views.disturbance.light_together = together;
+      experiment.conditions.push_back(off);
+    }
+  }
+  return experiment;
+}
+
 Experiment Exposure(const PaperExperimentOptions& options) {
   Experiment experiment = Base("exposure", options);
   experiment.count_saturated = true;
@@ -299,6 +318,14 @@ const std::vector<PaperExperiment>& PaperExperiments() {
        {"refined"},
        Table2,
        PaperOfTable2,
+       Degradation},
+      {"lights",
+       "Errors with lights off by 10°, and how far off they are after glint-refine corrected them.",
+       "glint-eval lights procedural:1000000000 --work /tmp/lights",
+       {20},
+       {"uncorrected", "refined"},
+       Lights,
+       {},
        Degradation},
       {"exposure",
        "Errors by exposure, with the share of saturated texels (fig. 14).",

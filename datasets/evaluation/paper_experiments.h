@@ -39,7 +39,7 @@ struct PaperExperiment {
   std::function<std::string(const ExperimentResult&, Json*)> summary;
 };
 
-// table1, table2, exposure, hdr, start, topview, count, ablation.
+// table1, table2, lights, exposure, hdr, start, topview, count, ablation.
 const std::vector<PaperExperiment>& PaperExperiments();
 
 // Names the conditions' strengths in table1 --disturb: registration off by 0.5 texel, light by 5°,

@@ -66,6 +66,9 @@ ViewDisturbance DrawDisturbance(const Disturbance& disturbance, std::uint64_t se
                       procedural::Mix64(0xd157u + static_cast<std::uint64_t>(index)));
   ViewDisturbance drawn;
   drawn.light_azimuth_rad = 2 * kPi * rng.Unit();
+  if (disturbance.light_together && index > 0) {
+    drawn.light_azimuth_rad = DrawDisturbance(disturbance, seed, 0).light_azimuth_rad;
+  }
   const double deviation = disturbance.registration_texel / std::numbers::sqrt2;
   for (int corner = 0; corner < 4; ++corner) {
     drawn.shifts.column[corner] = deviation * Normal(&rng);

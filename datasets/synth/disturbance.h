@@ -14,7 +14,7 @@
 namespace glint {
 
 struct Disturbance {
-  // Every light is turned about the sample's centre by this angle, in a direction of its own.
+  // Every light is turned about the sample's centre by this angle, in a direction of its own …
   double light_off_deg = 0;
   // Root mean square of the distances by which each view's four corners are moved, independently;
   // between them the picture moves bilinearly.
@@ -25,6 +25,8 @@ struct Disturbance {
   double environment_percent = 0;
   // Equirectangular radiance map (environment_light.h); empty: a white surround.
   std::filesystem::path environment;
+  // … or all in one direction: the flash is elsewhere beside the lens of an upright camera.
+  bool light_together = false;
 
   bool any() const {
     return light_off_deg > 0 || registration_texel > 0 || environment_percent > 0;

@@ -157,6 +157,8 @@ void AddViewSetOptions(ViewSetOptions* options, OptionSet* set) {
   Disturbance* disturbance = &options->disturbance;
   set->AddRange("light-off-deg", &disturbance->light_off_deg, 0, 60,
                 "turns every light by this, unknown to the manifest");
+  set->Add("light-together", &disturbance->light_together,
+           "turns all lights in one direction: the flash is elsewhere beside the lens");
   set->AddRange("registration-texel", &disturbance->registration_texel, 0, 100,
                 "moves the corners of every view by this (RMS), unknown to the manifest");
   set->AddRange("environment-percent", &disturbance->environment_percent, 0, 1000,
