@@ -17,6 +17,12 @@ struct CorrectionOptions {
   double distinct_views = 3.5;  // of the set (refine_prior.h) from which on "auto" looks
   // Relative fall of the cost below which nothing is taken: views that are right stay untouched.
   double least_gain = 0.1;
+  int rounds = 4;  // refinements and corrections in turn, at most …
+  // … as long as the cost falls by this more. Once all is explained as well as residuals are
+  // expected to be, views and maps agree, and the photographs are believed this much (see
+  // ViewCorrectionOptions::evidence).
+  double further_gain = 0.03;
+  double settled_evidence = 1000;
   int working_size = 256;  // texels along the longer side; larger sets are averaged down
   ViewCorrectionOptions view;
 

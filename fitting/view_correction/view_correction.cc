@@ -3,74 +3,21 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <deque>
 #include <stdexcept>
 
 #include "base/parallel/parallel.h"
 #include "fitting/reflectance/brdf.h"
+#include "fitting/view_correction/holds.h"
 #include "fitting/view_correction/radiance_cost.h"
 
 namespace glint {
 namespace {
 
-// Standard deviations expected of the start's errors: a hold that only settles what the views do
-// not tell.
-constexpr double kTexelSigma[kTexelSize] = {0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.2, 0.2, 0.2};
 constexpr double kLeastRoughness = 0.02;
 constexpr double kSteepest = 6.0;  // slope
 constexpr int kMargin = 2;         // texels at the edge, whose lookup would leave the picture
-
-// Residuals (parameter − mean)/σ of one block.
-template <int kSize>
-class Hold : public ceres::SizedCostFunction<kSize, kSize> {
- public:
-  Hold(const double* mean, const double* sigmas) {
-    std::copy_n(mean, kSize, mean_.begin());
-    std::copy_n(sigmas, kSize, sigmas_.begin());
-  }
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    for (int i = 0; i < kSize; ++i) {
-      residuals[i] =
-          (parameters[0][i] - mean_[static_cast<size_t>(i)]) / sigmas_[static_cast<size_t>(i)];
-    }
-    if (!jacobians || !jacobians[0]) return true;
-    std::fill_n(jacobians[0], kSize * kSize, 0.0);
-    for (int i = 0; i < kSize; ++i)
-      jacobians[0][i * kSize + i] = 1 / sigmas_[static_cast<size_t>(i)];
-    return true;
-  }
-
- private:
-  std::array<double, kSize> mean_, sigmas_;
-};
-
-// The light's: along its direction and across.
-class LightHold : public ceres::SizedCostFunction<3, 3> {
- public:
-  LightHold(const Vec3d& direction, double across, double along) {
-    for (size_t i = 0; i < 3; ++i) {
-      for (size_t j = 0; j < 3; ++j) {
-        const double projection = direction[i] * direction[j];
-        rows_[3 * i + j] = ((i == j ? 1 : 0) - projection) / across + projection / along;
-      }
-    }
-  }
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    for (size_t i = 0; i < 3; ++i) {
-      residuals[i] = 0;
-      for (size_t j = 0; j < 3; ++j) residuals[i] += rows_[3 * i + j] * parameters[0][j];
-    }
-    if (jacobians && jacobians[0]) std::copy(rows_.begin(), rows_.end(), jacobians[0]);
-    return true;
-  }
-
- private:
-  std::array<double, 9> rows_;
-};
 
 struct ViewBlocks {
   double light[3] = {0, 0, 0};
@@ -92,6 +39,7 @@ class Adjustment {
  private:
   void AddViews();
   void AddTexels();
+  void HoldTexels();
   bool AddTexel(Texel* texel);
   Texel TexelAt(int column, int row) const;
   ViewCorrection CorrectionOf(size_t view) const;
@@ -102,7 +50,9 @@ class Adjustment {
   std::vector<ViewContext> contexts_;
   std::vector<ViewBlocks> views_;
   double ambient_[3] = {0, 0, 0};
-  std::deque<Texel> texels_;  // a deque: Ceres keeps addresses
+  double tilt_[2] = {0, 0};
+  double shared_light_[3] = {0, 0, 0};  // in every light's frame
+  std::deque<Texel> texels_;            // a deque: Ceres keeps addresses
   ceres::Problem problem_;
   ceres::ParameterBlockOrdering* ordering_ = nullptr;
 };
@@ -155,8 +105,6 @@ bool Adjustment::AddTexel(Texel* texel) {
                               views_[v].shifts);
   }
   if (!seen) return false;
-  problem_.AddResidualBlock(new Hold<kTexelSize>(texel->parameters, kTexelSigma), nullptr,
-                            texel->parameters);
   for (int i = 0; i < kTexelSize; ++i) {
     const bool slope = i >= kTexelSlope;
     problem_.SetParameterLowerBound(texel->parameters, i,
@@ -179,6 +127,21 @@ void Adjustment::AddTexels() {
   }
 }
 
+// Lights that are all wrong alike have tilted all normals; but the sample is flat.
+void Adjustment::HoldTexels() {
+  double mean[2] = {0, 0};
+  for (Texel& texel : texels_) {
+    problem_.AddResidualBlock(new TexelHold(texel.parameters), nullptr, texel.parameters, tilt_);
+    for (int i = 0; i < 2; ++i) {
+      mean[i] -= texel.parameters[kTexelSlope + i] / static_cast<double>(texels_.size());
+    }
+  }
+  const double sigmas[2] = {options_.level_sigma, options_.level_sigma};
+  problem_.AddResidualBlock(new Hold<2>(mean, sigmas), nullptr, tilt_);
+  ordering_->AddElementToGroup(tilt_, 1);
+  if (!options_.light) problem_.SetParameterBlockConstant(tilt_);
+}
+
 void Adjustment::AddViews() {
   const double zero[8] = {0, 0, 0, 0, 0, 0, 0, 0};
   const double residuals = 3.0 * static_cast<double>(texels_.size());
@@ -199,14 +162,18 @@ void Adjustment::AddViews() {
     if (!problem_.HasParameterBlock(view.light)) continue;  // wholly masked
     Vec3d direction = set_.photographs[v].view.light_in_sample_mm;
     for (double& d : direction) d /= contexts_[v].light_distance_mm;
-    add(view.light,
-        new LightHold(direction, options_.light_sigma / firmness,
-                      options_.distance_sigma / firmness),
-        options_.light);
+    problem_.AddResidualBlock(new LightHold(direction, options_.light_sigma / firmness,
+                                            options_.distance_sigma / firmness),
+                              nullptr, view.light, shared_light_);
+    ordering_->AddElementToGroup(view.light, 1);
+    if (!options_.light) problem_.SetParameterBlockConstant(view.light);
     add(view.exposure, new Hold<1>(zero, &exposure), options_.exposure);
     add(view.shifts, new Hold<8>(zero, shift), options_.registration);
   }
   add(ambient_, new Hold<3>(zero, ambient), options_.ambient);
+  const double shared[3] = {options_.shared_light_sigma, options_.shared_light_sigma,
+                            options_.distance_sigma / firmness};
+  add(shared_light_, new Hold<3>(zero, shared), options_.light);
   for (int c = 0; c < 3; ++c) {
     // The surroundings give light, they do not take any.
     double least = -1e9;
@@ -241,15 +208,18 @@ ViewCorrectionResult Adjustment::Solve() {
     return result;
   }
   AddViews();
+  const int residuals = problem_.NumResiduals();
+  problem_.Evaluate({}, &result.cost_before, nullptr, nullptr, nullptr);
+  HoldTexels();
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.max_num_iterations = options_.iterations;
-  solver.function_tolerance = 1e-3;
+  solver.function_tolerance = 1e-4;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem_, &summary);
-  result.cost_before = summary.initial_cost;
   result.cost_after = summary.final_cost;
+  result.residual_rms = std::sqrt(2 * result.cost_after / residuals);
   result.iterations = static_cast<int>(summary.iterations.size());
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   for (size_t v = 0; v < views_.size(); ++v) {

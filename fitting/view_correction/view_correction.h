@@ -9,6 +9,10 @@
 // with R clamped to 1 for LDR photographs: eq. 2 of Gao et al. 2019 with a loss quadratic near 0.
 // Texels are eliminated (Schur complement), as points are in a bundle adjustment. Solved on one
 // thread, so that the result has one value.
+//
+// Lights that are wrong alike (a flash elsewhere beside the lens) and normals that are tilted alike
+// explain matte photographs equally well. So what all lights share has a weak hold of its own, the
+// texels' hold leaves a common tilt free, and the sample is expected to be flat in the mean.
 #pragma once
 
 #include <string>
@@ -33,8 +37,12 @@ struct ViewCorrectionOptions {
   bool ambient = true;
   bool exposure = false;
   bool registration = true;
-  double light_sigma = 0.1;  // standard deviation expected of the light's offset, of its distance
+  double light_sigma = 0.03;  // standard deviation expected of the light's offset, of its distance
+  // … beside what all lights share: the flash stands elsewhere beside the lens of an upright
+  // camera.
+  double shared_light_sigma = 0.3;
   double distance_sigma = 0.03;  // of its component toward the sample, likewise
+  double level_sigma = 0.01;     // of the sample's mean slope
   double ambient_sigma = 0.1;    // of the ambient irradiance, of the flash's at the sample's centre
   double exposure_sigma = 0.1;   // of its logarithm
   double registration_sigma_texel = 1.0;
@@ -43,8 +51,8 @@ struct ViewCorrectionOptions {
   // A view's residuals count together as so many against these expectations: they share the errors
   // of model and maps, and many small ones would otherwise buy any correction.
   double evidence = 20;
-  int texels = 2304;    // of the lattice, about
-  int iterations = 25;  // Levenberg–Marquardt steps, at most
+  int texels = 1024;    // of the lattice, about
+  int iterations = 60;  // Levenberg–Marquardt steps, at most
 
   // Empty: all is well; otherwise what is wrong.
   std::string Check() const;
@@ -53,6 +61,8 @@ struct ViewCorrectionOptions {
 struct ViewCorrectionResult {
   std::vector<ViewCorrection> views;  // one per photograph
   double cost_before = 0, cost_after = 0;
+  double residual_rms =
+      0;  // afterwards, in units of the residuals' deviation, expectations included
   int iterations = 0;
   bool converged = false;
 };

@@ -42,9 +42,9 @@ struct DisturbedSet {
 
 // Every light `light_off` of its distance away from where it is believed to be, every picture moved
 // by up to `shift_texel` at its corners (at most a texel), ambient light of kAmbientShare of the
-// flash if `ambient`.
+// flash if `ambient`. `together`: all lights in one direction.
 inline DisturbedSet Disturb(int count, double light_off, double shift_texel, bool ambient,
-                            int size = 64) {
+                            int size = 64, bool together = false) {
   DisturbedSet made{CrossedWaves(size), {}, {}};
   made.set = PhotographMaps(made.maps, count, false);
   for (int i = 0; i < count; ++i) {
@@ -52,7 +52,7 @@ inline DisturbedSet Disturb(int count, double light_off, double shift_texel, boo
     ViewCorrection error;
     const Vec3d light = photo.view.light_in_sample_mm;
     const double distance = std::hypot(light[0], light[1], light[2]);
-    const double angle = 2.1 * i + 0.5;
+    const double angle = together ? 0.5 : 2.1 * i + 0.5;
     error.light_offset_mm = {light_off * distance * std::cos(angle),
                              light_off * distance * std::sin(angle), 0};
     for (int k = 0; k < 4; ++k) {

@@ -43,6 +43,27 @@ TEST(CorrectViews, BringsLightsBackThatAreOff) {
   EXPECT_LT(found.cost_after, 0.1 * found.cost_before);
 }
 
+// Maps that were fitted with lights off by one offset have absorbed it in their normals.
+TEST(CorrectViews, BringsLightsBackThatAreAllOffAlikeAndHaveTiltedTheNormals) {
+  DisturbedSet disturbed = Disturb(12, 0.17, 0, false, 64, true);
+  SvbrdfMaps* maps = &disturbed.maps;
+  for (int row = 0; row < maps->height; ++row) {
+    for (int column = 0; column < maps->width; ++column) {
+      const double z = maps->at(kNormalZ, row, column);
+      const double x = maps->at(kNormalX, row, column) / z - 0.1 * std::cos(0.5);
+      const double y = maps->at(kNormalY, row, column) / z - 0.1 * std::sin(0.5);
+      const double length = std::sqrt(x * x + y * y + 1);
+      maps->at(kNormalX, row, column) = static_cast<float>(x / length);
+      maps->at(kNormalY, row, column) = static_cast<float>(y / length);
+      maps->at(kNormalZ, row, column) = static_cast<float>(1 / length);
+    }
+  }
+  const ViewCorrectionResult found = CorrectViews(disturbed.set, disturbed.maps, Few());
+  const std::vector<ViewCorrection> none(disturbed.errors.size());
+  EXPECT_GT(LightErrorDeg(disturbed, none), 8);
+  EXPECT_LT(LightErrorDeg(disturbed, found.views), 1.0);
+}
+
 TEST(CorrectViews, FindsHowPicturesAreDisplaced) {
   const DisturbedSet disturbed = Disturb(12, 0, 0.6, false);
   const ViewCorrectionResult found = CorrectViews(disturbed.set, disturbed.maps, Few());

@@ -1,0 +1,67 @@
+#include "fitting/refine/correct_views.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/fitting/view_correction/disturbed_set.h"
+
+namespace glint {
+namespace {
+
+using test::Disturb;
+using test::DisturbedSet;
+
+constexpr double kTenDegrees = 0.176;  // of the light's distance
+
+CorrectionResult Find(const DisturbedSet& disturbed, int rounds) {
+  CorrectionOptions options;
+  options.rounds = rounds;
+  options.view.texels = 256;
+  // One material for all: what the photographs do not tell is not known beforehand.
+  const SvbrdfMaps start = test::UniformMaps(disturbed.maps.width, 0.35f, 0.06f, 0.45f);
+  return FindCorrections(disturbed.set, start, RefineOptions{}, options, 1);
+}
+
+// Degrees between the lights found and the true ones, mean over the views.
+double LightErrorDeg(const DisturbedSet& disturbed, const CorrectionResult& found) {
+  double sum = 0;
+  for (size_t i = 0; i < disturbed.errors.size(); ++i) {
+    View real = disturbed.set.photographs[i].view;
+    ViewCorrection rest;
+    for (size_t k = 0; k < 3; ++k) {
+      real.light_in_sample_mm[k] += disturbed.errors[i].light_offset_mm[k];
+      rest.light_offset_mm[k] = (found.taken ? found.corrections[i].light_offset_mm[k] : 0) -
+                                disturbed.errors[i].light_offset_mm[k];
+    }
+    sum += LightTurnedDeg(real, rest) / static_cast<double>(disturbed.errors.size());
+  }
+  return sum;
+}
+
+TEST(FindCorrections, LightsThatAreOffByTenDegreesComeBack) {
+  for (const bool together : {false, true}) {
+    const DisturbedSet disturbed = Disturb(20, kTenDegrees, 0, false, 32, together);
+    const CorrectionResult found = Find(disturbed, CorrectionOptions{}.rounds);
+    EXPECT_GT(LightErrorDeg(disturbed, {}), 8);
+    ASSERT_TRUE(found.taken);
+    EXPECT_LT(LightErrorDeg(disturbed, found), 1.5) << (together ? "together" : "each");
+  }
+}
+
+// Maps of wrong lights hold their texels in wrong minima: refined anew they do better.
+TEST(FindCorrections, FurtherRoundsLeaveLessWrong) {
+  const DisturbedSet disturbed = Disturb(20, kTenDegrees, 0, false, 32);
+  const CorrectionResult one = Find(disturbed, 1), more = Find(disturbed, 3);
+  ASSERT_TRUE(one.taken);
+  EXPECT_LT(more.cost_after, one.cost_after);
+  EXPECT_LT(LightErrorDeg(disturbed, more), LightErrorDeg(disturbed, one));
+}
+
+TEST(FindCorrections, LeavesViewsAloneThatAreRight) {
+  const DisturbedSet right = Disturb(20, 0, 0, false, 32);
+  EXPECT_FALSE(Find(right, 3).taken);
+}
+
+}  // namespace
+}  // namespace glint
