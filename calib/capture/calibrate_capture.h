@@ -19,7 +19,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 8;
+inline constexpr int kCalibVersion = 9;
 
 struct RejectedPhoto {
   std::string name, reason;
