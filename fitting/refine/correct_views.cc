@@ -73,21 +73,19 @@ CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& sta
   std::vector<ViewCorrection> total(small.photographs.size());
   PhotographSet corrected = small;
   ViewCorrectionOptions view = options.view;
-  double gain = options.least_gain;
   for (int round = 0; round < options.rounds; ++round) {
     const SvbrdfMaps maps = Refine(ProblemOf(corrected), small_start, refine, threads).maps;
     const ViewCorrectionResult found = CorrectViews(corrected, maps, view);
     if (round == 0) result.cost_before = result.cost_after = found.cost_before;
     // What the round before settled on, with maps of its own.
     if (round > 0) result.cost_after = std::min(result.cost_after, found.cost_before);
-    if (!(found.cost_after < (1 - gain) * result.cost_after)) break;
+    if (!(found.cost_after < (1 - options.further_gain) * result.cost_after)) break;
     result.cost_after = found.cost_after;
     AddCorrections(found.views, &total);
     corrected = Corrected(small, total, threads);
-    result.taken = true;
-    gain = options.further_gain;
     if (found.residual_rms < 1) view.evidence = options.settled_evidence;
   }
+  result.taken = result.cost_after < (1 - options.least_gain) * result.cost_before;
   if (result.taken) {
     result.corrections = AtSize(total, width, height, set.plane.width, set.plane.height);
   }

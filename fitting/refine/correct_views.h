@@ -15,7 +15,9 @@ namespace glint {
 struct CorrectionOptions {
   std::string when = "auto";    // auto: with views enough; always; never
   double distinct_views = 3.5;  // of the set (refine_prior.h) from which on "auto" looks
-  // Relative fall of the cost below which nothing is taken: views that are right stay untouched.
+  // Relative fall of the cost below which nothing is taken: views that are right stay untouched. It
+  // is that of all rounds together: lights that are all wrong alike show late, since at first the
+  // normals have taken their part.
   double least_gain = 0.1;
   int rounds = 4;  // refinements and corrections in turn, at most …
   // … as long as the cost falls by this more. Once all is explained as well as residuals are
