@@ -188,7 +188,7 @@ class PoseTaker {
   void FindFrame() {
     FrameOptions frame;
     frame.plane_tolerance = options_.plane_tolerance;
-    frame_ = FindSampleFrame(capture_, source_, UprightPhotos(), WeightedPoints(), frame);
+    frame_ = FindSampleFrame(capture_, {source_, UprightPhotos(), WeightedPoints()}, frame);
   }
 
   // --- Result

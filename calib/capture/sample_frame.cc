@@ -24,17 +24,12 @@ struct Ray {
 
 class FrameFinder {
  public:
-  FrameFinder(const Capture& capture, const fs::path& model, const std::vector<PosedPhoto>& photos,
-              const std::vector<ModelPoint>& points, const FrameOptions& options)
-      : capture_(capture), model_(model), photos_(photos), points_(points), options_(options) {
-    for (const PosedPhoto& photo : photos) {
-      centres_.push_back(Inverse(photo.camera_from_model).translation);
-    }
-  }
+  FrameFinder(const Capture& capture, const PosedModel& model, const FrameOptions& options)
+      : capture_(capture), model_(model), options_(options), centres_(model.CameraCentres()) {}
 
   SampleFrame Find() {
     frame_.plane =
-        FindSamplePlane(capture_, model_, photos_, points_, options_, &frame_.plane_points);
+        FindSamplePlane(capture_, model_, options_, &frame_.plane_points);
     const PosesTable& poses = capture_.poses;
     if (!poses.corners_px.empty()) {
       FromCorners();
@@ -58,7 +53,7 @@ class FrameFinder {
   // --- Photographs
 
   const PosedPhoto& PhotoNamed(const std::string& name) const {
-    return glint::PhotoNamed(capture_, photos_, name);
+    return glint::PhotoNamed(capture_, model_.photos, name);
   }
 
   Vector3d CentreOf(const std::string& name) const {
@@ -119,7 +114,7 @@ class FrameFinder {
       return -photo.camera_from_model.rotation.row(2).dot(frame_.plane.normal);
     };
     const auto steepest = std::max_element(
-        photos_.begin(), photos_.end(),
+        model_.photos.begin(), model_.photos.end(),
         [&](const PosedPhoto& a, const PosedPhoto& b) { return steepness(a) < steepness(b); });
     return steepest->camera_from_model.rotation.row(0);
   }
@@ -127,7 +122,7 @@ class FrameFinder {
   Vector3d DefaultOrigin() const {
     const Similarity3 plane_frame = FrameAt(Vector3d::Zero(), DefaultX(), 1);
     std::vector<double> x, y;
-    for (const PosedPhoto& photo : photos_) {
+    for (const PosedPhoto& photo : model_.photos) {
       const Vector2d middle(0.5 * photo.camera.width_px, 0.5 * photo.camera.height_px);
       const auto point = Meet(RayOf(photo, middle));
       if (!point) continue;
@@ -135,7 +130,7 @@ class FrameFinder {
       y.push_back((plane_frame * *point).y());
     }
     if (x.empty()) {
-      throw UserError(model_, "images", "no photograph that looks at the plane of its points",
+      throw UserError(model_.source, "images", "no photograph that looks at the plane of its points",
                       "say with [poses] corners_px where the sample lies");
     }
     const double height = frame_.plane.offset;
@@ -218,7 +213,7 @@ class FrameFinder {
 
   void FromBoard() {
     std::map<int, std::pair<Vector2d, std::vector<Ray>>> corners;
-    for (const PosedPhoto& photo : photos_) {
+    for (const PosedPhoto& photo : model_.photos) {
       frame_.board_photos += !photo.corners.empty();
       for (const SightedCorner& corner : photo.corners) {
         const auto ray = RayOf(photo, corner.point_px);
@@ -250,7 +245,7 @@ class FrameFinder {
     const Eigen::Vector3d extent = in_sample.rowwise().maxCoeff() - in_sample.rowwise().minCoeff();
     if (frame_.fit_rms_mm < 0.01 * extent.norm() && UpIsUp()) return;
     throw UserError(
-        model_, "images",
+        model_.source, "images",
         fmt::format("the board's corners {:.2f} mm off their places", frame_.fit_rms_mm),
         "the board moved between the photographs, is another than [board] says, or "
         "the model is bad; give [poses] corners_px to do without it");
@@ -261,7 +256,7 @@ class FrameFinder {
         capture_.file, "poses", capture_.has_board ? "too little of the board" : "no length",
         "a COLMAP model knows no millimetres; give one of these in [poses]:\n"
         "  photo = \"" +
-            photos_[0].name +
+            model_.photos[0].name +
             "\" and corners_px = [[x, y], …]  the sample's corners in it, from the top left "
             "clockwise\n"
             "  photo and points_px = [[x, y], [x, y]], points_mm  two points and their distance\n"
@@ -271,9 +266,7 @@ class FrameFinder {
   }
 
   const Capture& capture_;
-  fs::path model_;
-  const std::vector<PosedPhoto>& photos_;
-  const std::vector<ModelPoint>& points_;
+  const PosedModel& model_;
   FrameOptions options_;
   std::vector<Vector3d> centres_;
   SampleFrame frame_;
@@ -281,10 +274,17 @@ class FrameFinder {
 
 }  // namespace
 
-SampleFrame FindSampleFrame(const Capture& capture, const fs::path& model,
-                            const std::vector<PosedPhoto>& photos,
-                            const std::vector<ModelPoint>& points, const FrameOptions& options) {
-  return FrameFinder(capture, model, photos, points, options).Find();
+std::vector<Vector3d> PosedModel::CameraCentres() const {
+  std::vector<Vector3d> centres;
+  for (const PosedPhoto& photo : photos) {
+    centres.push_back(Inverse(photo.camera_from_model).translation);
+  }
+  return centres;
+}
+
+SampleFrame FindSampleFrame(const Capture& capture, const PosedModel& model,
+                            const FrameOptions& options) {
+  return FrameFinder(capture, model, options).Find();
 }
 
 }  // namespace glint

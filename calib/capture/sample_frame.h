@@ -39,6 +39,15 @@ struct ModelPoint {
   double weight = 1;
 };
 
+// What a COLMAP model holds of a capture.
+struct PosedModel {
+  std::filesystem::path source;  // named in errors
+  std::vector<PosedPhoto> photos;
+  std::vector<ModelPoint> points;
+
+  std::vector<Eigen::Vector3d> CameraCentres() const;  // one a photograph, in the model's frame
+};
+
 struct FrameOptions {
   // A point is on the plane within this share of the cameras' distance.
   double plane_tolerance = 0.005;
@@ -55,10 +64,9 @@ struct SampleFrame {
   int board_photos = 0, board_corners = 0;
 };
 
-// `model` is named in errors. Throws UserError: no plane, cameras on both of its sides, no scale,
-// or corners that do not fit the sample's size.
-SampleFrame FindSampleFrame(const Capture& capture, const std::filesystem::path& model,
-                            const std::vector<PosedPhoto>& photos,
-                            const std::vector<ModelPoint>& points, const FrameOptions& options);
+// Throws UserError: no plane, cameras on both of its sides, no scale, or corners that do not fit the
+// sample's size.
+SampleFrame FindSampleFrame(const Capture& capture, const PosedModel& model,
+                            const FrameOptions& options);
 
 }  // namespace glint

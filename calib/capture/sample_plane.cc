@@ -16,22 +16,17 @@ using Eigen::Vector3d;
 
 class PlaneFinder {
  public:
-  PlaneFinder(const Capture& capture, const fs::path& model, const std::vector<PosedPhoto>& photos,
-              const std::vector<ModelPoint>& points, const FrameOptions& options)
-      : capture_(capture), model_(model), photos_(photos), points_(points), options_(options) {
-    for (const PosedPhoto& photo : photos) {
-      centres_.push_back(Inverse(photo.camera_from_model).translation);
-    }
-  }
+  PlaneFinder(const Capture& capture, const PosedModel& model, const FrameOptions& options)
+      : capture_(capture), model_(model), options_(options), centres_(model.CameraCentres()) {}
 
   // The sample's own points where there are enough of them, else all. All too where the ground's
   // plane runs within the sample's noise: it has more points, and its features do not wander with
   // the flash, as those of relief and gloss do.
   void Find() {
     std::vector<PlanePoint> all;
-    for (const ModelPoint& point : points_) all.push_back({point.position, point.weight});
+    for (const ModelPoint& point : model_.points) all.push_back({point.position, point.weight});
     if (all.empty()) {
-      throw UserError(model_, "points3D", "no points", "give a model with points, or a [board]");
+      throw UserError(model_.source, "points3D", "no points", "give a model with points, or a [board]");
     }
     const std::vector<PlanePoint> inside = PointsInside();
     constexpr size_t kEnough = 50;
@@ -61,14 +56,14 @@ class PlaneFinder {
   std::vector<PlanePoint> PointsInside() const {
     std::vector<PlanePoint> inside;
     if (capture_.poses.corners_px.empty()) return inside;
-    for (const ModelPoint& point : points_) {
+    for (const ModelPoint& point : model_.points) {
       if (InsideCorners(point.position)) inside.push_back({point.position, point.weight});
     }
     return inside;
   }
 
   bool InsideCorners(const Vector3d& position) const {
-    const PosedPhoto& photo = PhotoNamed(capture_, photos_, capture_.poses.photo);
+    const PosedPhoto& photo = PhotoNamed(capture_, model_.photos, capture_.poses.photo);
     const Vector3d in_camera = photo.camera_from_model * position;
     if (!(in_camera.z() > 0)) return false;
     const Vector2d point = ImageFromCamera(photo.camera, in_camera);
@@ -108,7 +103,7 @@ class PlaneFinder {
     plane_ = FitPlane(candidates, plane);
     plane_points_ = candidates.size();
     if (!plane_.problem.empty()) {
-      throw UserError(model_, "points3D", plane_.problem,
+      throw UserError(model_.source, "points3D", plane_.problem,
                       "the sample's plane is not to be seen in them: photograph it so that it and "
                       "the flat ground round it fill the pictures, say with [poses] corners_px "
                       "where it lies, or widen --plane-tolerance for a rough sample");
@@ -126,7 +121,7 @@ class PlaneFinder {
       above = centres_.size() - above;
     }
     if (above == centres_.size()) return;
-    throw UserError(model_, "points3D",
+    throw UserError(model_.source, "points3D",
                     fmt::format("a plane with {} cameras above and {} below it", above,
                                 centres_.size() - above),
                     "it is not the sample's: leave out photographs of other things, or say with "
@@ -134,9 +129,7 @@ class PlaneFinder {
   }
 
   const Capture& capture_;
-  fs::path model_;
-  const std::vector<PosedPhoto>& photos_;
-  const std::vector<ModelPoint>& points_;
+  const PosedModel& model_;
   FrameOptions options_;
   std::vector<Vector3d> centres_;
   PlaneFit plane_;
@@ -160,11 +153,9 @@ const PosedPhoto& PhotoNamed(const Capture& capture, const std::vector<PosedPhot
                   "name a photograph that it does: " + photos[0].name);
 }
 
-PlaneFit FindSamplePlane(const Capture& capture, const fs::path& model,
-                         const std::vector<PosedPhoto>& photos,
-                         const std::vector<ModelPoint>& points, const FrameOptions& options,
-                         size_t* plane_points) {
-  PlaneFinder finder(capture, model, photos, points, options);
+PlaneFit FindSamplePlane(const Capture& capture, const PosedModel& model,
+                         const FrameOptions& options, size_t* plane_points) {
+  PlaneFinder finder(capture, model, options);
   finder.Find();
   *plane_points = finder.plane_points();
   return finder.plane();
