@@ -6,7 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "calib/canvas/canvas.h"
+#include "pipeline/canvas/canvas.h"
 
 namespace glint {
 namespace {

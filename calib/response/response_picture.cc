@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "calib/canvas/canvas.h"
+#include "pipeline/canvas/canvas.h"
 #include "rectify/linearize/encoding.h"
 
 namespace glint {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "calib/canvas/canvas.h"
+#include "pipeline/canvas/canvas.h"
 
 namespace glint {
 namespace {

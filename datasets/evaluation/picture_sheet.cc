@@ -7,6 +7,7 @@
 
 #include "datasets/evaluation/view_error.h"
 #include "fitting/render/renderer.h"
+#include "pipeline/canvas/canvas.h"
 #include "pipeline/contract/svbrdf_file.h"
 
 namespace glint {
@@ -101,19 +102,7 @@ class Sheet {
     }
   }
 
-  Image ToImage() const {
-    Image image(canvas_.cols, canvas_.rows, {"R", "G", "B"});
-    for (int y = 0; y < canvas_.rows; ++y) {
-      for (int x = 0; x < canvas_.cols; ++x) {
-        const cv::Vec3b pixel = canvas_.at<cv::Vec3b>(y, x);
-        for (int c = 0; c < 3; ++c) {
-          image.channel(c)[static_cast<size_t>(y) * image.width + static_cast<size_t>(x)] =
-              static_cast<float>(pixel[c]) / 255.0f;
-        }
-      }
-    }
-    return image;
-  }
+  Image ToImage() const { return ImageOf(canvas_); }
 
  private:
   int BlockHeight() const { return kTextHeight + lines_ * (kThumb + 2) + kGap; }

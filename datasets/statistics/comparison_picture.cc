@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "datasets/statistics/distance.h"
+#include "pipeline/canvas/canvas.h"
 
 namespace glint {
 namespace {
@@ -123,19 +124,6 @@ void DrawTrait(const Comparison& c, const Distance& d, Trait trait, size_t index
   panel.Ends(fmt::format("{:g}", info.low), fmt::format("{:g}", info.high));
 }
 
-Image ToImage(const cv::Mat& canvas) {
-  Image image(canvas.cols, canvas.rows, {"R", "G", "B"});
-  for (int y = 0; y < canvas.rows; ++y) {
-    for (int x = 0; x < canvas.cols; ++x) {
-      const cv::Vec3b pixel = canvas.at<cv::Vec3b>(y, x);
-      for (int c = 0; c < 3; ++c) {
-        image.channel(c)[static_cast<size_t>(y) * image.width + x] = pixel[c] / 255.0f;
-      }
-    }
-  }
-  return image;
-}
-
 }  // namespace
 
 Image DrawComparison(const Comparison& comparison) {
@@ -152,7 +140,7 @@ Image DrawComparison(const Comparison& comparison) {
   for (int i = 0; i < kTraits; ++i, ++index) {
     DrawTrait(comparison, comparison.distances[index], static_cast<Trait>(i), index, &canvas);
   }
-  return ToImage(canvas);
+  return ImageOf(canvas);
 }
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-#include "calib/canvas/canvas.h"
+#include "pipeline/canvas/canvas.h"
 
 #include <opencv2/core.hpp>
 
