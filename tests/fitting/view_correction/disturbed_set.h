@@ -12,20 +12,34 @@ namespace glint::test {
 
 inline constexpr double kAmbientShare = 0.05;
 
-// Waves in two directions: structure that tells displacements along both axes.
+inline double WaveAcross(int row, int column) { return std::sin(0.31 * column + 0.1 * row); }
+inline double WaveDown(int row, int column) { return std::sin(0.37 * row - 0.12 * column); }
+
+// Mean of a wave over the texels.
+inline double MeanOf(double (*wave)(int row, int column), int size) {
+  double sum = 0;
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) sum += wave(row, column);
+  }
+  return sum / (static_cast<double>(size) * size);
+}
+
+// Waves in two directions: structure that tells displacements along both axes. Slopes are level in
+// the mean, as samples are.
 inline SvbrdfMaps CrossedWaves(int size) {
   SvbrdfMaps maps(size, size);
+  const double mean_across = MeanOf(WaveAcross, size), mean_down = MeanOf(WaveDown, size);
   for (int row = 0; row < size; ++row) {
     for (int column = 0; column < size; ++column) {
-      const double across = std::sin(0.31 * column + 0.1 * row);
-      const double down = std::sin(0.37 * row - 0.12 * column);
+      const double across = WaveAcross(row, column), down = WaveDown(row, column);
       for (int c = 0; c < 3; ++c) {
         maps.at(kDiffuseR + c, row, column) =
             static_cast<float>(0.35 + 0.12 * across + 0.1 * down + 0.02 * c);
         maps.at(kSpecularR + c, row, column) = static_cast<float>(0.06 + 0.02 * down);
       }
       maps.at(kRoughness, row, column) = static_cast<float>(0.4 + 0.1 * across * down);
-      const double x = 0.2 * down, y = 0.2 * across, z = 1 / std::sqrt(1 + x * x + y * y);
+      const double x = 0.2 * (down - mean_down), y = 0.2 * (across - mean_across);
+      const double z = 1 / std::sqrt(1 + x * x + y * y);
       maps.at(kNormalX, row, column) = static_cast<float>(x * z);
       maps.at(kNormalY, row, column) = static_cast<float>(y * z);
       maps.at(kNormalZ, row, column) = static_cast<float>(z);
