@@ -17,10 +17,10 @@ namespace fs = std::filesystem;
 
 constexpr int kThumb = 96;  // pixels a side
 constexpr int kColumns = 5;
-constexpr int kTextWidth = 120, kTextHeight = 38, kGap = 6;
+constexpr int kTextHeight = 38, kGap = 6;
+constexpr double kNameScale = 0.42;  // of the font
 constexpr const char* kColumnNames[kColumns] = {"normal", "diffuse", "specular", "roughness",
                                                 "rendering"};
-constexpr int kBlockWidth = kTextWidth + kColumns * (kThumb + 2) + kGap;
 
 unsigned char Display(float value) {
   return static_cast<unsigned char>(
@@ -75,43 +75,58 @@ std::string Ascii(const std::string& text) {
   return plain;
 }
 
+// Pixels that the longest of the lines' names needs.
+int TextWidth(const std::vector<std::string>& names) {
+  constexpr int kLeast = 60;
+  int width = kLeast;
+  for (const std::string& name : names) {
+    const cv::Size size =
+        cv::getTextSize(Ascii(name), cv::FONT_HERSHEY_SIMPLEX, kNameScale, 1, nullptr);
+    width = std::max(width, size.width);
+  }
+  return width + 2 * kGap;
+}
+
 class Sheet {
  public:
-  Sheet(int columns, int rows, int lines)
+  // `names`: of the lines of all blocks.
+  Sheet(int columns, int rows, int lines, const std::vector<std::string>& names)
       : lines_(lines),
-        canvas_(rows * BlockHeight(), columns * kBlockWidth, CV_8UC3, cv::Scalar(255, 255, 255)) {}
+        text_width_(TextWidth(names)),
+        canvas_(rows * BlockHeight(), columns * BlockWidth(), CV_8UC3, cv::Scalar(255, 255, 255)) {}
 
   void Title(int column, int row, const std::string& text) {
-    const int left = column * kBlockWidth, top = row * BlockHeight();
+    const int left = column * BlockWidth(), top = row * BlockHeight();
     Write(text, {left + kGap, top + 15}, 0.5);
     for (int i = 0; i < kColumns; ++i) {
-      Write(kColumnNames[i], {left + kTextWidth + i * (kThumb + 2), top + kTextHeight - 6}, 0.4);
+      Write(kColumnNames[i], {left + text_width_ + i * (kThumb + 2), top + kTextHeight - 6}, 0.4);
     }
   }
 
   void Line(int column, int row, int line, const std::string& name, const SvbrdfMaps* maps,
             int threads) {
-    const int left = column * kBlockWidth;
+    const int left = column * BlockWidth();
     const int top = row * BlockHeight() + kTextHeight + line * (kThumb + 2);
-    Write(name, {left + kGap, top + kThumb / 2}, 0.42);
+    Write(name, {left + kGap, top + kThumb / 2}, kNameScale);
     if (maps == nullptr) return;
     const auto thumbs = Thumbs(*maps, threads);
     for (int i = 0; i < kColumns; ++i) {
       thumbs[static_cast<size_t>(i)].copyTo(
-          canvas_(cv::Rect(left + kTextWidth + i * (kThumb + 2), top, kThumb, kThumb)));
+          canvas_(cv::Rect(left + text_width_ + i * (kThumb + 2), top, kThumb, kThumb)));
     }
   }
 
   Image ToImage() const { return ImageOf(canvas_); }
 
  private:
+  int BlockWidth() const { return text_width_ + kColumns * (kThumb + 2) + kGap; }
   int BlockHeight() const { return kTextHeight + lines_ * (kThumb + 2) + kGap; }
   void Write(const std::string& text, cv::Point at, double scale) {
     cv::putText(canvas_, Ascii(text), at, cv::FONT_HERSHEY_SIMPLEX, scale, cv::Scalar(30, 30, 30),
                 1, cv::LINE_AA);
   }
 
-  int lines_;
+  int lines_, text_width_;
   cv::Mat canvas_;
 };
 
@@ -119,8 +134,12 @@ class Sheet {
 
 Image DrawBlocks(const std::vector<SheetBlock>& blocks, int threads) {
   size_t lines = 1;
-  for (const SheetBlock& block : blocks) lines = std::max(lines, block.lines.size());
-  Sheet sheet(1, static_cast<int>(blocks.size()), static_cast<int>(lines));
+  std::vector<std::string> names;
+  for (const SheetBlock& block : blocks) {
+    lines = std::max(lines, block.lines.size());
+    for (const auto& line : block.lines) names.push_back(line.first);
+  }
+  Sheet sheet(1, static_cast<int>(blocks.size()), static_cast<int>(lines), names);
   for (int row = 0; row < std::ssize(blocks); ++row) {
     const SheetBlock& block = blocks[static_cast<size_t>(row)];
     sheet.Title(0, row, block.title);
@@ -133,7 +152,9 @@ Image DrawBlocks(const std::vector<SheetBlock>& blocks, int threads) {
 Image DrawSheet(const Experiment& experiment, int threads) {
   const int columns = static_cast<int>(experiment.conditions.size());
   const int rows = std::min(kSheetMaterials, static_cast<int>(experiment.materials.size()));
-  Sheet sheet(columns, rows, 1 + static_cast<int>(experiment.methods.size()));
+  std::vector<std::string> names{"truth"};
+  for (const Method& method : experiment.methods) names.push_back(method.name);
+  Sheet sheet(columns, rows, static_cast<int>(names.size()), names);
   for (int row = 0; row < rows; ++row) {
     const MaterialSource material =
         LoadMaterial(experiment.materials[static_cast<size_t>(row)], experiment.size);
