@@ -28,8 +28,7 @@ class FrameFinder {
       : capture_(capture), model_(model), options_(options), centres_(model.CameraCentres()) {}
 
   SampleFrame Find() {
-    frame_.plane =
-        FindSamplePlane(capture_, model_, options_, &frame_.plane_points);
+    frame_.plane = FindSamplePlane(capture_, model_, options_, &frame_.plane_points);
     const PosesTable& poses = capture_.poses;
     if (!poses.corners_px.empty()) {
       FromCorners();
@@ -130,7 +129,8 @@ class FrameFinder {
       y.push_back((plane_frame * *point).y());
     }
     if (x.empty()) {
-      throw UserError(model_.source, "images", "no photograph that looks at the plane of its points",
+      throw UserError(model_.source, "images",
+                      "no photograph that looks at the plane of its points",
                       "say with [poses] corners_px where the sample lies");
     }
     const double height = frame_.plane.offset;

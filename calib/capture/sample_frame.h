@@ -64,8 +64,8 @@ struct SampleFrame {
   int board_photos = 0, board_corners = 0;
 };
 
-// Throws UserError: no plane, cameras on both of its sides, no scale, or corners that do not fit the
-// sample's size.
+// Throws UserError: no plane, cameras on both of its sides, no scale, or corners that do not fit
+// the sample's size.
 SampleFrame FindSampleFrame(const Capture& capture, const PosedModel& model,
                             const FrameOptions& options);
 

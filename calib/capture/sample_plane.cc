@@ -26,7 +26,8 @@ class PlaneFinder {
     std::vector<PlanePoint> all;
     for (const ModelPoint& point : model_.points) all.push_back({point.position, point.weight});
     if (all.empty()) {
-      throw UserError(model_.source, "points3D", "no points", "give a model with points, or a [board]");
+      throw UserError(model_.source, "points3D", "no points",
+                      "give a model with points, or a [board]");
     }
     const std::vector<PlanePoint> inside = PointsInside();
     constexpr size_t kEnough = 50;

@@ -226,12 +226,7 @@ TEST_F(ColmapPoses, FisheyeLensesAreConvertedWithTheirErrorStated) {
 }
 
 TEST_F(ColmapPoses, ABoardInSomePhotographsGivesScaleAndFrame) {
-  Board board;
-  board.squares_x = 8;
-  board.squares_y = 6;
-  board.square_mm = 20;
-  board.marker_mm = 12;
-  board.dictionary = "DICT_5X5_100";
+  const Board board = testing::SmallBoard();
   for (const int i : {0, 2, 3}) {
     testing::PhotoSettings settings;
     settings.samples = 2;

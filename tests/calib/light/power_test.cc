@@ -63,12 +63,7 @@ TEST(EstimatePower, IsUnknownWithoutPaper) {
 }
 
 TEST(SamplePaper, FindsWhitePaperAndLeavesOutWhatClips) {
-  Board board;
-  board.squares_x = 8;
-  board.squares_y = 6;
-  board.square_mm = 20;
-  board.marker_mm = 12;
-  board.dictionary = "DICT_5X5_100";
+  const Board board = testing::SmallBoard();
   const Camera camera{CameraModel::kRadial, 800, 600, {720, 404.3, 297.1, 0.06, -0.08}};
   testing::PhotoSettings settings;
   settings.vignette = 0;

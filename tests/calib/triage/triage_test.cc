@@ -15,16 +15,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::LookAt;
 
-Board SomeBoard() {
-  Board board;
-  board.squares_x = 8;
-  board.squares_y = 6;
-  board.square_mm = 20;
-  board.marker_mm = 12;
-  board.dictionary = "DICT_5X5_100";
-  return board;
-}
-
 Photo PhotoOf(const GrayImage& gray) {
   Photo photo;
   photo.image = Image(gray.width, gray.height, {"R", "G", "B"});
@@ -53,10 +43,10 @@ PhotoMeasures Take(const std::string& name, const Look& look) {
   settings.peak = look.peak;
   const Camera camera{CameraModel::kRadial, 640, 480, {560, 320, 240, 0, 0}};
   const GrayImage gray = Photograph(
-      SomeBoard(), camera,
+      testing::SmallBoard(), camera,
       LookAt(230 + 5 * look.pose, 6 + 5 * look.pose, 70 * look.pose, 20 * look.pose), settings);
   const Photo photo = PhotoOf(gray);
-  return MeasurePhoto(name, photo, gray, DetectBoard(gray, SomeBoard()));
+  return MeasurePhoto(name, photo, gray, DetectBoard(gray, testing::SmallBoard()));
 }
 
 std::vector<std::string> Kinds(const std::vector<Remark>& remarks, const std::string& photo) {
