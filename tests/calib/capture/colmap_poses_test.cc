@@ -230,12 +230,7 @@ TEST_F(ColmapPoses, ABoardInSomePhotographsGivesScaleAndFrame) {
   for (const int i : {0, 2, 3}) {
     testing::PhotoSettings settings;
     settings.samples = 2;
-    const GrayImage gray = Photograph(board, kCamera, Pose(i), settings);
-    Image image(gray.width, gray.height, {"R", "G", "B"});
-    for (size_t k = 0; k < 3 * gray.samples.size(); ++k) {
-      image.samples[k] = gray.samples[k % gray.samples.size()] / 255.0f;
-    }
-    WritePng(capture() / Name(i), image);
+    testing::WritePhoto(capture() / Name(i), Photograph(board, kCamera, Pose(i), settings));
   }
   const test::Outcome outcome =
       Calibrate(Toml("",

@@ -151,13 +151,17 @@ Board SmallBoard() {
 
 Camera SmallCamera() { return {CameraModel::kRadial, 640, 480, {560, 323.3, 237.1, 0.06, -0.08}}; }
 
-void WritePhoto(const std::filesystem::path& file, const GrayImage& gray) {
-  std::filesystem::create_directories(file.parent_path());
+Image RgbOf(const GrayImage& gray) {
   Image image(gray.width, gray.height, {"R", "G", "B"});
   for (size_t i = 0; i < gray.samples.size(); ++i) {
     for (int c = 0; c < 3; ++c) image.channel(c)[i] = gray.samples[i] / 255.0f;
   }
-  WritePng(file, image);
+  return image;
+}
+
+void WritePhoto(const std::filesystem::path& file, const GrayImage& gray) {
+  std::filesystem::create_directories(file.parent_path());
+  WritePng(file, RgbOf(gray));
 }
 
 Rigid3 LookAt(double distance_mm, double tilt_deg, double azimuth_deg, double roll_deg,

@@ -34,7 +34,10 @@ GrayImage Photograph(const Board& board, const Camera& camera, const Rigid3& cam
 Board SmallBoard();
 Camera SmallCamera();
 
-// A grey picture as an RGB file; missing folders are made.
+// A grey picture in three channels, on [0, 1].
+Image RgbOf(const GrayImage& gray);
+
+// The same as a PNG file; missing folders are made.
 void WritePhoto(const std::filesystem::path& file, const GrayImage& gray);
 
 // A camera above the sample that looks at `target_mm`: tilted by `tilt_deg` toward direction

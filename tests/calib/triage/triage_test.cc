@@ -17,10 +17,7 @@ using testing::LookAt;
 
 Photo PhotoOf(const GrayImage& gray) {
   Photo photo;
-  photo.image = Image(gray.width, gray.height, {"R", "G", "B"});
-  for (size_t i = 0; i < gray.samples.size(); ++i) {
-    for (int c = 0; c < 3; ++c) photo.image.channel(c)[i] = gray.samples[i] / 255.0f;
-  }
+  photo.image = testing::RgbOf(gray);
   photo.format = "jpeg";
   photo.camera_model = "Maker Phone";
   photo.exposure_time_s = 0.01;
