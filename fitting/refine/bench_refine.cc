@@ -16,9 +16,9 @@
 #include "fitting/refine/gather.h"
 #include "fitting/refine/refine.h"
 #include "fitting/refine/refine_prior.h"
-#include "fitting/refine/texel_parameters.h"
-#include "fitting/refine/texel_residuals.h"
 #include "fitting/reflectance/texel_at.h"
+#include "fitting/texel/texel_parameters.h"
+#include "fitting/texel/texel_residuals.h"
 
 namespace glint {
 namespace {

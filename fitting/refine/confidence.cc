@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/refine/texel_cost.h"
+#include "fitting/texel/texel_cost.h"
 
 namespace glint {
 namespace {

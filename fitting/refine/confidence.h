@@ -4,7 +4,7 @@
 #include <array>
 
 #include "fitting/refine/refine.h"
-#include "fitting/refine/texel_kernel.h"
+#include "fitting/texel/texel_kernel.h"
 
 namespace glint {
 

@@ -15,9 +15,9 @@
 #include "fitting/refine/gather.h"
 #include "fitting/refine/highlight_pool.h"
 #include "fitting/refine/refine_prior.h"
-#include "fitting/refine/residual_noise.h"
-#include "fitting/refine/texel_parameters.h"
-#include "fitting/refine/texel_search.h"
+#include "fitting/texel/residual_noise.h"
+#include "fitting/texel/texel_parameters.h"
+#include "fitting/texel/texel_search.h"
 
 namespace glint {
 namespace {

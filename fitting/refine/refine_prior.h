@@ -3,7 +3,7 @@
 #pragma once
 
 #include "fitting/refine/refine.h"
-#include "fitting/refine/texel_prior.h"
+#include "fitting/texel/texel_prior.h"
 
 namespace glint {
 

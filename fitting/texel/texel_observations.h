@@ -13,6 +13,10 @@ inline constexpr int kLanes = 8;
 
 inline constexpr double kLogOffset = 0.01;  // of the loss |log(I + 0.01) − log(R + 0.01)|
 
+// Linear radiance from which a photograph that clips is taken to be at its limit; resampling may
+// have mixed a little of a darker pixel in (see AdmitClippedTexels).
+inline constexpr double kClipped = 0.99;
+
 // Structure of arrays over the usable views of one texel, padded to a multiple of kLanes by views
 // of weight 0. One object per thread serves all its texels; memory is fixed by the constructor.
 class TexelObservations {

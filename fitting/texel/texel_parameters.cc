@@ -1,4 +1,4 @@
-#include "fitting/refine/texel_parameters.h"
+#include "fitting/texel/texel_parameters.h"
 
 #include <algorithm>
 #include <cmath>

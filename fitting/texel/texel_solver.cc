@@ -1,4 +1,4 @@
-#include "fitting/refine/texel_solver.h"
+#include "fitting/texel/texel_solver.h"
 
 // The solver's products of 9×10 matrices: unrolled, rather than packed for a general product.
 #define EIGEN_GEMM_TO_COEFFBASED_THRESHOLD 32
@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "fitting/refine/texel_cost.h"
-#include "fitting/refine/texel_parameters.h"
+#include "fitting/texel/texel_cost.h"
+#include "fitting/texel/texel_parameters.h"
 
 namespace glint {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "fitting/refine/texel_kernel.h"
-#include "fitting/refine/texel_prior.h"
+#include "fitting/texel/texel_kernel.h"
+#include "fitting/texel/texel_prior.h"
 
 namespace glint {
 

@@ -3,7 +3,7 @@
 // wandered off (map error at five views one half higher).
 #pragma once
 
-#include "fitting/refine/texel_kernel.h"
+#include "fitting/texel/texel_kernel.h"
 
 namespace glint {
 

@@ -13,7 +13,7 @@
 #include <array>
 #include <vector>
 
-#include "fitting/refine/texel_observations.h"
+#include "fitting/texel/texel_observations.h"
 
 namespace glint {
 

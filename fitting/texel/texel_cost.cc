@@ -1,9 +1,9 @@
-#include "fitting/refine/texel_cost.h"
+#include "fitting/texel/texel_cost.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/refine/texel_parameters.h"
+#include "fitting/texel/texel_parameters.h"
 
 namespace glint {
 

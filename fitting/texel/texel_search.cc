@@ -1,4 +1,4 @@
-#include "fitting/refine/texel_search.h"
+#include "fitting/texel/texel_search.h"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "fitting/refine/texel_kernel.h"
-#include "fitting/refine/texel_prior.h"
+#include "fitting/texel/texel_kernel.h"
+#include "fitting/texel/texel_prior.h"
 
 namespace glint {
 

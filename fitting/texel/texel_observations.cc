@@ -1,10 +1,10 @@
-#include "fitting/refine/texel_observations.h"
+#include "fitting/texel/texel_observations.h"
 
 #include <cassert>
 #include <cmath>
 #include <cstdint>
 
-#include "fitting/refine/texel_kernel.h"
+#include "fitting/texel/texel_kernel.h"
 
 namespace glint {
 namespace {

@@ -1,4 +1,4 @@
-#include "fitting/refine/texel_residuals.h"
+#include "fitting/texel/texel_residuals.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "fitting/refine/texel_prior.h"
+#include "fitting/texel/texel_prior.h"
 
 #include <cmath>
 

@@ -1,11 +1,11 @@
-#include "fitting/refine/texel_kernel.h"
+#include "fitting/texel/texel_kernel.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include "fitting/refine/texel_lobes.inl"
-#include "fitting/refine/texel_vector.inl"
+#include "fitting/texel/texel_lobes.inl"
+#include "fitting/texel/texel_vector.inl"
 
 namespace glint {
 namespace {

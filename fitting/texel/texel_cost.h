@@ -9,8 +9,8 @@
 
 #include <Eigen/Core>
 
-#include "fitting/refine/texel_kernel.h"
-#include "fitting/refine/texel_prior.h"
+#include "fitting/texel/texel_kernel.h"
+#include "fitting/texel/texel_prior.h"
 
 namespace glint {
 

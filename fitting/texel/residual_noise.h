@@ -6,7 +6,7 @@
 // too easily and every standard deviation comes out too small by √3.
 #pragma once
 
-#include "fitting/refine/texel_kernel.h"
+#include "fitting/texel/texel_kernel.h"
 
 namespace glint {
 

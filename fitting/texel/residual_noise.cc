@@ -1,4 +1,4 @@
-#include "fitting/refine/residual_noise.h"
+#include "fitting/texel/residual_noise.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "fitting/refine/texel_kernel.h"
+#include "fitting/texel/texel_kernel.h"
 
 namespace glint {
 namespace {

@@ -7,8 +7,8 @@
 // leave it again (a sine's gradient vanishes there; a logistic curve bends everywhere).
 #pragma once
 
-#include "fitting/refine/texel_kernel.h"
 #include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/texel/texel_kernel.h"
 
 namespace glint {
 

@@ -1,4 +1,4 @@
-#include "fitting/refine/texel_residuals.h"
+#include "fitting/texel/texel_residuals.h"
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "fitting/refine/texel_cost.h"
-#include "fitting/refine/texel_parameters.h"
 #include "fitting/reflectance/texel_at.h"
+#include "fitting/texel/texel_cost.h"
+#include "fitting/texel/texel_parameters.h"
 
 namespace glint {
 namespace {

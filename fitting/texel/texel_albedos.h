@@ -1,7 +1,7 @@
 // The albedos of one texel in closed form, its normal and roughness given.
 #pragma once
 
-#include "fitting/refine/texel_kernel.h"
+#include "fitting/texel/texel_kernel.h"
 
 namespace glint {
 

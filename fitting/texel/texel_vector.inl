@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "fitting/refine/texel_observations.h"
+#include "fitting/texel/texel_observations.h"
 
 // One binary, the widest vector unit of the machine it runs on. Every operation is rounded the same
 // way on all of them (no contraction), so results do not depend on the choice.

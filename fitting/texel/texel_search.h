@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "fitting/refine/texel_albedos.h"
-#include "fitting/refine/texel_solver.h"
+#include "fitting/texel/texel_albedos.h"
+#include "fitting/texel/texel_solver.h"
 
 namespace glint {
 

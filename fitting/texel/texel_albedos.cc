@@ -1,9 +1,9 @@
-#include "fitting/refine/texel_albedos.h"
+#include "fitting/texel/texel_albedos.h"
 
 #include <cmath>
 
-#include "fitting/refine/texel_lobes.inl"
-#include "fitting/refine/texel_vector.inl"
+#include "fitting/texel/texel_lobes.inl"
+#include "fitting/texel/texel_vector.inl"
 
 namespace glint {
 namespace {
