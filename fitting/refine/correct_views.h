@@ -15,16 +15,8 @@ namespace glint {
 struct CorrectionOptions {
   std::string when = "auto";    // auto: with views enough; always; never
   double distinct_views = 3.5;  // of the set (refine_prior.h) from which on "auto" looks
-  // Relative fall of the cost below which nothing is taken: views that are right stay untouched. It
-  // is that of all rounds together: lights that are all wrong alike show late, since at first the
-  // normals have taken their part.
+  // ViewCorrectionResult::gain up to which nothing is taken: views that are right stay untouched.
   double least_gain = 0.1;
-  int rounds = 4;  // refinements and corrections in turn, at most …
-  // … as long as the cost falls by this more. Once all is explained as well as residuals are
-  // expected to be, views and maps agree, and the photographs are believed this much (see
-  // ViewCorrectionOptions::evidence).
-  double further_gain = 0.03;
-  double settled_evidence = 1000;
   int working_size = 256;  // texels along the longer side; larger sets are averaged down
   ViewCorrectionOptions view;
 
@@ -42,9 +34,8 @@ struct CorrectionResult {
 // The problem that Refine() solves for these photographs; its spans are of `set`.
 RefineProblem ProblemOf(const PhotographSet& set);
 
-// `start` has the set's size. Throws as Refine() and CorrectViews() do.
+// `start` has the set's size. Throws as CorrectViews() does.
 CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& start,
-                                 const RefineOptions& refine, const CorrectionOptions& options,
-                                 int threads);
+                                 const CorrectionOptions& options, int threads);
 
 }  // namespace glint

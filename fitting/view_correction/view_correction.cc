@@ -1,230 +1,231 @@
 #include "fitting/view_correction/view_correction.h"
 
-#include <ceres/ceres.h>
-
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <deque>
+#include <memory>
 #include <stdexcept>
 
 #include "base/parallel/parallel.h"
-#include "fitting/reflectance/brdf.h"
-#include "fitting/view_correction/holds.h"
-#include "fitting/view_correction/radiance_cost.h"
+#include "fitting/view_correction/texel_lattice.h"
+#include "fitting/view_correction/view_holds.h"
+#include "fitting/view_correction/view_unknowns.h"
 
 namespace glint {
 namespace {
 
-constexpr double kLeastRoughness = 0.02;
-constexpr double kSteepest = 6.0;  // slope
-constexpr int kMargin = 2;         // texels at the edge, whose lookup would leave the picture
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
-struct ViewBlocks {
-  double light[3] = {0, 0, 0};
-  double exposure[1] = {0};
-  double shifts[8] = {0, 0, 0, 0, 0, 0, 0, 0};
-};
+// Residuals of log radiance: expected of a first descent, and least that is believed of
+// photographs.
+constexpr double kFirstSigma = 0.02, kLeastSigma = 0.005;
+// Relative fall of the cost by one step that ends a descent.
+constexpr double kFirstTolerance = 1e-3, kSecondTolerance = 1e-5, kLastTolerance = 1e-6;
+constexpr double kMostDamping = 1e6;
+// Channels have no share in what is left: rounding gives 1.0 to 1.13, errors of views 1.8 to 3 (and
+// so does rounding on grey materials, which are then believed less).
+constexpr double kLooksLikeNoise = 1.5;
+// The work on one texel grows with the square of the views: with more than these the lattice is
+// thinned.
+constexpr double kViewsOfFullLattice = 40;
+constexpr int kFewestTexels = 256;
 
-struct Texel {
-  int column, row;
-  double parameters[kTexelSize];
-};
+int LatticeTexels(int wanted, size_t views) {
+  const double share = std::min(1.0, kViewsOfFullLattice / static_cast<double>(views));
+  return std::max(std::min(wanted, kFewestTexels), static_cast<int>(wanted * share * share));
+}
 
+// One lattice and the descent of the views on it.
 class Adjustment {
  public:
-  Adjustment(const PhotographSet& set, const SvbrdfMaps& maps,
-             const ViewCorrectionOptions& options);
-  ViewCorrectionResult Solve();
+  Adjustment(const PhotographSet& set, const SvbrdfMaps& maps, const ViewCorrectionOptions& options,
+             bool registration, int texels, int threads)
+      : options_(options),
+        unknowns_(set, registration),
+        lattice_(set, maps, unknowns_, texels, threads),
+        expected_(options.expected),
+        x_(VectorXd::Zero(unknowns_.size())) {}
+
+  // Residuals expected, and as how many a view's count.
+  void Weigh(double sigma, double evidence);
+  // From where it stands. Returns the steps tried.
+  int Descend(double tolerance);
+  // Expects offsets like those found.
+  void Learn();
+  // To the texels' best at `x`.
+  void MoveTo(const VectorXd& x);
+  // Cost of texels fitted to the views as they were, from their starts or from where they are now.
+  double CostUncorrected();
+
+  const VectorXd& x() const { return x_; }
+  bool empty() const { return lattice_.size() == 0; }
+  double cost() const { return cost_; }
+  // What residuals of every photograph come to.
+  double LeastCost() const { return 0.5 * lattice_.residuals() * kLeastSigma * kLeastSigma; }
+  double residual_rms() const { return std::sqrt(2 * cost_ / lattice_.residuals()); }
+  double SharedNoise() { return lattice_.SharedNoise(x_, values_); }
+  std::vector<ViewCorrection> Corrections() const;
 
  private:
-  void AddViews();
-  void AddTexels();
-  void HoldTexels();
-  bool AddTexel(Texel* texel);
-  Texel TexelAt(int column, int row) const;
-  ViewCorrection CorrectionOf(size_t view) const;
+  ViewHolds Holds() const { return ViewHolds(unknowns_, expected_, lattice_.UsableViews()); }
+  double HoldCost(const VectorXd& x, const TexelLattice::Values& values) const;
+  NormalEquations Equations();
+  std::vector<bool> Free() const;
+  VectorXd Step(const NormalEquations& equations, double damping) const;
 
-  const PhotographSet& set_;
-  const SvbrdfMaps& maps_;
   const ViewCorrectionOptions& options_;
-  std::vector<ViewContext> contexts_;
-  std::vector<ViewBlocks> views_;
-  double ambient_[3] = {0, 0, 0};
-  double tilt_[2] = {0, 0};
-  double shared_light_[3] = {0, 0, 0};  // in every light's frame
-  std::deque<Texel> texels_;            // a deque: Ceres keeps addresses
-  ceres::Problem problem_;
-  ceres::ParameterBlockOrdering* ordering_ = nullptr;
+  ViewUnknowns unknowns_;
+  TexelLattice lattice_;
+  ViewExpectations expected_;
+  VectorXd x_;
+  TexelLattice::Values values_;
+  double cost_ = 0;    // of the texels
+  double weight_ = 1;  // of that, against the expectations
 };
 
-Adjustment::Adjustment(const PhotographSet& set, const SvbrdfMaps& maps,
-                       const ViewCorrectionOptions& options)
-    : set_(set), maps_(maps), options_(options), views_(set.photographs.size()) {
-  for (const Photograph& photograph : set.photographs) {
-    ViewContext& context = contexts_.emplace_back();
-    context.photograph = &photograph;
-    context.plane = set.plane;
-    context.convention = set.convention;
-    const Vec3d& light = photograph.view.light_in_sample_mm;
-    context.light_distance_mm = std::hypot(light[0], light[1], light[2]);
-    const TexelGeometry<double> centre =
-        TexelGeometryInView(photograph.view, set.convention.falloff, 0.0, 0.0);
-    context.irradiance = (centre.irradiance[0] + centre.irradiance[1] + centre.irradiance[2]) /
-                         (3 * photograph.view.exposure);
-    context.weight = 1 / options.residual_sigma;
-    context.robust_scale = options.robust_scale;
-  }
+void Adjustment::Weigh(double sigma, double evidence) {
+  lattice_.SetHold(sigma);
+  const double of_a_view = 3.0 * lattice_.size();
+  weight_ = std::min(1.0, evidence / of_a_view) / (sigma * sigma);
+  MoveTo(x_);
 }
 
-Texel Adjustment::TexelAt(int column, int row) const {
-  Texel texel{column, row, {}};
-  const auto in = [](double value, double least, double most) {
-    return std::clamp(value, least, most);
+void Adjustment::MoveTo(const VectorXd& x) {
+  x_ = x;
+  if (values_.empty()) values_ = lattice_.Starts();
+  cost_ = lattice_.Fit(x_, nullptr, &values_);
+}
+
+double Adjustment::CostUncorrected() {
+  TexelLattice::Values values = lattice_.Starts();
+  return lattice_.Fit(VectorXd::Zero(x_.size()), &values_, &values);
+}
+
+void Adjustment::Learn() { expected_ = Holds().Learned(x_, options_.expected); }
+
+double Adjustment::HoldCost(const VectorXd& x, const TexelLattice::Values& values) const {
+  const double level = lattice_.MeanSlope(values).norm() / expected_.level;
+  return Holds().Add(x, nullptr) + 0.5 * level * level;
+}
+
+NormalEquations Adjustment::Equations() {
+  NormalEquations equations = lattice_.Reduce(x_, values_);
+  equations.hessian *= weight_;
+  equations.gradient *= weight_;
+  Holds().Add(x_, &equations);
+  const MatrixXd by = lattice_.MeanSlopeByViews() / expected_.level;
+  equations.hessian.noalias() += by.transpose() * by;
+  equations.gradient.noalias() += by.transpose() * (lattice_.MeanSlope(values_) / expected_.level);
+  return equations;
+}
+
+std::vector<bool> Adjustment::Free() const {
+  std::vector<bool> free(static_cast<size_t>(unknowns_.size()), true);
+  const auto set = [&](int first, int count, bool is_free) {
+    std::fill_n(free.begin() + first, count, is_free);
   };
+  const std::vector<bool> usable = lattice_.UsableViews();
+  for (int v = 0; v < unknowns_.views(); ++v) {
+    const bool sees = usable[static_cast<size_t>(v)];
+    set(ViewUnknowns::light(v), 3, sees && options_.light);
+    set(unknowns_.exposure(v), 1, sees && options_.exposure);
+    if (unknowns_.registration()) set(unknowns_.shift(v), 8, sees);
+  }
+  set(unknowns_.shared_light(), 3, options_.light);
+  set(unknowns_.ambient(), 3, options_.ambient);
+  return free;
+}
+
+VectorXd Adjustment::Step(const NormalEquations& equations, double damping) const {
+  MatrixXd damped = equations.hessian;
+  VectorXd gradient = equations.gradient;
+  const std::vector<bool> free = Free();
+  for (int i = 0; i < unknowns_.size(); ++i) {
+    damped(i, i) += damping * equations.hessian(i, i) + 1e-12;
+    if (free[static_cast<size_t>(i)]) continue;
+    damped.row(i).setZero();
+    damped.col(i).setZero();
+    damped(i, i) = 1;
+    gradient[i] = 0;
+  }
+  VectorXd to = x_ - damped.ldlt().solve(gradient);
   for (int c = 0; c < 3; ++c) {
-    texel.parameters[kTexelDiffuse + c] = in(maps_.at(kDiffuseR + c, row, column), 0, 1);
-    texel.parameters[kTexelSpecular + c] = in(maps_.at(kSpecularR + c, row, column), 0, 1);
+    double& ambient = to[unknowns_.ambient() + c];
+    ambient = std::max(ambient, unknowns_.LeastAmbient(c));
   }
-  texel.parameters[kTexelRough] = in(maps_.at(kRoughness, row, column), kLeastRoughness, 1);
-  const double z = std::max(0.05f, maps_.at(kNormalZ, row, column));
-  for (int i = 0; i < 2; ++i) {
-    texel.parameters[kTexelSlope + i] =
-        in(maps_.at(kNormalX + i, row, column) / z, -kSteepest, kSteepest);
-  }
-  return texel;
+  return to - x_;
 }
 
-bool Adjustment::AddTexel(Texel* texel) {
-  const size_t index = static_cast<size_t>(texel->row) * set_.plane.width + texel->column;
-  bool seen = false;
-  for (size_t v = 0; v < views_.size(); ++v) {
-    if (set_.photographs[v].mask[index] < 0.5f) continue;
-    seen = true;
-    problem_.AddResidualBlock(new RadianceCost(contexts_[v], texel->column, texel->row), nullptr,
-                              texel->parameters, views_[v].light, ambient_, views_[v].exposure,
-                              views_[v].shifts);
-  }
-  if (!seen) return false;
-  for (int i = 0; i < kTexelSize; ++i) {
-    const bool slope = i >= kTexelSlope;
-    problem_.SetParameterLowerBound(texel->parameters, i,
-                                    slope ? -kSteepest : (i == kTexelRough ? kLeastRoughness : 0));
-    problem_.SetParameterUpperBound(texel->parameters, i, slope ? kSteepest : 1);
-  }
-  ordering_->AddElementToGroup(texel->parameters, 0);
-  return true;
-}
-
-void Adjustment::AddTexels() {
-  const double texels = static_cast<double>(maps_.texels());
-  const int stride =
-      std::max(1, static_cast<int>(std::lround(std::sqrt(texels / options_.texels))));
-  for (int row = kMargin + stride / 2; row < set_.plane.height - kMargin; row += stride) {
-    for (int column = kMargin + stride / 2; column < set_.plane.width - kMargin; column += stride) {
-      texels_.push_back(TexelAt(column, row));
-      if (!AddTexel(&texels_.back())) texels_.pop_back();
+int Adjustment::Descend(double tolerance) {
+  double total = weight_ * cost_ + HoldCost(x_, values_);
+  double damping = 1e-3;
+  std::unique_ptr<NormalEquations> equations;
+  int steps = 0;
+  while (steps < options_.iterations && damping < kMostDamping) {
+    ++steps;
+    if (!equations) equations = std::make_unique<NormalEquations>(Equations());
+    const VectorXd step = Step(*equations, damping);
+    if (!step.allFinite()) break;
+    TexelLattice::Values values = lattice_.Follow(step, values_);
+    const double cost = lattice_.Fit(x_ + step, &values_, &values);
+    const double after = weight_ * cost + HoldCost(x_ + step, values);
+    if (!(after < total)) {
+      damping *= 8;
+      continue;
     }
+    const double gain = (total - after) / total;
+    x_ += step;
+    values_ = std::move(values);
+    cost_ = cost;
+    total = after;
+    equations.reset();
+    damping = std::max(0.2 * damping, 1e-7);
+    if (gain < tolerance) break;
   }
+  return steps;
 }
 
-// Lights that are all wrong alike have tilted all normals; but the sample is flat.
-void Adjustment::HoldTexels() {
-  double mean[2] = {0, 0};
-  for (Texel& texel : texels_) {
-    problem_.AddResidualBlock(new TexelHold(texel.parameters), nullptr, texel.parameters, tilt_);
-    for (int i = 0; i < 2; ++i) {
-      mean[i] -= texel.parameters[kTexelSlope + i] / static_cast<double>(texels_.size());
-    }
+std::vector<ViewCorrection> Adjustment::Corrections() const {
+  std::vector<ViewCorrection> corrections;
+  for (int v = 0; v < unknowns_.views(); ++v) {
+    corrections.push_back(unknowns_.CorrectionAt(v, x_));
   }
-  const double sigmas[2] = {options_.level_sigma, options_.level_sigma};
-  problem_.AddResidualBlock(new Hold<2>(mean, sigmas), nullptr, tilt_);
-  ordering_->AddElementToGroup(tilt_, 1);
-  if (!options_.light) problem_.SetParameterBlockConstant(tilt_);
+  return corrections;
 }
 
-void Adjustment::AddViews() {
-  const double zero[8] = {0, 0, 0, 0, 0, 0, 0, 0};
-  const double residuals = 3.0 * static_cast<double>(texels_.size());
-  const double firmness = std::sqrt(std::max(1.0, residuals / options_.evidence));
-  const double exposure = options_.exposure_sigma / firmness;
-  // One ambient light against the evidence of all views.
-  double ambient[3], shift[8];
-  std::fill_n(ambient, 3,
-              options_.ambient_sigma / firmness / std::sqrt(static_cast<double>(views_.size())));
-  std::fill_n(shift, 8, options_.registration_sigma_texel / firmness);
-  const auto add = [&](double* block, ceres::CostFunction* hold, bool free) {
-    problem_.AddResidualBlock(hold, nullptr, block);
-    ordering_->AddElementToGroup(block, 1);
-    if (!free) problem_.SetParameterBlockConstant(block);
+// The last descent: on more texels, with displacements only where they tell, and with more trust
+// where all but noise is explained.
+ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
+                            const ViewCorrectionOptions& options, const Adjustment& coarse,
+                            int threads) {
+  const double sigma = std::max(kLeastSigma, coarse.residual_rms());
+  const int texels = LatticeTexels(options.last_texels, set.photographs.size());
+  const auto make = [&](bool registration) {
+    auto made = std::make_unique<Adjustment>(set, maps, options, registration, texels, threads);
+    made->Weigh(sigma, options.evidence);
+    return made;
   };
-  for (size_t v = 0; v < views_.size(); ++v) {
-    ViewBlocks& view = views_[v];
-    if (!problem_.HasParameterBlock(view.light)) continue;  // wholly masked
-    Vec3d direction = set_.photographs[v].view.light_in_sample_mm;
-    for (double& d : direction) d /= contexts_[v].light_distance_mm;
-    problem_.AddResidualBlock(new LightHold(direction, options_.light_sigma / firmness,
-                                            options_.distance_sigma / firmness),
-                              nullptr, view.light, shared_light_);
-    ordering_->AddElementToGroup(view.light, 1);
-    if (!options_.light) problem_.SetParameterBlockConstant(view.light);
-    add(view.exposure, new Hold<1>(zero, &exposure), options_.exposure);
-    add(view.shifts, new Hold<8>(zero, shift), options_.registration);
+  std::unique_ptr<Adjustment> fine = make(options.registration);
+  fine->MoveTo(coarse.x());
+  if (options.registration) {
+    std::unique_ptr<Adjustment> unmoved = make(false);
+    unmoved->MoveTo(coarse.x().head(unmoved->x().size()));
+    if (fine->cost() > (1 - options.registration_gain) * unmoved->cost()) fine = std::move(unmoved);
   }
-  add(ambient_, new Hold<3>(zero, ambient), options_.ambient);
-  const double shared[3] = {options_.shared_light_sigma, options_.shared_light_sigma,
-                            options_.distance_sigma / firmness};
-  add(shared_light_, new Hold<3>(zero, shared), options_.light);
-  for (int c = 0; c < 3; ++c) {
-    // The surroundings give light, they do not take any.
-    double least = -1e9;
-    for (size_t v = 0; v < views_.size(); ++v) {
-      least = std::max(least, -set_.photographs[v].view.ambient_rgb[static_cast<size_t>(c)] /
-                                  contexts_[v].irradiance);
-    }
-    problem_.SetParameterLowerBound(ambient_, c, least);
-  }
-}
-
-ViewCorrection Adjustment::CorrectionOf(size_t view) const {
-  ViewCorrection correction;
-  for (size_t i = 0; i < 3; ++i) {
-    correction.light_offset_mm[i] = views_[view].light[i] * contexts_[view].light_distance_mm;
-    correction.ambient_rgb[i] = ambient_[i] * contexts_[view].irradiance;
-  }
-  correction.exposure = std::exp(views_[view].exposure[0]);
-  std::copy_n(views_[view].shifts, 4, correction.shifts.column);
-  std::copy_n(views_[view].shifts + 4, 4, correction.shifts.row);
-  return correction;
-}
-
-ViewCorrectionResult Adjustment::Solve() {
-  ceres::Solver::Options solver;
-  solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  ordering_ = solver.linear_solver_ordering.get();
-  AddTexels();
+  fine->Learn();
+  const bool noise = fine->SharedNoise() < kLooksLikeNoise;
+  fine->Weigh(std::max(kLeastSigma, fine->residual_rms()),
+              noise ? options.noise_evidence : options.evidence);
   ViewCorrectionResult result;
-  if (texels_.empty()) {
-    result.views.resize(views_.size());
-    return result;
-  }
-  AddViews();
-  const int residuals = problem_.NumResiduals();
-  problem_.Evaluate({}, &result.cost_before, nullptr, nullptr, nullptr);
-  HoldTexels();
-  solver.linear_solver_type = ceres::DENSE_SCHUR;
-  solver.max_num_iterations = options_.iterations;
-  solver.function_tolerance = 1e-4;
-  solver.num_threads = 1;
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem_, &summary);
-  result.cost_after = summary.final_cost;
-  result.residual_rms = std::sqrt(2 * result.cost_after / residuals);
-  result.iterations = static_cast<int>(summary.iterations.size());
-  result.converged = summary.termination_type == ceres::CONVERGENCE;
-  for (size_t v = 0; v < views_.size(); ++v) {
-    result.views.push_back(summary.IsSolutionUsable() ? CorrectionOf(v) : ViewCorrection{});
-  }
+  result.iterations = fine->Descend(kLastTolerance);
+  result.cost_before = fine->CostUncorrected();
+  result.cost_after = fine->cost();
+  result.gain =
+      1 - (result.cost_after + fine->LeastCost()) / (result.cost_before + fine->LeastCost());
+  result.residual_rms = fine->residual_rms();
+  result.shared_noise = fine->SharedNoise();
+  result.views = fine->Corrections();
   return result;
 }
 
@@ -247,26 +248,46 @@ void CentreShifts(std::vector<ViewCorrection>* corrections) {
 }  // namespace
 
 std::string ViewCorrectionOptions::Check() const {
-  if (!(light_sigma > 0)) return "the light's expected offset must be above 0";
-  if (!(ambient_sigma > 0)) return "the expected ambient light must be above 0";
-  if (!(exposure_sigma > 0)) return "the exposures' expected deviation must be above 0";
-  if (!(registration_sigma_texel > 0)) return "the expected displacement must be above 0";
-  if (!(residual_sigma > 0)) return "the residuals' deviation must be above 0";
-  if (!(robust_scale > 0)) return "the robust scale must be above 0";
-  if (texels < 16) return "at least 16 texels are needed";
+  const auto above_zero = [](double sigma) { return sigma > 0; };
+  if (!above_zero(expected.light) || !above_zero(expected.distance) ||
+      !above_zero(expected.shared_light)) {
+    return "the light's expected offsets must be above 0";
+  }
+  if (!above_zero(expected.level)) return "the sample's expected slope must be above 0";
+  if (!above_zero(expected.ambient)) return "the expected ambient light must be above 0";
+  if (!above_zero(expected.exposure)) return "the exposures' expected deviation must be above 0";
+  if (!above_zero(expected.registration_texel)) {
+    return "the expected displacement must be above 0";
+  }
+  if (!above_zero(evidence) || !above_zero(noise_evidence)) return "the evidence must be above 0";
+  if (!(registration_gain >= 0 && registration_gain < 1)) {
+    return "the gain asked of displacements must be from 0 to 1";
+  }
+  if (texels < 16 || last_texels < 16) return "at least 16 texels are needed";
   if (iterations < 1) return "at least one iteration is needed";
   return "";
 }
 
 ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& maps,
-                                  const ViewCorrectionOptions& options) {
+                                  const ViewCorrectionOptions& options, int threads) {
   std::string wrong = options.Check();
   if (wrong.empty()) wrong = set.Check();
   if (!wrong.empty()) throw std::invalid_argument("view correction: " + wrong);
   if (maps.width != set.plane.width || maps.height != set.plane.height) {
     throw std::invalid_argument("view correction: the maps' size is not the photographs'");
   }
-  ViewCorrectionResult result = Adjustment(set, maps, options).Solve();
+  Adjustment coarse(set, maps, options, options.registration,
+                    LatticeTexels(options.texels, set.photographs.size()), threads);
+  ViewCorrectionResult result;
+  result.views.resize(set.photographs.size());
+  if (coarse.empty()) return result;
+  coarse.Weigh(kFirstSigma, options.evidence);
+  int iterations = coarse.Descend(kFirstTolerance);
+  coarse.Learn();
+  coarse.Weigh(std::max(kLeastSigma, coarse.residual_rms()), options.evidence);
+  iterations += coarse.Descend(kSecondTolerance);
+  result = Finish(set, maps, options, coarse, threads);
+  result.iterations += iterations;
   if (options.registration) CentreShifts(&result.views);
   return result;
 }

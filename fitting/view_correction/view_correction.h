@@ -1,18 +1,20 @@
 // What calibration and rectification left wrong in the views, found from the photographs alone:
 // where each flash was, what the surroundings add, and by how much each picture is displaced on the
-// sample. A bundle adjustment of radiances: over a lattice of texels, their reflectance and the
-// views' corrections are solved for together,
+// sample:
 //
-//   min Σ_texels Σ_views ρ( log(R(texel; light, ambient) + 0.01) − log(I(x + shift(x)) + 0.01) )
-//       + (texel − its start)²/σ² + corrections²/σ²
+//   min over views  Σ_texels min over texel Σ_views ρ( log(R(texel; view) + 0.01) − log(I + 0.01) )
+//       + expectations of the views' errors
 //
-// with R clamped to 1 for LDR photographs: eq. 2 of Gao et al. 2019 with a loss quadratic near 0.
-// Texels are eliminated (Schur complement), as points are in a bundle adjustment. Solved on one
-// thread, so that the result has one value.
+// over a lattice of texels; residuals as in fitting/texel/texel_kernel.h. Every cost is that of
+// texels that are fitted anew to the views as they then are (variable projection: Golub and
+// Pereyra, "The differentiation of pseudo-inverses and nonlinear least squares problems whose
+// variables separate", SIAM J. Numer. Anal. 1973), each by the search that refinement uses. Texels
+// solved for together with the views, as points are in a bundle adjustment, stay behind in minima
+// of the wrong views and hold these back: lights came back to a degree, not to a tenth.
 //
 // Lights that are wrong alike (a flash elsewhere beside the lens) and normals that are tilted alike
-// explain matte photographs equally well. So what all lights share has a weak hold of its own, the
-// texels' hold leaves a common tilt free, and the sample is expected to be flat in the mean.
+// explain matte photographs equally well. So what all lights share is expected apart, and the
+// sample is expected to be level in the mean.
 #pragma once
 
 #include <string>
@@ -32,27 +34,35 @@ struct ViewCorrection {
   CornerShifts shifts;         // the picture is to be looked up so far off, in texels
 };
 
+// Standard deviations expected beforehand.
+struct ViewExpectations {
+  double light = 0.03;     // of the light's offset across its direction, of its distance …
+  double distance = 0.03;  // … and along it; both beside what all lights share:
+  // the flash stands elsewhere beside the lens of an upright camera.
+  double shared_light = 0.3;
+  double level = 0.01;    // of the sample's mean slope
+  double ambient = 0.1;   // of the ambient irradiance, of the flash's at the sample's centre
+  double exposure = 0.1;  // of its logarithm
+  double registration_texel = 1.0;
+};
+
 struct ViewCorrectionOptions {
   bool light = true;
   bool ambient = true;
   bool exposure = false;
   bool registration = true;
-  double light_sigma = 0.03;  // standard deviation expected of the light's offset, of its distance
-  // … beside what all lights share: the flash stands elsewhere beside the lens of an upright
-  // camera.
-  double shared_light_sigma = 0.3;
-  double distance_sigma = 0.03;  // of its component toward the sample, likewise
-  double level_sigma = 0.01;     // of the sample's mean slope
-  double ambient_sigma = 0.1;    // of the ambient irradiance, of the flash's at the sample's centre
-  double exposure_sigma = 0.1;   // of its logarithm
-  double registration_sigma_texel = 1.0;
-  double residual_sigma = 0.02;  // of log residuals
-  double robust_scale = 0.1;     // log residuals beyond it count linearly
-  // A view's residuals count together as so many against these expectations: they share the errors
-  // of model and maps, and many small ones would otherwise buy any correction.
+  ViewExpectations expected;
+  // A view's residuals count together as so many against the expectations: they share the errors of
+  // model and maps, and many small ones would otherwise buy any correction …
   double evidence = 20;
-  int texels = 1024;    // of the lattice, about
-  int iterations = 60;  // Levenberg–Marquardt steps, at most
+  // … but as so many where what is left looks like noise, in which the channels have no share.
+  double noise_evidence = 1000;
+  int texels = 1024;       // of the lattice, about …
+  int last_texels = 2304;  // … and of the one that the last descent is made with
+  int iterations = 25;     // Levenberg–Marquardt steps of one descent, at most
+  // Displacements that lower the squared residuals by a smaller share are not taken: looking
+  // pictures up anew costs sharpness.
+  double registration_gain = 0.1;
 
   // Empty: all is well; otherwise what is wrong.
   std::string Check() const;
@@ -60,18 +70,22 @@ struct ViewCorrectionOptions {
 
 struct ViewCorrectionResult {
   std::vector<ViewCorrection> views;  // one per photograph
+  // Half the sum of squared residuals of the last lattice, its texels fitted to the views as they
+  // were and as they are now.
   double cost_before = 0, cost_after = 0;
-  double residual_rms =
-      0;  // afterwards, in units of the residuals' deviation, expectations included
-  int iterations = 0;
-  bool converged = false;
+  // Relative fall of the cost; residuals that any photograph has count as explained (0.005 RMS).
+  double gain = 0;
+  double residual_rms = 0;  // afterwards, log units
+  double shared_noise = 1;  // 1 to 3: how much of that the channels share (residual_noise.h)
+  int iterations = 0;       // of all descents
 };
 
-// `maps`: what the texels start from and are held to, weakly; of the set's size. Displacements are
-// relative to their mean over the views: what all share is the maps' own place.
+// `maps`: what the texels start from and are held to, as weakly as one more observation; of the
+// set's size. Displacements are relative to their mean over the views: what all share is the maps'
+// own place. The result does not depend on the number of threads.
 // Throws std::invalid_argument when sizes or options are wrong.
 ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& maps,
-                                  const ViewCorrectionOptions& options);
+                                  const ViewCorrectionOptions& options, int threads);
 
 // The photographs as the corrections say: lights moved, ambient added, pictures looked up anew.
 PhotographSet Corrected(const PhotographSet& set, const std::vector<ViewCorrection>& corrections,

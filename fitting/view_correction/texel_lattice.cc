@@ -1,0 +1,356 @@
+#include "fitting/view_correction/texel_lattice.h"
+
+#include <ceres/jet.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel/parallel.h"
+#include "fitting/texel/residual_noise.h"
+#include "fitting/texel/texel_parameters.h"
+
+namespace glint {
+namespace {
+
+constexpr int kMargin = 2;          // texels at the edge, whose lookup would leave the picture
+constexpr double kNoise = 0.004;    // of log residuals: texels that fit so well are not searched
+constexpr int kTexelIterations = 40;
+constexpr int kTexelStarts = 2;
+constexpr int kTexelsPerPiece = 32;
+// Sums of normal equations, whatever the number of threads: each has views² memory.
+constexpr int kSums = 8;
+constexpr int kBatch = 16;  // texels whose outer products are summed by one matrix product
+constexpr double kMostStep = 0.3;   // of roughness and slopes together, as a texel follows
+
+using Jet = ceres::Jet<double, 3>;  // by the light's offset
+
+// Normals that were fitted under wrong lights are tilted alike and must be free to tilt back.
+StartErrors ErrorsOfStart() {
+  StartErrors errors;
+  errors.normal = 1;
+  return errors;
+}
+
+}  // namespace
+
+struct TexelLattice::Texel {
+  int column, row;
+  double x_mm, y_mm;
+  double corner_weights[4];
+  TexelValues start;
+  std::vector<int> views;  // that see it
+};
+
+struct TexelLattice::Worker {
+  Worker(const KernelOptions& options, int views)
+      : kernel(options),
+        observations(views),
+        search(options, kTexelIterations, views, kTexelStarts) {
+    search.SetNoise(kNoise);
+  }
+  KernelOptions kernel;
+  TexelObservations observations;
+  TexelSearch search;
+  std::vector<LookedUp> seen;  // by usable view and channel
+  Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> products;
+  Eigen::MatrixXd batch;  // kBatch · kTexelParameters rows, of which are filled …
+  int batched = 0;
+
+  void Flush(NormalEquations* equations) {
+    equations->hessian.selfadjointView<Eigen::Lower>().rankUpdate(
+        batch.topRows(batched).transpose(), -1);
+    batched = 0;
+  }
+};
+
+TexelLattice::~TexelLattice() = default;
+
+int TexelLattice::size() const { return static_cast<int>(texels_.size()); }
+
+TexelLattice::TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps,
+                           const ViewUnknowns& unknowns, int texels, int threads)
+    : set_(set), unknowns_(unknowns), threads_(std::max(threads, 1)) {
+  const int width = set.plane.width, height = set.plane.height;
+  const int stride = std::max(
+      1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(maps.texels()) / texels))));
+  for (int row = kMargin + stride / 2; row < height - kMargin; row += stride) {
+    for (int column = kMargin + stride / 2; column < width - kMargin; column += stride) {
+      const size_t index = static_cast<size_t>(row) * width + column;
+      Texel texel{column, row, set.plane.x_mm(column), set.plane.y_mm(row), {}, {}, {}};
+      for (int v = 0; v < unknowns.views(); ++v) {
+        if (set.photographs[static_cast<size_t>(v)].mask[index] >= 0.5f) texel.views.push_back(v);
+      }
+      if (texel.views.empty()) continue;
+      texel.start = ReadTexel(maps, index);
+      CornerWeights((column + 0.5) / width, (row + 0.5) / height, texel.corner_weights);
+      residuals_ += 3.0 * static_cast<double>(texel.views.size());
+      texels_.push_back(std::move(texel));
+    }
+  }
+  following_.resize(texels_.size());
+  KernelOptions kernel;
+  kernel.diffuse_weight = set.convention.diffuse_weight;
+  for (int i = 0; i < threads_; ++i) {
+    workers_.push_back(std::make_unique<Worker>(kernel, unknowns.views()));
+  }
+}
+
+std::vector<bool> TexelLattice::UsableViews() const {
+  std::vector<bool> usable(static_cast<size_t>(unknowns_.views()), false);
+  for (const Texel& texel : texels_) {
+    for (const int v : texel.views) usable[static_cast<size_t>(v)] = true;
+  }
+  return usable;
+}
+
+TexelLattice::Values TexelLattice::Starts() const {
+  Values values;
+  for (const Texel& texel : texels_) values.push_back(texel.start);
+  return values;
+}
+
+TexelPrior TexelLattice::PriorOf(const Texel& texel) const {
+  return TexelPrior({hold_, ErrorsOfStart()}, texel.start);
+}
+
+void TexelLattice::Gather(const Texel& texel, const Eigen::VectorXd& x, Worker* worker) const {
+  const SamplePlane& plane = set_.plane;
+  const size_t texels = static_cast<size_t>(plane.width) * plane.height;
+  worker->observations.Clear();
+  worker->seen.clear();
+  for (const int v : texel.views) {
+    const Photograph& photograph = set_.photographs[static_cast<size_t>(v)];
+    double column = texel.column, row = texel.row;
+    for (int i = 0; unknowns_.registration() && i < 4; ++i) {
+      column += texel.corner_weights[i] * x[unknowns_.shift(v) + i];
+      row += texel.corner_weights[i] * x[unknowns_.shift(v) + 4 + i];
+    }
+    double radiance[3];
+    bool clipped[3];
+    for (size_t c = 0; c < 3; ++c) {
+      LookedUp seen = LookUp(photograph.rgb.data() + c * texels, plane.width, plane.height, column,
+                             row);
+      seen.value = radiance[c] = std::max(seen.value, 0.0);
+      clipped[c] = photograph.ldr && radiance[c] >= kClipped;
+      worker->seen.push_back(seen);
+    }
+    worker->observations.Add(TexelGeometryInView<double>(unknowns_.ViewAt(v, x),
+                                                         set_.convention.falloff, texel.x_mm,
+                                                         texel.y_mm),
+                             radiance, clipped);
+  }
+  worker->observations.Finish();
+}
+
+double TexelLattice::Fit(const Eigen::VectorXd& x, const Values* others, Values* values) {
+  std::vector<double> costs(texels_.size());
+  const int pieces = (size() + kTexelsPerPiece - 1) / kTexelsPerPiece;
+  ForEachPieceByWorker(pieces, threads_, [&](int piece, int at) {
+    Worker* worker = workers_[static_cast<size_t>(at)].get();
+    const int last = std::min(size(), (piece + 1) * kTexelsPerPiece);
+    for (int i = piece * kTexelsPerPiece; i < last; ++i) {
+      const size_t k = static_cast<size_t>(i);
+      Gather(texels_[k], x, worker);
+      const TexelPrior prior = PriorOf(texels_[k]);
+      const auto fit = [&](const TexelValues& from) {
+        return worker->search.FromStart(worker->observations, prior, from).solution;
+      };
+      TexelSolution best = fit((*values)[k]);
+      if (others != nullptr) {
+        const TexelSolution other = fit((*others)[k]);
+        if (other.cost < best.cost) best = other;
+      }
+      (*values)[k] = best.values;
+      costs[k] = best.cost;
+    }
+  });
+  double sum = 0;
+  for (const double cost : costs) sum += cost;
+  return sum;
+}
+
+void TexelLattice::AddProducts(const Texel& texel, const Eigen::VectorXd& x,
+                               const TexelValues& values, const TexelValues& by_variable,
+                               Worker* worker, NormalEquations* equations) const {
+  const TexelSvbrdf<double> svbrdf = TexelFromValues(values.data());
+  TexelSvbrdf<Jet> constant;
+  for (int i = 0; i < 3; ++i) {
+    constant.normal[i] = Jet(svbrdf.normal[i]);
+    constant.diffuse[i] = Jet(svbrdf.diffuse[i]);
+    constant.specular[i] = Jet(svbrdf.specular[i]);
+  }
+  constant.roughness = Jet(svbrdf.roughness);
+  const DiffuseWeight diffuse_weight = set_.convention.diffuse_weight;
+  const KernelRows& rows = worker->search.solver().rows();
+  std::vector<std::pair<int, double>> row;
+  for (size_t k = 0; k < texel.views.size(); ++k) {
+    const int v = texel.views[k];
+    const View view = unknowns_.ViewAt(v, x);
+    const double position[3] = {texel.x_mm, texel.y_mm, 0};
+    Jet light[3], camera[3], irradiance[3], ambient[3];
+    for (int i = 0; i < 3; ++i) {
+      const size_t axis = static_cast<size_t>(i);
+      light[i] = Jet(view.light_in_sample_mm[axis] - position[i]);
+      light[i].v[i] = unknowns_.light_distance_mm(v);
+      camera[i] = Jet(view.camera_in_sample_mm[axis] - position[i]);
+      ambient[i] = Jet(view.exposure * view.ambient_rgb[axis]);
+    }
+    const Jet light_inverse = 1.0 / sqrt(Dot(light, light));
+    const Jet camera_inverse = 1.0 / sqrt(Dot(camera, camera));
+    const Jet attenuation = set_.convention.falloff == LightFalloff::kInverseSquare
+                                ? light_inverse * light_inverse
+                                : Jet(1.0);
+    for (int i = 0; i < 3; ++i) {
+      light[i] *= light_inverse;
+      camera[i] *= camera_inverse;
+      irradiance[i] = view.exposure * view.light_rgb[static_cast<size_t>(i)] * attenuation;
+    }
+    Jet radiance[3];
+    ShadeRadiance(constant, MakeTexelGeometry(light, camera, irradiance, ambient), diffuse_weight,
+                  radiance);
+    for (int c = 0; c < 3; ++c) {
+      const LookedUp& seen = worker->seen[3 * k + static_cast<size_t>(c)];
+      const double shown = seen.value + kLogOffset, rendered = radiance[c].a + kLogOffset;
+      const double error = std::log(rendered / shown);
+      const bool clipped = set_.photographs[static_cast<size_t>(v)].ldr && seen.value >= kClipped;
+      if (clipped && error > 0) continue;  // satisfied: no residual
+      // Charbonnier's g' (texel_kernel.h).
+      const double scaled = error / worker->kernel.robust_scale;
+      const double root = std::sqrt(1 + scaled * scaled);
+      const double slope = std::sqrt(0.5 * (1 + root)) / root;
+      const double by_rendered = slope / rendered, by_shown = -slope / shown;
+      row.clear();
+      for (int i = 0; i < 3; ++i) {
+        row.emplace_back(ViewUnknowns::light(v) + i, by_rendered * radiance[c].v[i]);
+      }
+      row.emplace_back(unknowns_.ambient() + c, by_rendered * view.exposure *
+                                                    unknowns_.irradiance(v) *
+                                                    AmbientLobe(svbrdf, diffuse_weight, c));
+      row.emplace_back(unknowns_.exposure(v), by_rendered * radiance[c].a);
+      for (int i = 0; unknowns_.registration() && i < 4; ++i) {
+        const double weight = by_shown * texel.corner_weights[i];
+        row.emplace_back(unknowns_.shift(v) + i, weight * seen.by_column);
+        row.emplace_back(unknowns_.shift(v) + 4 + i, weight * seen.by_row);
+      }
+      const auto at = [&](KernelRows::Row r) { return rows.row(c, r)[k]; };
+      equations->Add(at(KernelRows::kResidual), row);
+      const std::pair<int, double> by_texel[] = {{DiffuseParameter(c), at(KernelRows::kByDiffuse)},
+                                                 {SpecularParameter(c), at(KernelRows::kBySpecular)},
+                                                 {kRough, at(KernelRows::kByRough)},
+                                                 {kSlopeX, at(KernelRows::kBySlopeX)},
+                                                 {kSlopeY, at(KernelRows::kBySlopeY)}};
+      for (const auto& [parameter, derivative] : by_texel) {
+        const double by = derivative * by_variable[static_cast<size_t>(parameter)];
+        for (const auto& [unknown, by_view] : row) {
+          worker->products(parameter, unknown) += by * by_view;
+        }
+      }
+    }
+  }
+}
+
+void TexelLattice::ReduceTexel(int index, const Eigen::VectorXd& x, const TexelValues& values,
+                               Worker* worker, NormalEquations* equations) {
+  using Square = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
+  const Texel& texel = texels_[static_cast<size_t>(index)];
+  Following& following = following_[static_cast<size_t>(index)];
+  Gather(texel, x, worker);
+  TexelGram gram;
+  worker->search.solver().Gram(worker->observations, PriorOf(texel), values, &gram);
+  // By the solver's variables: a value at its bound does not follow.
+  double variables[kTexelParameters];
+  ToVariables(values, variables);
+  TexelValues same, by_variable;
+  ToTexelValues(variables, &same, &by_variable);
+  Square own;
+  Eigen::Matrix<double, kTexelParameters, 1> gradient;
+  for (int i = 0; i < kTexelParameters; ++i) {
+    const size_t a = static_cast<size_t>(i);
+    for (int j = i; j < kTexelParameters; ++j) {
+      const size_t b = static_cast<size_t>(j);
+      own(i, j) = own(j, i) = gram[a][b] * by_variable[a] * by_variable[b];
+    }
+    own(i, i) += 1e-8;
+    gradient[i] = gram[a][kTexelParameters] * by_variable[a];
+  }
+  worker->products.setZero(kTexelParameters, unknowns_.size());
+  AddProducts(texel, x, values, by_variable, worker, equations);
+  const Eigen::LLT<Square> factor(own);
+  const Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> half =
+      factor.matrixL().solve(worker->products);
+  const Eigen::Matrix<double, kTexelParameters, 1> half_gradient =
+      factor.matrixL().solve(gradient);
+  equations->gradient.noalias() -= half.transpose() * half_gradient;
+  worker->batch.middleRows<kTexelParameters>(worker->batched) = half;
+  worker->batched += kTexelParameters;
+  if (worker->batched == worker->batch.rows()) worker->Flush(equations);
+  following.by_views = factor.matrixU().solve(half);
+  following.own = factor.matrixU().solve(half_gradient);
+}
+
+NormalEquations TexelLattice::Reduce(const Eigen::VectorXd& x, const Values& values) {
+  std::vector<NormalEquations> sums(kSums, NormalEquations(unknowns_.size()));
+  ForEachPieceByWorker(kSums, threads_, [&](int piece, int at) {
+    const int first = size() * piece / kSums, last = size() * (piece + 1) / kSums;
+    Worker* worker = workers_[static_cast<size_t>(at)].get();
+    NormalEquations* sum = &sums[static_cast<size_t>(piece)];
+    worker->batch.resize(kBatch * kTexelParameters, unknowns_.size());
+    for (int i = first; i < last; ++i) {
+      ReduceTexel(i, x, values[static_cast<size_t>(i)], worker, sum);
+    }
+    worker->Flush(sum);
+  });
+  NormalEquations total(unknowns_.size());
+  for (const NormalEquations& sum : sums) {
+    total.hessian += sum.hessian;
+    total.gradient += sum.gradient;
+  }
+  // Only the lower triangle is complete.
+  total.hessian.triangularView<Eigen::StrictlyUpper>() = total.hessian.transpose();
+  return total;
+}
+
+TexelLattice::Values TexelLattice::Follow(const Eigen::VectorXd& step, const Values& values) const {
+  Values followed = values;
+  for (size_t k = 0; k < texels_.size(); ++k) {
+    const Eigen::Matrix<double, kTexelParameters, 1> by =
+        following_[k].by_views * step + following_[k].own;
+    const double length = by.tail<kTexelParameters - kRough>().norm();
+    const double share = length > kMostStep ? kMostStep / length : 1;
+    double variables[kTexelParameters];
+    ToVariables(values[k], variables);
+    for (int i = 0; i < kTexelParameters; ++i) variables[i] -= share * by[i];
+    TexelValues derivatives;
+    ToTexelValues(variables, &followed[k], &derivatives);
+  }
+  return followed;
+}
+
+Eigen::Vector2d TexelLattice::MeanSlope(const Values& values) const {
+  Eigen::Vector2d mean(0, 0);
+  for (const TexelValues& v : values) mean += Eigen::Vector2d(v[kSlopeX], v[kSlopeY]);
+  return mean / std::max<double>(1, static_cast<double>(values.size()));
+}
+
+Eigen::MatrixXd TexelLattice::MeanSlopeByViews() const {
+  Eigen::MatrixXd by = Eigen::MatrixXd::Zero(2, unknowns_.size());
+  for (const Following& following : following_) by -= following.by_views.middleRows<2>(kSlopeX);
+  return by / std::max(1, size());
+}
+
+double TexelLattice::SharedNoise(const Eigen::VectorXd& x, const Values& values) {
+  Worker* worker = workers_.front().get();
+  ResidualNoise noise;
+  for (size_t k = 0; k < texels_.size(); ++k) {
+    const int freedom = 3 * static_cast<int>(texels_[k].views.size()) - kTexelParameters;
+    if (freedom < 6) continue;
+    Gather(texels_[k], x, worker);
+    const double cost =
+        worker->search.solver().Cost(worker->observations, PriorOf(texels_[k]), values[k]);
+    noise.Add(worker->search.solver().rows(), worker->observations.views(), 2 * cost / freedom);
+  }
+  return noise.Shared();
+}
+
+}  // namespace glint

@@ -1,0 +1,76 @@
+// A lattice of texels that follow the views: what all texels together say of the views.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "fitting/texel/texel_search.h"
+#include "fitting/view_correction/normal_equations.h"
+#include "fitting/view_correction/view_unknowns.h"
+
+namespace glint {
+
+class TexelLattice {
+ public:
+  // About `texels` of the set's, each starting from `maps`. All must outlive this.
+  TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps, const ViewUnknowns& unknowns,
+               int texels, int threads);
+  ~TexelLattice();
+
+  int size() const;
+  double residuals() const { return residuals_; }  // of all texels
+  // Per view, whether any texel sees it.
+  std::vector<bool> UsableViews() const;
+
+  // What the start is worth: as one more observation with residuals of `residual_sigma`.
+  void SetHold(double residual_sigma) { hold_ = residual_sigma; }
+
+  using Values = std::vector<TexelValues>;
+  Values Starts() const;
+  // Fits every texel to the views at `x`, from `*values` and, unless null, from `others`: the better
+  // of both. Returns half the sum of squared residuals, the holds' included.
+  double Fit(const Eigen::VectorXd& x, const Values* others, Values* values);
+
+  // The normal equations of the views alone, the texels following: their Schur complement (Kaufman's
+  // form of variable projection). Keeps how the texels follow for Follow() and MeanSlopeBy().
+  NormalEquations Reduce(const Eigen::VectorXd& x, const Values& values);
+  // The texels after `step` of the views from where Reduce() was called, to first order.
+  Values Follow(const Eigen::VectorXd& step, const Values& values) const;
+
+  Eigen::Vector2d MeanSlope(const Values& values) const;
+  // Its derivatives by the views, where Reduce() was called: a row each.
+  Eigen::MatrixXd MeanSlopeByViews() const;
+
+  // See residual_noise.h.
+  double SharedNoise(const Eigen::VectorXd& x, const Values& values);
+
+ private:
+  struct Texel;
+  struct Worker;
+  // How one texel follows the views: by the solver's variables, −∂u/∂x and −its own step.
+  struct Following {
+    Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> by_views;
+    Eigen::Matrix<double, kTexelParameters, 1> own;
+  };
+  TexelPrior PriorOf(const Texel& texel) const;
+  void Gather(const Texel& texel, const Eigen::VectorXd& x, Worker* worker) const;
+  // One texel's products of derivatives by its variables with those by the views; adds those by the
+  // views alone to `equations`.
+  void AddProducts(const Texel& texel, const Eigen::VectorXd& x, const TexelValues& values,
+                   const TexelValues& by_variable, Worker* worker, NormalEquations* equations) const;
+  void ReduceTexel(int index, const Eigen::VectorXd& x, const TexelValues& values, Worker* worker,
+                   NormalEquations* equations);
+
+  const PhotographSet& set_;
+  const ViewUnknowns& unknowns_;
+  const int threads_;
+  double hold_ = 0.02;
+  double residuals_ = 0;
+  std::vector<Texel> texels_;
+  std::vector<Following> following_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+};
+
+}  // namespace glint

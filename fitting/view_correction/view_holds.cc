@@ -1,0 +1,114 @@
+#include "fitting/view_correction/view_holds.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+using Derivatives = std::vector<std::pair<int, double>>;
+
+// Of the mean displacement of all views, in texels: it is the maps' own place.
+constexpr double kSharedShift = 1e-3;
+
+// The least turn that takes z to `direction`: what is beside an upright camera's lens, in the
+// sample's frame.
+Eigen::Matrix3d TurnOf(const Vec3d& direction) {
+  return Eigen::Quaterniond::FromTwoVectors(
+             Eigen::Vector3d::UnitZ(), Eigen::Vector3d(direction[0], direction[1], direction[2]))
+      .toRotationMatrix();
+}
+
+double AddOne(double residual, const Derivatives& derivatives, NormalEquations* equations) {
+  if (equations != nullptr) equations->Add(residual, derivatives);
+  return 0.5 * residual * residual;
+}
+
+double AddSimple(const Eigen::VectorXd& x, int at, double sigma, NormalEquations* equations) {
+  return AddOne(x[at] / sigma, {{at, 1 / sigma}}, equations);
+}
+
+// What a light's offset has of its own.
+Eigen::Vector3d OwnOffset(const ViewUnknowns& unknowns, int view, const Eigen::VectorXd& x) {
+  return x.segment<3>(ViewUnknowns::light(view)) -
+         TurnOf(unknowns.LightDirection(view)) * x.segment<3>(unknowns.shared_light());
+}
+
+}  // namespace
+
+ViewHolds::ViewHolds(const ViewUnknowns& unknowns, const ViewExpectations& expected,
+                     const std::vector<bool>& usable)
+    : unknowns_(unknowns), expected_(expected), usable_(usable) {}
+
+// Across the light's direction and along it.
+double ViewHolds::AddLight(int view, const Eigen::VectorXd& x, NormalEquations* equations) const {
+  const Vec3d d = unknowns_.LightDirection(view);
+  const Eigen::Vector3d direction(d[0], d[1], d[2]);
+  const Eigen::Matrix3d along = direction * direction.transpose();
+  const Eigen::Matrix3d by_own = (Eigen::Matrix3d::Identity() - along) / expected_.light +
+                                 along / expected_.distance;
+  const Eigen::Matrix3d by_shared = -by_own * TurnOf(d);
+  const Eigen::Vector3d residuals = by_own * OwnOffset(unknowns_, view, x);
+  double cost = 0;
+  for (int i = 0; i < 3; ++i) {
+    Derivatives row;
+    for (int j = 0; j < 3; ++j) {
+      row.emplace_back(ViewUnknowns::light(view) + j, by_own(i, j));
+      row.emplace_back(unknowns_.shared_light() + j, by_shared(i, j));
+    }
+    cost += AddOne(residuals[i], row, equations);
+  }
+  return cost;
+}
+
+double ViewHolds::Add(const Eigen::VectorXd& x, NormalEquations* equations) const {
+  double cost = 0;
+  const int views = unknowns_.views();
+  for (int v = 0; v < views; ++v) {
+    if (!usable_[static_cast<size_t>(v)]) continue;
+    cost += AddLight(v, x, equations);
+    cost += AddSimple(x, unknowns_.exposure(v), expected_.exposure, equations);
+    for (int i = 0; unknowns_.registration() && i < 8; ++i) {
+      cost += AddSimple(x, unknowns_.shift(v) + i, expected_.registration_texel, equations);
+    }
+  }
+  for (int i = 0; unknowns_.registration() && i < 8; ++i) {
+    Derivatives row;
+    double sum = 0;
+    for (int v = 0; v < views; ++v) {
+      sum += x[unknowns_.shift(v) + i];
+      row.emplace_back(unknowns_.shift(v) + i, 1 / (kSharedShift * views));
+    }
+    cost += AddOne(sum / (kSharedShift * views), row, equations);
+  }
+  for (int i = 0; i < 3; ++i) {
+    cost += AddSimple(x, unknowns_.shared_light() + i,
+                      i < 2 ? expected_.shared_light : expected_.distance, equations);
+    // One ambient light against the evidence of all views.
+    cost +=
+        AddSimple(x, unknowns_.ambient() + i, expected_.ambient / std::sqrt(views), equations);
+  }
+  return cost;
+}
+
+ViewExpectations ViewHolds::Learned(const Eigen::VectorXd& x, const ViewExpectations& least) const {
+  double across = 0, along = 0, count = 0;
+  for (int v = 0; v < unknowns_.views(); ++v) {
+    if (!usable_[static_cast<size_t>(v)]) continue;
+    const Vec3d d = unknowns_.LightDirection(v);
+    const Eigen::Vector3d own = OwnOffset(unknowns_, v, x);
+    const double toward = own.dot(Eigen::Vector3d(d[0], d[1], d[2]));
+    along += toward * toward;
+    across += 0.5 * (own.squaredNorm() - toward * toward);
+    ++count;
+  }
+  ViewExpectations learned = least;
+  if (count > 0) {
+    learned.light = std::max(least.light, std::sqrt(across / count));
+    learned.distance = std::max(least.distance, std::sqrt(along / count));
+  }
+  return learned;
+}
+
+}  // namespace glint

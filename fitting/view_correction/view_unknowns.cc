@@ -1,0 +1,63 @@
+#include "fitting/view_correction/view_unknowns.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fitting/reflectance/brdf.h"
+
+namespace glint {
+
+ViewUnknowns::ViewUnknowns(const PhotographSet& set, bool registration)
+    : set_(set), registration_(registration) {
+  for (const Photograph& photograph : set.photographs) {
+    const Vec3d& light = photograph.view.light_in_sample_mm;
+    light_distance_mm_.push_back(std::hypot(light[0], light[1], light[2]));
+    const TexelGeometry<double> centre =
+        TexelGeometryInView(photograph.view, set.convention.falloff, 0.0, 0.0);
+    irradiance_.push_back((centre.irradiance[0] + centre.irradiance[1] + centre.irradiance[2]) /
+                          (3 * photograph.view.exposure));
+  }
+}
+
+Vec3d ViewUnknowns::LightDirection(int view) const {
+  Vec3d direction = set_.photographs[At(view)].view.light_in_sample_mm;
+  for (double& d : direction) d /= light_distance_mm(view);
+  return direction;
+}
+
+double ViewUnknowns::LeastAmbient(int channel) const {
+  double least = -1e9;
+  for (int v = 0; v < views(); ++v) {
+    const Vec3d& ambient_rgb = set_.photographs[At(v)].view.ambient_rgb;
+    least = std::max(least, -ambient_rgb[static_cast<size_t>(channel)] / irradiance(v));
+  }
+  return least;
+}
+
+View ViewUnknowns::ViewAt(int view, const Eigen::VectorXd& unknowns) const {
+  View moved = set_.photographs[At(view)].view;
+  for (int i = 0; i < 3; ++i) {
+    const size_t k = static_cast<size_t>(i);
+    moved.light_in_sample_mm[k] += unknowns[light(view) + i] * light_distance_mm(view);
+    moved.ambient_rgb[k] += unknowns[ambient() + i] * irradiance(view);
+  }
+  moved.exposure *= std::exp(unknowns[exposure(view)]);
+  return moved;
+}
+
+ViewCorrection ViewUnknowns::CorrectionAt(int view, const Eigen::VectorXd& unknowns) const {
+  ViewCorrection correction;
+  for (int i = 0; i < 3; ++i) {
+    const size_t k = static_cast<size_t>(i);
+    correction.light_offset_mm[k] = unknowns[light(view) + i] * light_distance_mm(view);
+    correction.ambient_rgb[k] = unknowns[ambient() + i] * irradiance(view);
+  }
+  correction.exposure = std::exp(unknowns[exposure(view)]);
+  for (int i = 0; registration_ && i < 4; ++i) {
+    correction.shifts.column[i] = unknowns[shift(view) + i];
+    correction.shifts.row[i] = unknowns[shift(view) + 4 + i];
+  }
+  return correction;
+}
+
+}  // namespace glint

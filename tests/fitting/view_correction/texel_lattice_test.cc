@@ -1,0 +1,150 @@
+#include "fitting/view_correction/texel_lattice.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <memory>
+
+#include "fitting/view_correction/view_holds.h"
+#include "tests/fitting/view_correction/disturbed_set.h"
+
+namespace glint {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr int kViews = 6;
+
+// Corrections of every kind.
+VectorXd SomeCorrections(const ViewUnknowns& unknowns) {
+  VectorXd x(unknowns.size());
+  for (int i = 0; i < x.size(); ++i) x[i] = 0.02 * std::sin(2.3 * i + 1);
+  for (int c = 0; c < 3; ++c) x[unknowns.ambient() + c] = 0.03 + 0.01 * c;
+  for (int v = 0; unknowns.registration() && v < unknowns.views(); ++v) {
+    for (int i = 0; i < 8; ++i) x[unknowns.shift(v) + i] *= 10;
+  }
+  return x;
+}
+
+// A lattice whose texels follow the views closely.
+struct Case {
+  explicit Case(bool inverse_square, bool registration = true, double hold = 0.02)
+      : disturbed(test::Disturb(kViews, 0.05, 0.3, true)) {
+    if (inverse_square) {
+      disturbed.set.convention = {DiffuseWeight::kOneMinusSpecular, LightFalloff::kInverseSquare,
+                                  TexelSampling::kPixelCentres};
+      for (Photograph& p : disturbed.set.photographs) {
+        for (double& power : p.view.light_rgb) power *= 5;
+      }
+    }
+    unknowns = std::make_unique<ViewUnknowns>(disturbed.set, registration);
+    lattice = std::make_unique<TexelLattice>(disturbed.set, disturbed.maps, *unknowns, 36, 1);
+    lattice->SetHold(hold);
+    x = SomeCorrections(*unknowns);
+    values = lattice->Starts();
+    for (int i = 0; i < 4; ++i) cost = lattice->Fit(x, nullptr, &values);
+  }
+  double CostAt(const VectorXd& at) {
+    TexelLattice::Values fitted = values;
+    double least = 0;
+    for (int i = 0; i < 3; ++i) least = lattice->Fit(at, nullptr, &fitted);
+    return least;
+  }
+  test::DisturbedSet disturbed;
+  std::unique_ptr<ViewUnknowns> unknowns;
+  std::unique_ptr<TexelLattice> lattice;
+  VectorXd x;
+  TexelLattice::Values values;
+  double cost = 0;
+};
+
+TEST(TexelLattice, TheGradientIsThatOfTheCostOfTexelsFittedAnew) {
+  for (const bool inverse_square : {false, true}) {
+    // Held so firmly that no texel jumps to another minimum.
+    Case c(inverse_square, true, 0.2);
+    const VectorXd gradient = c.lattice->Reduce(c.x, c.values).gradient;
+    for (int i = 0; i < c.unknowns->size(); ++i) {
+      const double step = i < c.unknowns->first_shift() ? 1e-3 : 1e-2;
+      VectorXd above = c.x, below = c.x;
+      above[i] += step;
+      below[i] -= step;
+      const double difference = (c.CostAt(above) - c.CostAt(below)) / (2 * step);
+      EXPECT_NEAR(gradient[i], difference, 0.02 * std::abs(difference) + 0.003 * gradient.norm())
+          << "unknown " << i << " of " << c.unknowns->size();
+    }
+  }
+}
+
+// One Gauss–Newton step of the views from near the truth takes most of the cost away.
+TEST(TexelLattice, AStepOfTheReducedEquationsLowersTheCost) {
+  Case c(false);
+  NormalEquations equations = c.lattice->Reduce(c.x, c.values);
+  ViewExpectations wide;
+  wide.light = wide.distance = wide.ambient = wide.exposure = 1;
+  ViewHolds(*c.unknowns, wide, c.lattice->UsableViews()).Add(c.x, &equations);
+  const VectorXd step = -equations.hessian.ldlt().solve(equations.gradient);
+  TexelLattice::Values followed = c.lattice->Follow(step, c.values);
+  EXPECT_LT(c.lattice->Fit(c.x + step, nullptr, &followed), 0.5 * c.cost);
+}
+
+TEST(TexelLattice, TexelsAndTheirMeanSlopeFollowAsPredicted) {
+  Case c(false, false);
+  c.lattice->Reduce(c.x, c.values);
+  VectorXd step = VectorXd::Zero(c.unknowns->size());
+  for (int v = 0; v < kViews; ++v) step[ViewUnknowns::light(v)] = 0.01;
+  const TexelLattice::Values followed = c.lattice->Follow(step, c.values);
+  TexelLattice::Values fitted = c.values;
+  for (int i = 0; i < 3; ++i) c.lattice->Fit(c.x + step, nullptr, &fitted);
+  double missed = 0, moved = 0;
+  for (size_t k = 0; k < fitted.size(); ++k) {
+    for (int i = kSlopeX; i <= kSlopeY; ++i) {
+      const size_t slope = static_cast<size_t>(i);
+      missed += std::abs(fitted[k][slope] - followed[k][slope]);
+      moved += std::abs(fitted[k][slope] - c.values[k][slope]);
+    }
+  }
+  EXPECT_LT(missed, 0.2 * moved);
+  const Eigen::Vector2d predicted = c.lattice->MeanSlopeByViews() * step;
+  const Eigen::Vector2d actual = c.lattice->MeanSlope(fitted) - c.lattice->MeanSlope(c.values);
+  EXPECT_NEAR(predicted[0], actual[0], 0.1 * std::abs(actual[0]));
+}
+
+TEST(ViewHolds, TheGradientIsThatOfTheCost) {
+  Case c(false);
+  const ViewHolds holds(*c.unknowns, {}, c.lattice->UsableViews());
+  NormalEquations equations(c.unknowns->size());
+  const double cost = holds.Add(c.x, &equations);
+  EXPECT_DOUBLE_EQ(cost, holds.Add(c.x, nullptr));
+  for (int i = 0; i < c.unknowns->size(); ++i) {
+    VectorXd above = c.x, below = c.x;
+    above[i] += 1e-5;
+    below[i] -= 1e-5;
+    const double difference = (holds.Add(above, nullptr) - holds.Add(below, nullptr)) / 2e-5;
+    EXPECT_NEAR(equations.gradient[i], difference, 1e-5 * equations.gradient.norm()) << i;
+  }
+}
+
+// Lights that are off together cost their common offset alone, whatever their directions.
+TEST(ViewHolds, ASharedOffsetIsNotHeldByEveryLight) {
+  Case c(false, false);
+  const ViewHolds holds(*c.unknowns, {}, c.lattice->UsableViews());
+  VectorXd shared = VectorXd::Zero(c.unknowns->size());
+  shared[c.unknowns->shared_light()] = 0.1;
+  for (int v = 0; v < kViews; ++v) {
+    const Vec3d d = c.unknowns->LightDirection(v);
+    const Eigen::Vector3d direction(d[0], d[1], d[2]);
+    shared.segment<3>(ViewUnknowns::light(v)) =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction) *
+        Eigen::Vector3d(0.1, 0, 0);
+  }
+  EXPECT_NEAR(holds.Add(shared, nullptr), 0.5 * (0.1 / 0.3) * (0.1 / 0.3), 1e-9);
+  EXPECT_EQ(holds.Learned(shared, {}).light, ViewExpectations{}.light);
+  VectorXd own = VectorXd::Zero(c.unknowns->size());
+  for (int v = 0; v < kViews; ++v) own[ViewUnknowns::light(v) + 1] = v % 2 == 0 ? 0.2 : -0.2;
+  EXPECT_GT(holds.Learned(own, {}).light, 0.08);
+}
+
+}  // namespace
+}  // namespace glint
