@@ -58,6 +58,7 @@ struct TexelLattice::Worker {
   int batched = 0;
 
   void Flush(NormalEquations* equations) {
+    if (batched == 0) return;  // Eigen divides by the number of rows
     equations->hessian.selfadjointView<Eigen::Lower>().rankUpdate(
         batch.topRows(batched).transpose(), -1);
     batched = 0;

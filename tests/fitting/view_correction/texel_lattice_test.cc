@@ -89,6 +89,20 @@ TEST(TexelLattice, AStepOfTheReducedEquationsLowersTheCost) {
   EXPECT_LT(c.lattice->Fit(c.x + step, nullptr, &followed), 0.5 * c.cost);
 }
 
+// Texels are summed in batches within pieces: none, some, and just as many as fill them.
+TEST(TexelLattice, AnyNumberOfTexelsIsReduced) {
+  const test::DisturbedSet disturbed = test::Disturb(2, 0.05, 0.3, false);
+  const ViewUnknowns unknowns(disturbed.set, true);
+  const VectorXd x = VectorXd::Zero(unknowns.size());
+  for (const int texels : {1, 4, 36, 144, 3600}) {
+    TexelLattice lattice(disturbed.set, disturbed.maps, unknowns, texels, 2);
+    const NormalEquations equations = lattice.Reduce(x, lattice.Starts());
+    EXPECT_TRUE(equations.hessian.allFinite()) << lattice.size();
+    EXPECT_GT(equations.gradient.norm(), 0) << lattice.size();
+    EXPECT_EQ(equations.hessian, equations.hessian.transpose()) << lattice.size();
+  }
+}
+
 TEST(TexelLattice, TexelsAndTheirMeanSlopeFollowAsPredicted) {
   Case c(false, false);
   c.lattice->Reduce(c.x, c.values);
