@@ -16,7 +16,7 @@ struct CorrectionOptions {
   std::string when = "auto";    // auto: with views enough; always; never
   double distinct_views = 3.5;  // of the set (refine_prior.h) from which on "auto" looks
   // ViewCorrectionResult::gain up to which nothing is taken: views that are right stay untouched.
-  double least_gain = 0.1;
+  double least_gain = 0.03;
   int working_size = 256;  // texels along the longer side; larger sets are averaged down
   ViewCorrectionOptions view;
 

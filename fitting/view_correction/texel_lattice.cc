@@ -13,15 +13,15 @@
 namespace glint {
 namespace {
 
-constexpr int kMargin = 2;          // texels at the edge, whose lookup would leave the picture
-constexpr double kNoise = 0.004;    // of log residuals: texels that fit so well are not searched
+constexpr int kMargin = 2;        // texels at the edge, whose lookup would leave the picture
+constexpr double kNoise = 0.004;  // of log residuals: texels that fit so well are not searched
 constexpr int kTexelIterations = 40;
 constexpr int kTexelStarts = 2;
 constexpr int kTexelsPerPiece = 32;
 // Sums of normal equations, whatever the number of threads: each has views² memory.
 constexpr int kSums = 8;
-constexpr int kBatch = 16;  // texels whose outer products are summed by one matrix product
-constexpr double kMostStep = 0.3;   // of roughness and slopes together, as a texel follows
+constexpr int kBatch = 16;         // texels whose outer products are summed by one matrix product
+constexpr double kMostStep = 0.3;  // of roughness and slopes together, as a texel follows
 
 using Jet = ceres::Jet<double, 3>;  // by the light's offset
 
@@ -130,16 +130,16 @@ void TexelLattice::Gather(const Texel& texel, const Eigen::VectorXd& x, Worker* 
     double radiance[3];
     bool clipped[3];
     for (size_t c = 0; c < 3; ++c) {
-      LookedUp seen = LookUp(photograph.rgb.data() + c * texels, plane.width, plane.height, column,
-                             row);
+      LookedUp seen =
+          LookUp(photograph.rgb.data() + c * texels, plane.width, plane.height, column, row);
       seen.value = radiance[c] = std::max(seen.value, 0.0);
       clipped[c] = photograph.ldr && radiance[c] >= kClipped;
       worker->seen.push_back(seen);
     }
-    worker->observations.Add(TexelGeometryInView<double>(unknowns_.ViewAt(v, x),
-                                                         set_.convention.falloff, texel.x_mm,
-                                                         texel.y_mm),
-                             radiance, clipped);
+    worker->observations.Add(
+        TexelGeometryInView<double>(unknowns_.ViewAt(v, x), set_.convention.falloff, texel.x_mm,
+                                    texel.y_mm),
+        radiance, clipped);
   }
   worker->observations.Finish();
 }
@@ -236,11 +236,12 @@ void TexelLattice::AddProducts(const Texel& texel, const Eigen::VectorXd& x,
       }
       const auto at = [&](KernelRows::Row r) { return rows.row(c, r)[k]; };
       equations->Add(at(KernelRows::kResidual), row);
-      const std::pair<int, double> by_texel[] = {{DiffuseParameter(c), at(KernelRows::kByDiffuse)},
-                                                 {SpecularParameter(c), at(KernelRows::kBySpecular)},
-                                                 {kRough, at(KernelRows::kByRough)},
-                                                 {kSlopeX, at(KernelRows::kBySlopeX)},
-                                                 {kSlopeY, at(KernelRows::kBySlopeY)}};
+      const std::pair<int, double> by_texel[] = {
+          {DiffuseParameter(c), at(KernelRows::kByDiffuse)},
+          {SpecularParameter(c), at(KernelRows::kBySpecular)},
+          {kRough, at(KernelRows::kByRough)},
+          {kSlopeX, at(KernelRows::kBySlopeX)},
+          {kSlopeY, at(KernelRows::kBySlopeY)}};
       for (const auto& [parameter, derivative] : by_texel) {
         const double by = derivative * by_variable[static_cast<size_t>(parameter)];
         for (const auto& [unknown, by_view] : row) {
@@ -280,8 +281,7 @@ void TexelLattice::ReduceTexel(int index, const Eigen::VectorXd& x, const TexelV
   const Eigen::LLT<Square> factor(own);
   const Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> half =
       factor.matrixL().solve(worker->products);
-  const Eigen::Matrix<double, kTexelParameters, 1> half_gradient =
-      factor.matrixL().solve(gradient);
+  const Eigen::Matrix<double, kTexelParameters, 1> half_gradient = factor.matrixL().solve(gradient);
   equations->gradient.noalias() -= half.transpose() * half_gradient;
   worker->batch.middleRows<kTexelParameters>(worker->batched) = half;
   worker->batched += kTexelParameters;

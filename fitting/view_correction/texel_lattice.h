@@ -29,12 +29,13 @@ class TexelLattice {
 
   using Values = std::vector<TexelValues>;
   Values Starts() const;
-  // Fits every texel to the views at `x`, from `*values` and, unless null, from `others`: the better
-  // of both. Returns half the sum of squared residuals, the holds' included.
+  // Fits every texel to the views at `x`, from `*values` and, unless null, from `others`: the
+  // better of both. Returns half the sum of squared residuals, the holds' included.
   double Fit(const Eigen::VectorXd& x, const Values* others, Values* values);
 
-  // The normal equations of the views alone, the texels following: their Schur complement (Kaufman's
-  // form of variable projection). Keeps how the texels follow for Follow() and MeanSlopeBy().
+  // The normal equations of the views alone, the texels following: their Schur complement
+  // (Kaufman's form of variable projection). Keeps how the texels follow for Follow() and
+  // MeanSlopeBy().
   NormalEquations Reduce(const Eigen::VectorXd& x, const Values& values);
   // The texels after `step` of the views from where Reduce() was called, to first order.
   Values Follow(const Eigen::VectorXd& step, const Values& values) const;
@@ -59,7 +60,8 @@ class TexelLattice {
   // One texel's products of derivatives by its variables with those by the views; adds those by the
   // views alone to `equations`.
   void AddProducts(const Texel& texel, const Eigen::VectorXd& x, const TexelValues& values,
-                   const TexelValues& by_variable, Worker* worker, NormalEquations* equations) const;
+                   const TexelValues& by_variable, Worker* worker,
+                   NormalEquations* equations) const;
   void ReduceTexel(int index, const Eigen::VectorXd& x, const TexelValues& values, Worker* worker,
                    NormalEquations* equations);
 

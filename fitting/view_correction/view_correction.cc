@@ -20,6 +20,7 @@ using Eigen::VectorXd;
 // Residuals of log radiance: expected of a first descent, and least that is believed of
 // photographs.
 constexpr double kFirstSigma = 0.02, kLeastSigma = 0.005;
+constexpr double kRoundingSigma = 0.007;  // what rounding to 8 bits leaves, about
 // Relative fall of the cost by one step that ends a descent.
 constexpr double kFirstTolerance = 1e-3, kSecondTolerance = 1e-5, kLastTolerance = 1e-6;
 constexpr double kMostDamping = 1e6;
@@ -61,8 +62,9 @@ class Adjustment {
   const VectorXd& x() const { return x_; }
   bool empty() const { return lattice_.size() == 0; }
   double cost() const { return cost_; }
-  // What residuals of every photograph come to.
-  double LeastCost() const { return 0.5 * lattice_.residuals() * kLeastSigma * kLeastSigma; }
+  double RoundingCost() const {
+    return 0.5 * lattice_.residuals() * kRoundingSigma * kRoundingSigma;
+  }
   double residual_rms() const { return std::sqrt(2 * cost_ / lattice_.residuals()); }
   double SharedNoise() { return lattice_.SharedNoise(x_, values_); }
   std::vector<ViewCorrection> Corrections() const;
@@ -98,8 +100,9 @@ void Adjustment::MoveTo(const VectorXd& x) {
 }
 
 double Adjustment::CostUncorrected() {
+  const VectorXd none = VectorXd::Zero(x_.size());
   TexelLattice::Values values = lattice_.Starts();
-  return lattice_.Fit(VectorXd::Zero(x_.size()), &values_, &values);
+  return lattice_.Fit(none, &values_, &values);
 }
 
 void Adjustment::Learn() { expected_ = Holds().Learned(x_, options_.expected); }
@@ -222,7 +225,7 @@ ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
   result.cost_before = fine->CostUncorrected();
   result.cost_after = fine->cost();
   result.gain =
-      1 - (result.cost_after + fine->LeastCost()) / (result.cost_before + fine->LeastCost());
+      (result.cost_before - result.cost_after) / (result.cost_before + fine->RoundingCost());
   result.residual_rms = fine->residual_rms();
   result.shared_noise = fine->SharedNoise();
   result.views = fine->Corrections();

@@ -56,7 +56,7 @@ struct ViewCorrectionOptions {
   // model and maps, and many small ones would otherwise buy any correction …
   double evidence = 20;
   // … but as so many where what is left looks like noise, in which the channels have no share.
-  double noise_evidence = 1000;
+  double noise_evidence = 200;
   int texels = 1024;       // of the lattice, about …
   int last_texels = 2304;  // … and of the one that the last descent is made with
   int iterations = 25;     // Levenberg–Marquardt steps of one descent, at most
@@ -73,7 +73,8 @@ struct ViewCorrectionResult {
   // Half the sum of squared residuals of the last lattice, its texels fitted to the views as they
   // were and as they are now.
   double cost_before = 0, cost_after = 0;
-  // Relative fall of the cost; residuals that any photograph has count as explained (0.005 RMS).
+  // Relative fall of the cost and of what rounding to 8 bits would add to it: where photographs are
+  // explained better than that, nothing is gained.
   double gain = 0;
   double residual_rms = 0;  // afterwards, log units
   double shared_noise = 1;  // 1 to 3: how much of that the channels share (residual_noise.h)

@@ -46,8 +46,8 @@ double ViewHolds::AddLight(int view, const Eigen::VectorXd& x, NormalEquations* 
   const Vec3d d = unknowns_.LightDirection(view);
   const Eigen::Vector3d direction(d[0], d[1], d[2]);
   const Eigen::Matrix3d along = direction * direction.transpose();
-  const Eigen::Matrix3d by_own = (Eigen::Matrix3d::Identity() - along) / expected_.light +
-                                 along / expected_.distance;
+  const Eigen::Matrix3d by_own =
+      (Eigen::Matrix3d::Identity() - along) / expected_.light + along / expected_.distance;
   const Eigen::Matrix3d by_shared = -by_own * TurnOf(d);
   const Eigen::Vector3d residuals = by_own * OwnOffset(unknowns_, view, x);
   double cost = 0;
@@ -86,8 +86,7 @@ double ViewHolds::Add(const Eigen::VectorXd& x, NormalEquations* equations) cons
     cost += AddSimple(x, unknowns_.shared_light() + i,
                       i < 2 ? expected_.shared_light : expected_.distance, equations);
     // One ambient light against the evidence of all views.
-    cost +=
-        AddSimple(x, unknowns_.ambient() + i, expected_.ambient / std::sqrt(views), equations);
+    cost += AddSimple(x, unknowns_.ambient() + i, expected_.ambient / std::sqrt(views), equations);
   }
   return cost;
 }
