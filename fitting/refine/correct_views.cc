@@ -31,6 +31,7 @@ std::string CorrectionOptions::Check() const {
     return "views are corrected auto, always or never";
   }
   if (!(least_gain >= 0 && least_gain < 1)) return "the least gain must be from 0 to 1";
+  if (rounds < 1) return "at least one round of corrections is needed";
   if (working_size < 16) return "the working size must be at least 16 texels";
   return view.Check();
 }
@@ -46,21 +47,29 @@ RefineProblem ProblemOf(const PhotographSet& set) {
 }
 
 CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& start,
-                                 const CorrectionOptions& options, int threads) {
+                                 const RefineOptions& refine, const CorrectionOptions& options,
+                                 int threads) {
   const std::string wrong = options.Check();
   if (!wrong.empty()) throw std::invalid_argument("correct views: " + wrong);
   CorrectionResult result;
   if (!options.Wanted(DistinctViews(ProblemOf(set)))) return result;
   const PhotographSet small = AtWorkingSize(set, options.working_size, threads);
   const int width = small.plane.width, height = small.plane.height;
-  const ViewCorrectionResult found =
-      CorrectViews(small, ResampleSvbrdf(start, width, height), options.view, threads);
+  const SvbrdfMaps small_start = ResampleSvbrdf(start, width, height);
+  ViewCorrectionResult found = CorrectViews(small, small_start, options.view, threads);
   result.cost_before = found.cost_before;
   result.cost_after = found.cost_after;
   result.taken = found.gain > options.least_gain;
-  if (result.taken) {
-    result.corrections = AtSize(found.views, width, height, set.plane.width, set.plane.height);
+  if (!result.taken) return result;
+  for (int round = 1; round < options.rounds; ++round) {
+    const PhotographSet corrected = Corrected(small, found.views, threads);
+    const SvbrdfMaps maps = Refine(ProblemOf(corrected), small_start, refine, threads).maps;
+    found = CorrectViews(small, maps, options.view, threads, found.views);
+    const bool settled = found.cost_after > (1 - options.least_gain) * result.cost_after;
+    result.cost_after = found.cost_after;
+    if (settled) break;
   }
+  result.corrections = AtSize(found.views, width, height, set.plane.width, set.plane.height);
   return result;
 }
 

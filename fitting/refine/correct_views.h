@@ -17,6 +17,9 @@ struct CorrectionOptions {
   double distinct_views = 3.5;  // of the set (refine_prior.h) from which on "auto" looks
   // ViewCorrectionResult::gain up to which nothing is taken: views that are right stay untouched.
   double least_gain = 0.03;
+  // Corrections and refinements in turn, at most: texels in wrong minima hold the views back, and
+  // refined with views that are nearly right they leave them.
+  int rounds = 3;
   int working_size = 256;  // texels along the longer side; larger sets are averaged down
   ViewCorrectionOptions view;
 
@@ -34,8 +37,9 @@ struct CorrectionResult {
 // The problem that Refine() solves for these photographs; its spans are of `set`.
 RefineProblem ProblemOf(const PhotographSet& set);
 
-// `start` has the set's size. Throws as CorrectViews() does.
+// `start` has the set's size. Throws as Refine() and CorrectViews() do.
 CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& start,
-                                 const CorrectionOptions& options, int threads);
+                                 const RefineOptions& refine, const CorrectionOptions& options,
+                                 int threads);
 
 }  // namespace glint

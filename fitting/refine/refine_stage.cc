@@ -193,7 +193,8 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
   const auto began = std::chrono::steady_clock::now();
   RefineResult refined;
   RefineStageResult result;
-  result.correction = FindCorrections(photographs, maps, options.correction, threads);
+  result.correction =
+      FindCorrections(photographs, maps, options.refine, options.correction, threads);
   if (result.correction.taken) {
     photographs = Corrected(photographs, result.correction.corrections, threads);
   }

@@ -54,6 +54,7 @@ class Adjustment {
   int Descend(double tolerance);
   // Expects offsets like those found.
   void Learn();
+  void BeginWith(const std::vector<ViewCorrection>& known) { MoveTo(unknowns_.Of(known)); }
   // To the texels' best at `x`.
   void MoveTo(const VectorXd& x);
   // Cost of texels fitted to the views as they were, from their starts or from where they are now.
@@ -272,12 +273,16 @@ std::string ViewCorrectionOptions::Check() const {
 }
 
 ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& maps,
-                                  const ViewCorrectionOptions& options, int threads) {
+                                  const ViewCorrectionOptions& options, int threads,
+                                  const std::vector<ViewCorrection>& known) {
   std::string wrong = options.Check();
   if (wrong.empty()) wrong = set.Check();
   if (!wrong.empty()) throw std::invalid_argument("view correction: " + wrong);
   if (maps.width != set.plane.width || maps.height != set.plane.height) {
     throw std::invalid_argument("view correction: the maps' size is not the photographs'");
+  }
+  if (!known.empty() && known.size() != set.photographs.size()) {
+    throw std::invalid_argument("view correction: as many corrections as photographs are needed");
   }
   Adjustment coarse(set, maps, options, options.registration,
                     LatticeTexels(options.texels, set.photographs.size()), threads);
@@ -285,7 +290,12 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
   result.views.resize(set.photographs.size());
   if (coarse.empty()) return result;
   coarse.Weigh(kFirstSigma, options.evidence);
-  int iterations = coarse.Descend(kFirstTolerance);
+  int iterations = 0;
+  if (known.empty()) {
+    iterations += coarse.Descend(kFirstTolerance);
+  } else {
+    coarse.BeginWith(known);
+  }
   coarse.Learn();
   coarse.Weigh(std::max(kLeastSigma, coarse.residual_rms()), options.evidence);
   iterations += coarse.Descend(kSecondTolerance);

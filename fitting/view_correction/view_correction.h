@@ -84,9 +84,11 @@ struct ViewCorrectionResult {
 // `maps`: what the texels start from and are held to, as weakly as one more observation; of the
 // set's size. Displacements are relative to their mean over the views: what all share is the maps'
 // own place. The result does not depend on the number of threads.
+// `known`: corrections to begin with, of an earlier call with other maps; empty: none.
 // Throws std::invalid_argument when sizes or options are wrong.
 ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& maps,
-                                  const ViewCorrectionOptions& options, int threads);
+                                  const ViewCorrectionOptions& options, int threads,
+                                  const std::vector<ViewCorrection>& known = {});
 
 // The photographs as the corrections say: lights moved, ambient added, pictures looked up anew.
 PhotographSet Corrected(const PhotographSet& set, const std::vector<ViewCorrection>& corrections,

@@ -1,6 +1,5 @@
 #include "fitting/view_correction/view_holds.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -11,14 +10,6 @@ using Derivatives = std::vector<std::pair<int, double>>;
 
 // Of the mean displacement of all views, in texels: it is the maps' own place.
 constexpr double kSharedShift = 1e-3;
-
-// The least turn that takes z to `direction`: what is beside an upright camera's lens, in the
-// sample's frame.
-Eigen::Matrix3d TurnOf(const Vec3d& direction) {
-  return Eigen::Quaterniond::FromTwoVectors(
-             Eigen::Vector3d::UnitZ(), Eigen::Vector3d(direction[0], direction[1], direction[2]))
-      .toRotationMatrix();
-}
 
 double AddOne(double residual, const Derivatives& derivatives, NormalEquations* equations) {
   if (equations != nullptr) equations->Add(residual, derivatives);
@@ -32,7 +23,7 @@ double AddSimple(const Eigen::VectorXd& x, int at, double sigma, NormalEquations
 // What a light's offset has of its own.
 Eigen::Vector3d OwnOffset(const ViewUnknowns& unknowns, int view, const Eigen::VectorXd& x) {
   return x.segment<3>(ViewUnknowns::light(view)) -
-         TurnOf(unknowns.LightDirection(view)) * x.segment<3>(unknowns.shared_light());
+         unknowns.LightFrame(view) * x.segment<3>(unknowns.shared_light());
 }
 
 }  // namespace
@@ -48,7 +39,7 @@ double ViewHolds::AddLight(int view, const Eigen::VectorXd& x, NormalEquations* 
   const Eigen::Matrix3d along = direction * direction.transpose();
   const Eigen::Matrix3d by_own =
       (Eigen::Matrix3d::Identity() - along) / expected_.light + along / expected_.distance;
-  const Eigen::Matrix3d by_shared = -by_own * TurnOf(d);
+  const Eigen::Matrix3d by_shared = -by_own * unknowns_.LightFrame(view);
   const Eigen::Vector3d residuals = by_own * OwnOffset(unknowns_, view, x);
   double cost = 0;
   for (int i = 0; i < 3; ++i) {

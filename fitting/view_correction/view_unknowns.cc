@@ -1,5 +1,6 @@
 #include "fitting/view_correction/view_unknowns.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -23,6 +24,13 @@ Vec3d ViewUnknowns::LightDirection(int view) const {
   Vec3d direction = set_.photographs[At(view)].view.light_in_sample_mm;
   for (double& d : direction) d /= light_distance_mm(view);
   return direction;
+}
+
+Eigen::Matrix3d ViewUnknowns::LightFrame(int view) const {
+  const Vec3d d = LightDirection(view);
+  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(),
+                                            Eigen::Vector3d(d[0], d[1], d[2]))
+      .toRotationMatrix();
 }
 
 double ViewUnknowns::LeastAmbient(int channel) const {
@@ -58,6 +66,26 @@ ViewCorrection ViewUnknowns::CorrectionAt(int view, const Eigen::VectorXd& unkno
     correction.shifts.row[i] = unknowns[shift(view) + 4 + i];
   }
   return correction;
+}
+
+Eigen::VectorXd ViewUnknowns::Of(const std::vector<ViewCorrection>& corrections) const {
+  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(size());
+  for (int v = 0; v < views(); ++v) {
+    const ViewCorrection& correction = corrections[At(v)];
+    for (int i = 0; i < 3; ++i) {
+      const size_t k = static_cast<size_t>(i);
+      unknowns[light(v) + i] = correction.light_offset_mm[k] / light_distance_mm(v);
+      unknowns[ambient() + i] = correction.ambient_rgb[k] / irradiance(v);
+    }
+    unknowns.segment<3>(shared_light()) +=
+        LightFrame(v).transpose() * unknowns.segment<3>(light(v)) / views();
+    unknowns[exposure(v)] = std::log(correction.exposure);
+    for (int i = 0; registration_ && i < 4; ++i) {
+      unknowns[shift(v) + i] = correction.shifts.column[i];
+      unknowns[shift(v) + 4 + i] = correction.shifts.row[i];
+    }
+  }
+  return unknowns;
 }
 
 }  // namespace glint

@@ -31,11 +31,16 @@ class ViewUnknowns {
   double irradiance(int view) const { return irradiance_[At(view)]; }
   // Toward the light as it was said to be.
   Vec3d LightDirection(int view) const;
+  // The least turn that takes z there: what is beside an upright camera's lens, in the sample's
+  // frame.
+  Eigen::Matrix3d LightFrame(int view) const;
   // Least value of the ambient unknown of a channel: the surroundings take no light.
   double LeastAmbient(int channel) const;
 
   View ViewAt(int view, const Eigen::VectorXd& unknowns) const;
   ViewCorrection CorrectionAt(int view, const Eigen::VectorXd& unknowns) const;
+  // The unknowns that say so; what the lights share is their mean.
+  Eigen::VectorXd Of(const std::vector<ViewCorrection>& corrections) const;
 
  private:
   static size_t At(int view) { return static_cast<size_t>(view); }

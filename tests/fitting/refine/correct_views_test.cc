@@ -20,7 +20,7 @@ CorrectionResult Find(const DisturbedSet& disturbed) {
   options.view.last_texels = 1024;
   // One material for all: what the photographs do not tell is not known beforehand.
   const SvbrdfMaps start = test::UniformMaps(disturbed.maps.width, 0.35f, 0.06f, 0.45f);
-  return FindCorrections(disturbed.set, start, options, 1);
+  return FindCorrections(disturbed.set, start, RefineOptions{}, options, 1);
 }
 
 // Degrees between the lights found and the true ones, mean over the views.
