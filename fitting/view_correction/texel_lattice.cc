@@ -32,6 +32,51 @@ StartErrors ErrorsOfStart() {
   return errors;
 }
 
+// A texel's radiance with derivatives by the light's offset, in units of `offset_mm`.
+void ShadeByLight(const TexelSvbrdf<double>& svbrdf, const View& view,
+                  const ReflectanceConvention& convention, double offset_mm, double x_mm,
+                  double y_mm, Jet radiance[3]) {
+  TexelSvbrdf<Jet> constant;
+  Jet light[3], camera[3], irradiance[3], ambient[3];
+  const double position[3] = {x_mm, y_mm, 0};
+  for (int i = 0; i < 3; ++i) {
+    const size_t axis = static_cast<size_t>(i);
+    constant.normal[i] = Jet(svbrdf.normal[i]);
+    constant.diffuse[i] = Jet(svbrdf.diffuse[i]);
+    constant.specular[i] = Jet(svbrdf.specular[i]);
+    light[i] = Jet(view.light_in_sample_mm[axis] - position[i]);
+    light[i].v[i] = offset_mm;
+    camera[i] = Jet(view.camera_in_sample_mm[axis] - position[i]);
+    ambient[i] = Jet(view.exposure * view.ambient_rgb[axis]);
+  }
+  constant.roughness = Jet(svbrdf.roughness);
+  const Jet light_inverse = 1.0 / sqrt(Dot(light, light));
+  const Jet camera_inverse = 1.0 / sqrt(Dot(camera, camera));
+  const Jet attenuation =
+      convention.falloff == LightFalloff::kInverseSquare ? light_inverse * light_inverse : Jet(1.0);
+  for (int i = 0; i < 3; ++i) {
+    light[i] *= light_inverse;
+    camera[i] *= camera_inverse;
+    irradiance[i] = view.exposure * view.light_rgb[static_cast<size_t>(i)] * attenuation;
+  }
+  ShadeRadiance(constant, MakeTexelGeometry(light, camera, irradiance, ambient),
+                convention.diffuse_weight, radiance);
+}
+
+// How the residual of texel_kernel.h depends on the radiances that it compares.
+struct LogResidual {
+  LogResidual(double rendered, double shown, double robust_scale)
+      : error(std::log((rendered + kLogOffset) / (shown + kLogOffset))) {
+    // Charbonnier's g'
+    const double scaled = error / robust_scale;
+    const double root = std::sqrt(1 + scaled * scaled);
+    const double slope = std::sqrt(0.5 * (1 + root)) / root;
+    by_rendered = slope / (rendered + kLogOffset);
+    by_shown = -slope / (shown + kLogOffset);
+  }
+  double error, by_rendered, by_shown;
+};
+
 }  // namespace
 
 struct TexelLattice::Texel {
@@ -56,6 +101,25 @@ struct TexelLattice::Worker {
   Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> products;
   Eigen::MatrixXd batch;  // kBatch · kTexelParameters rows, of which are filled …
   int batched = 0;
+
+  // The residual of a usable view and channel, as the solver's rows have it.
+  void AddResidual(int view, int channel, const TexelValues& by_variable,
+                   const std::vector<std::pair<int, double>>& by_views,
+                   NormalEquations* equations) {
+    const KernelRows& rows = search.solver().rows();
+    const auto at = [&](KernelRows::Row r) { return rows.row(channel, r)[view]; };
+    equations->Add(at(KernelRows::kResidual), by_views);
+    const std::pair<int, double> by_texel[] = {
+        {DiffuseParameter(channel), at(KernelRows::kByDiffuse)},
+        {SpecularParameter(channel), at(KernelRows::kBySpecular)},
+        {kRough, at(KernelRows::kByRough)},
+        {kSlopeX, at(KernelRows::kBySlopeX)},
+        {kSlopeY, at(KernelRows::kBySlopeY)}};
+    for (const auto& [parameter, derivative] : by_texel) {
+      const double by = derivative * by_variable[static_cast<size_t>(parameter)];
+      for (const auto& [unknown, by_view] : by_views) products(parameter, unknown) += by * by_view;
+    }
+  }
 
   void Flush(NormalEquations* equations) {
     if (batched == 0) return;  // Eigen divides by the number of rows
@@ -175,79 +239,32 @@ void TexelLattice::AddProducts(const Texel& texel, const Eigen::VectorXd& x,
                                const TexelValues& values, const TexelValues& by_variable,
                                Worker* worker, NormalEquations* equations) const {
   const TexelSvbrdf<double> svbrdf = TexelFromValues(values.data());
-  TexelSvbrdf<Jet> constant;
-  for (int i = 0; i < 3; ++i) {
-    constant.normal[i] = Jet(svbrdf.normal[i]);
-    constant.diffuse[i] = Jet(svbrdf.diffuse[i]);
-    constant.specular[i] = Jet(svbrdf.specular[i]);
-  }
-  constant.roughness = Jet(svbrdf.roughness);
-  const DiffuseWeight diffuse_weight = set_.convention.diffuse_weight;
-  const KernelRows& rows = worker->search.solver().rows();
-  std::vector<std::pair<int, double>> row;
+  std::vector<std::pair<int, double>> by_views;
   for (size_t k = 0; k < texel.views.size(); ++k) {
     const int v = texel.views[k];
     const View view = unknowns_.ViewAt(v, x);
-    const double position[3] = {texel.x_mm, texel.y_mm, 0};
-    Jet light[3], camera[3], irradiance[3], ambient[3];
-    for (int i = 0; i < 3; ++i) {
-      const size_t axis = static_cast<size_t>(i);
-      light[i] = Jet(view.light_in_sample_mm[axis] - position[i]);
-      light[i].v[i] = unknowns_.light_distance_mm(v);
-      camera[i] = Jet(view.camera_in_sample_mm[axis] - position[i]);
-      ambient[i] = Jet(view.exposure * view.ambient_rgb[axis]);
-    }
-    const Jet light_inverse = 1.0 / sqrt(Dot(light, light));
-    const Jet camera_inverse = 1.0 / sqrt(Dot(camera, camera));
-    const Jet attenuation = set_.convention.falloff == LightFalloff::kInverseSquare
-                                ? light_inverse * light_inverse
-                                : Jet(1.0);
-    for (int i = 0; i < 3; ++i) {
-      light[i] *= light_inverse;
-      camera[i] *= camera_inverse;
-      irradiance[i] = view.exposure * view.light_rgb[static_cast<size_t>(i)] * attenuation;
-    }
     Jet radiance[3];
-    ShadeRadiance(constant, MakeTexelGeometry(light, camera, irradiance, ambient), diffuse_weight,
-                  radiance);
+    ShadeByLight(svbrdf, view, set_.convention, unknowns_.light_distance_mm(v), texel.x_mm,
+                 texel.y_mm, radiance);
+    const bool ldr = set_.photographs[static_cast<size_t>(v)].ldr;
     for (int c = 0; c < 3; ++c) {
       const LookedUp& seen = worker->seen[3 * k + static_cast<size_t>(c)];
-      const double shown = seen.value + kLogOffset, rendered = radiance[c].a + kLogOffset;
-      const double error = std::log(rendered / shown);
-      const bool clipped = set_.photographs[static_cast<size_t>(v)].ldr && seen.value >= kClipped;
-      if (clipped && error > 0) continue;  // satisfied: no residual
-      // Charbonnier's g' (texel_kernel.h).
-      const double scaled = error / worker->kernel.robust_scale;
-      const double root = std::sqrt(1 + scaled * scaled);
-      const double slope = std::sqrt(0.5 * (1 + root)) / root;
-      const double by_rendered = slope / rendered, by_shown = -slope / shown;
-      row.clear();
+      const LogResidual residual(radiance[c].a, seen.value, worker->kernel.robust_scale);
+      if (ldr && seen.value >= kClipped && residual.error > 0) continue;  // satisfied
+      by_views.clear();
       for (int i = 0; i < 3; ++i) {
-        row.emplace_back(ViewUnknowns::light(v) + i, by_rendered * radiance[c].v[i]);
+        by_views.emplace_back(ViewUnknowns::light(v) + i, residual.by_rendered * radiance[c].v[i]);
       }
-      row.emplace_back(unknowns_.ambient() + c, by_rendered * view.exposure *
-                                                    unknowns_.irradiance(v) *
-                                                    AmbientLobe(svbrdf, diffuse_weight, c));
-      row.emplace_back(unknowns_.exposure(v), by_rendered * radiance[c].a);
+      by_views.emplace_back(unknowns_.ambient() + c,
+                            residual.by_rendered * view.exposure * unknowns_.irradiance(v) *
+                                AmbientLobe(svbrdf, set_.convention.diffuse_weight, c));
+      by_views.emplace_back(unknowns_.exposure(v), residual.by_rendered * radiance[c].a);
       for (int i = 0; unknowns_.registration() && i < 4; ++i) {
-        const double weight = by_shown * texel.corner_weights[i];
-        row.emplace_back(unknowns_.shift(v) + i, weight * seen.by_column);
-        row.emplace_back(unknowns_.shift(v) + 4 + i, weight * seen.by_row);
+        const double weight = residual.by_shown * texel.corner_weights[i];
+        by_views.emplace_back(unknowns_.shift(v) + i, weight * seen.by_column);
+        by_views.emplace_back(unknowns_.shift(v) + 4 + i, weight * seen.by_row);
       }
-      const auto at = [&](KernelRows::Row r) { return rows.row(c, r)[k]; };
-      equations->Add(at(KernelRows::kResidual), row);
-      const std::pair<int, double> by_texel[] = {
-          {DiffuseParameter(c), at(KernelRows::kByDiffuse)},
-          {SpecularParameter(c), at(KernelRows::kBySpecular)},
-          {kRough, at(KernelRows::kByRough)},
-          {kSlopeX, at(KernelRows::kBySlopeX)},
-          {kSlopeY, at(KernelRows::kBySlopeY)}};
-      for (const auto& [parameter, derivative] : by_texel) {
-        const double by = derivative * by_variable[static_cast<size_t>(parameter)];
-        for (const auto& [unknown, by_view] : row) {
-          worker->products(parameter, unknown) += by * by_view;
-        }
-      }
+      worker->AddResidual(static_cast<int>(k), c, by_variable, by_views, equations);
     }
   }
 }
