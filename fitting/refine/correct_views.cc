@@ -48,11 +48,17 @@ RefineProblem ProblemOf(const PhotographSet& set) {
 
 CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& start,
                                  const RefineOptions& refine, const CorrectionOptions& options,
-                                 int threads) {
+                                 int threads,
+                                 const std::function<void(std::int64_t, std::int64_t)>& progress) {
   const std::string wrong = options.Check();
   if (!wrong.empty()) throw std::invalid_argument("correct views: " + wrong);
   CorrectionResult result;
   if (!options.Wanted(DistinctViews(ProblemOf(set)))) return result;
+  const std::int64_t steps = 2 * options.rounds - 1;  // a correction; then refinements and others
+  const auto report = [&](std::int64_t done) {
+    if (progress) progress(done, steps);
+  };
+  report(0);
   const PhotographSet small = AtWorkingSize(set, options.working_size, threads);
   const int width = small.plane.width, height = small.plane.height;
   const SvbrdfMaps small_start = ResampleSvbrdf(start, width, height);
@@ -60,15 +66,21 @@ CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& sta
   result.cost_before = found.cost_before;
   result.cost_after = found.cost_after;
   result.taken = found.gain > options.least_gain;
-  if (!result.taken) return result;
+  if (!result.taken) {
+    report(steps);
+    return result;
+  }
   for (int round = 1; round < options.rounds; ++round) {
+    report(2 * round - 1);
     const PhotographSet corrected = Corrected(small, found.views, threads);
     const SvbrdfMaps maps = Refine(ProblemOf(corrected), small_start, refine, threads).maps;
+    report(2 * round);
     found = CorrectViews(small, maps, options.view, threads, found.views);
     const bool settled = found.cost_after > (1 - options.least_gain) * result.cost_after;
     result.cost_after = found.cost_after;
     if (settled) break;
   }
+  report(steps);
   result.corrections = AtSize(found.views, width, height, set.plane.width, set.plane.height);
   return result;
 }

@@ -2,6 +2,7 @@
 // and whether what was found is worth taking.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -37,9 +38,11 @@ struct CorrectionResult {
 // The problem that Refine() solves for these photographs; its spans are of `set`.
 RefineProblem ProblemOf(const PhotographSet& set);
 
-// `start` has the set's size. Throws as Refine() and CorrectViews() do.
-CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& start,
-                                 const RefineOptions& refine, const CorrectionOptions& options,
-                                 int threads);
+// `start` has the set's size. `progress` (may be empty) is called with the steps done and all steps
+// there can be. Throws as Refine() and CorrectViews() do.
+CorrectionResult FindCorrections(
+    const PhotographSet& set, const SvbrdfMaps& start, const RefineOptions& refine,
+    const CorrectionOptions& options, int threads,
+    const std::function<void(std::int64_t done, std::int64_t total)>& progress = {});
 
 }  // namespace glint

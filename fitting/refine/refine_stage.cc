@@ -193,8 +193,15 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
   const auto began = std::chrono::steady_clock::now();
   RefineResult refined;
   RefineStageResult result;
-  result.correction =
-      FindCorrections(photographs, maps, options.refine, options.correction, threads);
+  {
+    std::unique_ptr<Progress> bar;
+    result.correction = FindCorrections(photographs, maps, options.refine, options.correction,
+                                        threads, [&](std::int64_t done, std::int64_t total) {
+                                          if (!bar)
+                                            bar = std::make_unique<Progress>("views", total);
+                                          bar->Set(done);
+                                        });
+  }
   if (result.correction.taken) {
     photographs = Corrected(photographs, result.correction.corrections, threads);
   }
