@@ -7,7 +7,8 @@ namespace {
 
 void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
   options->AddPositional("DIR", &o->folder, "the capture's folder", false);
-  options->AddChoice("board", &o->board, {"charuco", "checkerboard"}, "kind of board");
+  options->AddChoice("board", &o->board, {"charuco", "checkerboard", "none"},
+                     "kind of board; none: COLMAP finds the cameras");
   options->Add("squares", &o->squares, "COLUMNS,ROWS of squares");
   options->AddRange("square-mm", &o->square_mm, 0.1, 1000, "side of a square");
   options->AddRange("marker-mm", &o->marker_mm, 0.1, 1000, "side of a ChArUco marker");

@@ -14,7 +14,7 @@
 namespace glint {
 
 struct CorrectionOptions {
-  std::string when = "auto";    // auto: with views enough; always; never
+  std::string when = "auto";  // auto: with views enough; always; never
   double distinct_views = 5;  // of the set (refine_prior.h) from which on "auto" looks
   // ViewCorrectionResult::gain up to which nothing is taken: views that are right stay untouched.
   double least_gain = 0.03;

@@ -118,19 +118,27 @@ Board DescribedBoard(const InitOptions& options, std::vector<double>* window) {
   return board;
 }
 
-std::vector<double> SampleSize_mm(const InitOptions& options, const Board& board) {
-  if (!options.sample_mm.empty()) {
-    RequireCount(options.sample_mm, 2, "sample-mm", "WIDTH,HEIGHT");
-    for (const double side : options.sample_mm) {
-      if (side > 0) continue;
-      throw UserError("--sample-mm: found " + NumberText(side) + "; give sizes greater than 0");
-    }
-    return options.sample_mm;
+void CheckSampleSize(const std::vector<double>& sample_mm) {
+  RequireCount(sample_mm, 2, "sample-mm", "WIDTH,HEIGHT");
+  for (const double side : sample_mm) {
+    if (side > 0) continue;
+    throw UserError("--sample-mm: found " + NumberText(side) + "; give sizes greater than 0");
   }
+}
+
+std::vector<double> RoomInBoard_mm(const Board& board) {
   const BoardRectangle room = OpeningInSample(board).value_or(OutlineInSample(board));
   return {std::max(room.right_mm - room.left_mm - 2 * kSampleMargin_mm, 1.0),
           std::max(room.top_mm - room.bottom_mm - 2 * kSampleMargin_mm, 1.0)};
 }
+
+// What lies round the sample, as capture.toml says it, and the size of the sample that goes with
+// it.
+struct Surroundings {
+  std::string text;
+  std::vector<double> sample_mm;
+  std::string centre_from;  // where centre_mm counts from
+};
 
 std::string BoardPhotosText(const std::string& board_photos) {
   if (board_photos.empty()) {
@@ -172,6 +180,31 @@ std::string BoardText(const InitOptions& options, const std::vector<double>& win
   return text + BoardPhotosText(board_photos);
 }
 
+Surroundings WithBoard(const InitOptions& options, const std::string& board_photos) {
+  std::vector<double> window;
+  const fs::path board_file = options.folder / "board.json";
+  if (fs::exists(board_file)) {
+    const Board board = ReadBoardFile(board_file).board;
+    return {BoardFileText(board, board_photos), RoomInBoard_mm(board), "the board's centre"};
+  }
+  const Board board = DescribedBoard(options, &window);
+  return {BoardText(options, window, board_photos), RoomInBoard_mm(board), "the board's centre"};
+}
+
+// COLMAP knows no millimetres and not which part of the plane is meant: a person must say.
+Surroundings WithoutBoard() {
+  return {
+      "[calib]\nposes = \"colmap\"                 # cameras from the photographs alone; or "
+      "\"colmap:DIR\", a model\n\n"
+      "[poses]                          # one length is needed: take the comment off one\n"
+      "# photo = \"photos/IMG_0001.jpg\"  # the pixels below are of this photograph\n"
+      "# corners_px = [[441, 275], [732, 288], [720, 579], [429, 567]]  # the sample's: top "
+      "left, top right, bottom right, bottom left\n"
+      "# height_mm = 300                # or the lens's height above the sample, as usual\n",
+      {100, 100},
+      "where the photographs look, or [poses] says"};
+}
+
 void CheckEncoding(const std::string& encoding) {
   constexpr std::array kNames = {"auto", "srgb", "gamma2.2", "linear"};
   if (std::find(kNames.begin(), kNames.end(), encoding) != kNames.end()) return;
@@ -210,23 +243,23 @@ std::string InitResult::BriefReport() const {
 }
 
 std::string CaptureText(const InitOptions& options, InitResult* result) {
-  std::vector<double> window;
-  const fs::path board_file = options.folder / "board.json";
-  const bool has_file = fs::exists(board_file);
-  const Board board = has_file ? ReadBoardFile(board_file).board : DescribedBoard(options, &window);
   RequireCount(options.light_offset_mm, 3, "light-offset-mm", "X,Y,Z");
   CheckEncoding(options.encoding);
   const std::string board_photos =
       Patterns(options.folder, "board", IsPhoto, &result->board_photos);
+  const bool has_board = options.board != "none";
+  const Surroundings around = has_board ? WithBoard(options, board_photos) : WithoutBoard();
+  if (!options.sample_mm.empty()) CheckSampleSize(options.sample_mm);
+  const std::vector<double>& size_mm =
+      options.sample_mm.empty() ? around.sample_mm : options.sample_mm;
   std::string text = "# A capture for Glint; docs/capture.md explains every key.\n\n";
   text += "[sample]                         # the part of the surface that becomes maps\n";
-  text += "size_mm = " + List(SampleSize_mm(options, board)) + "             # width, height\n";
-  text += "# centre_mm = [0, 0]             # from the board's centre, x right, y up\n";
+  text += "size_mm = " + List(size_mm) + "             # width, height\n";
+  text += "# centre_mm = [0, 0]             # from " + around.centre_from + ", x right, y up\n";
   text += "resolution_px = " + std::to_string(options.resolution_px) +
           "             # width of the maps, or [width, height]\n\n";
   text += PhotoText(options, &result->photos);
-  text += has_file ? BoardFileText(board, board_photos) : BoardText(options, window, board_photos);
-  text += "\n";
+  text += around.text + "\n";
   text += "[radiometry]\nencoding = \"" + options.encoding +
           "\"                # auto, srgb, gamma2.2, linear, a curve\n\n";
   text += "[light]\noffset_mm = " + List(options.light_offset_mm) +
@@ -234,7 +267,8 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   text += "# power = 30000                  # radiance times mm^2; left out: estimated\n";
   text += "# ambient = [0, 0, 0]\n\n";
   text += "# Options of the stages, as on their command lines (glint help fit):\n";
-  text += "# [calib]\n# [rectify]\n# [fit]\n# [refine]\n# [export]\n# [report]\n";
+  text += has_board ? "# [calib]\n" : "";
+  text += "# [rectify]\n# [fit]\n# [refine]\n# [export]\n# [report]\n";
   return text;
 }
 

@@ -1,5 +1,6 @@
 // `glint init`: a commented capture.toml for a folder of photographs. A board.json in the folder,
-// as `glint board` writes it, is taken for the board; else the options describe it.
+// as `glint board` writes it, is taken for the board; else the options describe it, or say that
+// there is none.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +11,15 @@ namespace glint {
 
 struct InitOptions {
   std::filesystem::path folder = ".";
-  std::string board = "charuco";  // or "checkerboard"
+  std::string board = "charuco";  // or "checkerboard"; "none": poses come from COLMAP
   std::vector<double> squares = {13, 17};
   double square_mm = 15;
   double marker_mm = 11;  // charuco only
   std::string dictionary = "DICT_5X5_1000";
-  std::vector<double> window;     // first column, first row, columns, rows; empty: in the middle
-  bool full_board = false;        // no window: the sample lies on or beside a whole board
-  std::vector<double> sample_mm;  // width, height; empty: the window less a margin
+  std::vector<double> window;  // first column, first row, columns, rows; empty: in the middle
+  bool full_board = false;     // no window: the sample lies on or beside a whole board
+  std::vector<double>
+      sample_mm;  // width, height; empty: the window less a margin, 100 mm without a board
   int resolution_px = 1024;
   std::string encoding = "auto";  // or a response curve's file (.json)
   int every = 15;                 // of a video's frames, one in so many

@@ -339,6 +339,22 @@ TEST_F(RunTest, InitDescribesWhatIsInTheFolderAndKeepsAnExistingFile) {
   EXPECT_EQ(test::ReadAll(folder / "capture.toml"), text);
 }
 
+TEST_F(RunTest, InitWithoutABoardTakesCamerasFromColmap) {
+  const fs::path folder = folder_.path() / "open";
+  test::WriteAll(folder / "photos/1.jpg", "x");
+  ASSERT_EQ(Glint({"init", folder.string(), "--board", "none"}).code, 0);
+  const std::string text = test::ReadAll(folder / "capture.toml");
+  EXPECT_THAT(text, HasSubstr("poses = \"colmap\""));
+  EXPECT_THAT(text, HasSubstr("size_mm = [100, 100]"));
+  EXPECT_THAT(text, HasSubstr("\n[poses]"));
+  EXPECT_THAT(text, Not(HasSubstr("[board]")));
+  const Outcome plan = Glint({"run", folder.string(), "--dry-run"});
+  EXPECT_EQ(plan.code, 0) << plan.err;
+  const fs::path small = folder_.path() / "small";
+  ASSERT_EQ(Glint({"init", small.string(), "--board", "none", "--sample-mm", "60,40"}).code, 0);
+  EXPECT_THAT(test::ReadAll(small / "capture.toml"), HasSubstr("size_mm = [60, 40]"));
+}
+
 TEST_F(RunTest, InitRefusesABoardThatCannotBe) {
   const fs::path folder = folder_.path() / "new";
   const Outcome outcome = Glint({"init", folder.string(), "--marker-mm", "30"});
