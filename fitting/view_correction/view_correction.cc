@@ -47,6 +47,8 @@ class Adjustment {
         lattice_(set, maps, unknowns_, texels, threads),
         expected_(options.expected),
         x_(VectorXd::Zero(unknowns_.size())) {}
+  Adjustment(const Adjustment&) = delete;  // its parts refer to each other
+  Adjustment& operator=(const Adjustment&) = delete;
 
   // Residuals expected, and as how many a view's count.
   void Weigh(double sigma, double evidence);

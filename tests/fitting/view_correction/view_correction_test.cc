@@ -100,6 +100,18 @@ TEST(CorrectViews, FindsTheAmbientLight) {
   }
 }
 
+TEST(CorrectViews, FindsAnExposureThatIsOffWhereItMay) {
+  DisturbedSet disturbed = Disturb(12, 0, 0, false);
+  for (float& value : disturbed.set.photographs[3].rgb) value *= 1.15f;
+  ViewCorrectionOptions options = Few();
+  options.registration = options.ambient = false;
+  EXPECT_EQ(Correct(disturbed, options).views[3].exposure, 1);
+  options.exposure = true;
+  const ViewCorrectionResult found = Correct(disturbed, options);
+  EXPECT_NEAR(found.views[3].exposure / found.views[4].exposure, 1.15, 0.02);
+  EXPECT_NEAR(found.views[5].exposure / found.views[4].exposure, 1, 0.02);
+}
+
 TEST(CorrectViews, LeavesRightViewsRight) {
   const DisturbedSet right = Disturb(8, 0, 0, false);
   ViewCorrectionOptions options = Few();
