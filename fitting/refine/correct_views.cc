@@ -61,8 +61,10 @@ CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& sta
   report(0);
   const PhotographSet small = AtWorkingSize(set, options.working_size, threads);
   const int width = small.plane.width, height = small.plane.height;
+  ViewCorrectionOptions view = options.view;
+  view.robust_scale = refine.robust_scale;
   const SvbrdfMaps small_start = ResampleSvbrdf(start, width, height);
-  ViewCorrectionResult found = CorrectViews(small, small_start, options.view, threads);
+  ViewCorrectionResult found = CorrectViews(small, small_start, view, threads);
   result.cost_before = found.cost_before;
   result.cost_after = found.cost_after;
   result.taken = found.gain > options.least_gain;
@@ -75,7 +77,7 @@ CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& sta
     const PhotographSet corrected = Corrected(small, found.views, threads);
     const SvbrdfMaps maps = Refine(ProblemOf(corrected), small_start, refine, threads).maps;
     report(2 * round);
-    found = CorrectViews(small, maps, options.view, threads, found.views);
+    found = CorrectViews(small, maps, view, threads, found.views);
     const bool settled = found.cost_after > (1 - options.least_gain) * result.cost_after;
     result.cost_after = found.cost_after;
     if (settled) break;

@@ -13,7 +13,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 7;
+inline constexpr int kRefineVersion = 8;
 
 struct RefineStageOptions {
   RefineOptions refine;
@@ -43,7 +43,7 @@ struct RefineStageResult {
   CorrectionResult correction;
   std::vector<std::string> views;
   int width = 0, height = 0;
-  double seconds = 0;  // of refinement itself; for a person only
+  double seconds = 0;  // of corrections and refinement; for a person only
 };
 
 // Reads, refines, writes the stage's outputs and commits them.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <initializer_list>
 #include <utility>
 #include <vector>
 

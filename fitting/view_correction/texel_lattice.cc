@@ -32,6 +32,16 @@ StartErrors ErrorsOfStart() {
   return errors;
 }
 
+// Masked texels may hold anything, and a lookup between texels sees those around it.
+bool UsableAround(const std::vector<float>& mask, int width, int column, int row) {
+  for (int y = row - kMargin; y <= row + kMargin; ++y) {
+    for (int x = column - kMargin; x <= column + kMargin; ++x) {
+      if (!(mask[static_cast<size_t>(y) * width + x] >= 0.5f)) return false;
+    }
+  }
+  return true;
+}
+
 // A texel's radiance with derivatives by the light's offset, in units of `offset_mm`.
 void ShadeByLight(const TexelSvbrdf<double>& svbrdf, const View& view,
                   const ReflectanceConvention& convention, double offset_mm, double x_mm,
@@ -134,7 +144,8 @@ TexelLattice::~TexelLattice() = default;
 int TexelLattice::size() const { return static_cast<int>(texels_.size()); }
 
 TexelLattice::TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps,
-                           const ViewUnknowns& unknowns, int texels, int threads)
+                           const ViewUnknowns& unknowns, int texels, double robust_scale,
+                           int threads)
     : set_(set), unknowns_(unknowns), threads_(std::max(threads, 1)) {
   const int width = set.plane.width, height = set.plane.height;
   const int stride = std::max(
@@ -144,7 +155,8 @@ TexelLattice::TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps,
       const size_t index = static_cast<size_t>(row) * width + column;
       Texel texel{column, row, set.plane.x_mm(column), set.plane.y_mm(row), {}, {}, {}};
       for (int v = 0; v < unknowns.views(); ++v) {
-        if (set.photographs[static_cast<size_t>(v)].mask[index] >= 0.5f) texel.views.push_back(v);
+        const std::vector<float>& mask = set.photographs[static_cast<size_t>(v)].mask;
+        if (UsableAround(mask, width, column, row)) texel.views.push_back(v);
       }
       if (texel.views.empty()) continue;
       texel.start = ReadTexel(maps, index);
@@ -156,6 +168,7 @@ TexelLattice::TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps,
   following_.resize(texels_.size());
   KernelOptions kernel;
   kernel.diffuse_weight = set.convention.diffuse_weight;
+  kernel.robust_scale = robust_scale;
   for (int i = 0; i < threads_; ++i) {
     workers_.push_back(std::make_unique<Worker>(kernel, unknowns.views()));
   }
@@ -256,7 +269,7 @@ void TexelLattice::AddProducts(const Texel& texel, const Eigen::VectorXd& x,
         by_views.emplace_back(ViewUnknowns::light(v) + i, residual.by_rendered * radiance[c].v[i]);
       }
       by_views.emplace_back(unknowns_.ambient() + c,
-                            residual.by_rendered * view.exposure * unknowns_.irradiance(v) *
+                            residual.by_rendered * view.exposure * unknowns_.irradiance() *
                                 AmbientLobe(svbrdf, set_.convention.diffuse_weight, c));
       by_views.emplace_back(unknowns_.exposure(v), residual.by_rendered * radiance[c].a);
       for (int i = 0; unknowns_.registration() && i < 4; ++i) {

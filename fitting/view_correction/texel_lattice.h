@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -14,9 +13,9 @@ namespace glint {
 
 class TexelLattice {
  public:
-  // About `texels` of the set's, each starting from `maps`. All must outlive this.
+  // About `texels` of the set's, each starting from `maps`. `set` and `unknowns` must outlive this.
   TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps, const ViewUnknowns& unknowns,
-               int texels, int threads);
+               int texels, double robust_scale, int threads);
   ~TexelLattice();
 
   int size() const;
@@ -35,7 +34,7 @@ class TexelLattice {
 
   // The normal equations of the views alone, the texels following: their Schur complement
   // (Kaufman's form of variable projection). Keeps how the texels follow for Follow() and
-  // MeanSlopeBy().
+  // MeanSlopeByViews().
   NormalEquations Reduce(const Eigen::VectorXd& x, const Values& values);
   // The texels after `step` of the views from where Reduce() was called, to first order.
   Values Follow(const Eigen::VectorXd& step, const Values& values) const;

@@ -44,7 +44,7 @@ class Adjustment {
              bool registration, int texels, int threads)
       : options_(options),
         unknowns_(set, registration),
-        lattice_(set, maps, unknowns_, texels, threads),
+        lattice_(set, maps, unknowns_, texels, options.robust_scale, threads),
         expected_(options.expected),
         x_(VectorXd::Zero(unknowns_.size())) {}
   Adjustment(const Adjustment&) = delete;  // its parts refer to each other
@@ -269,6 +269,7 @@ std::string ViewCorrectionOptions::Check() const {
   if (!(registration_gain >= 0 && registration_gain < 1)) {
     return "the gain asked of displacements must be from 0 to 1";
   }
+  if (!above_zero(robust_scale)) return "the robust scale must be above 0";
   if (texels < 16 || last_texels < 16) return "at least 16 texels are needed";
   if (iterations < 1) return "at least one iteration is needed";
   return "";
@@ -307,12 +308,14 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
   return result;
 }
 
-PhotographSet Corrected(const PhotographSet& set, const std::vector<ViewCorrection>& corrections,
+PhotographSet Corrected(PhotographSet set, const std::vector<ViewCorrection>& corrections,
                         int threads) {
-  PhotographSet corrected = set;
+  if (corrections.size() != set.photographs.size()) {
+    throw std::invalid_argument("view correction: as many corrections as photographs are needed");
+  }
   ForEachPiece(static_cast<int>(set.photographs.size()), threads, [&](int piece) {
     const size_t i = static_cast<size_t>(piece);
-    Photograph& photograph = corrected.photographs[i];
+    Photograph& photograph = set.photographs[i];
     const ViewCorrection& c = corrections[i];
     for (size_t k = 0; k < 3; ++k) {
       photograph.view.light_in_sample_mm[k] += c.light_offset_mm[k];
@@ -323,7 +326,7 @@ PhotographSet Corrected(const PhotographSet& set, const std::vector<ViewCorrecti
     ShiftPicture(c.shifts, set.plane.width, set.plane.height, &photograph.rgb);
     ShiftMask(c.shifts, set.plane.width, set.plane.height, &photograph.mask);
   });
-  return corrected;
+  return set;
 }
 
 std::vector<ViewCorrection> AtSize(std::vector<ViewCorrection> corrections, int from_width,

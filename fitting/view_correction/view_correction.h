@@ -57,9 +57,10 @@ struct ViewCorrectionOptions {
   double evidence = 20;
   // … but as so many where what is left looks like noise, in which the channels have no share.
   double noise_evidence = 200;
-  int texels = 1024;       // of the lattice, about …
-  int last_texels = 2304;  // … and of the one that the last descent is made with
-  int iterations = 25;     // Levenberg–Marquardt steps of one descent, at most
+  int texels = 1024;          // of the lattice, about …
+  int last_texels = 2304;     // … and of the one that the last descent is made with
+  int iterations = 25;        // Levenberg–Marquardt steps of one descent, at most
+  double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
   // Displacements that lower the squared residuals by a smaller share are not taken: looking
   // pictures up anew costs sharpness.
   double registration_gain = 0.1;
@@ -91,7 +92,8 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
                                   const std::vector<ViewCorrection>& known = {});
 
 // The photographs as the corrections say: lights moved, ambient added, pictures looked up anew.
-PhotographSet Corrected(const PhotographSet& set, const std::vector<ViewCorrection>& corrections,
+// Throws std::invalid_argument unless there is a correction for every photograph.
+PhotographSet Corrected(PhotographSet set, const std::vector<ViewCorrection>& corrections,
                         int threads);
 
 // The same corrections for pictures of another size.

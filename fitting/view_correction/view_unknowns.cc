@@ -15,8 +15,8 @@ ViewUnknowns::ViewUnknowns(const PhotographSet& set, bool registration)
     light_distance_mm_.push_back(std::hypot(light[0], light[1], light[2]));
     const TexelGeometry<double> centre =
         TexelGeometryInView(photograph.view, set.convention.falloff, 0.0, 0.0);
-    irradiance_.push_back((centre.irradiance[0] + centre.irradiance[1] + centre.irradiance[2]) /
-                          (3 * photograph.view.exposure));
+    irradiance_ += (centre.irradiance[0] + centre.irradiance[1] + centre.irradiance[2]) /
+                   (3 * photograph.view.exposure * static_cast<double>(set.photographs.size()));
   }
 }
 
@@ -37,7 +37,7 @@ double ViewUnknowns::LeastAmbient(int channel) const {
   double least = -1e9;
   for (int v = 0; v < views(); ++v) {
     const Vec3d& ambient_rgb = set_.photographs[At(v)].view.ambient_rgb;
-    least = std::max(least, -ambient_rgb[static_cast<size_t>(channel)] / irradiance(v));
+    least = std::max(least, -ambient_rgb[static_cast<size_t>(channel)] / irradiance_);
   }
   return least;
 }
@@ -47,7 +47,7 @@ View ViewUnknowns::ViewAt(int view, const Eigen::VectorXd& unknowns) const {
   for (int i = 0; i < 3; ++i) {
     const size_t k = static_cast<size_t>(i);
     moved.light_in_sample_mm[k] += unknowns[light(view) + i] * light_distance_mm(view);
-    moved.ambient_rgb[k] += unknowns[ambient() + i] * irradiance(view);
+    moved.ambient_rgb[k] += unknowns[ambient() + i] * irradiance_;
   }
   moved.exposure *= std::exp(unknowns[exposure(view)]);
   return moved;
@@ -58,7 +58,7 @@ ViewCorrection ViewUnknowns::CorrectionAt(int view, const Eigen::VectorXd& unkno
   for (int i = 0; i < 3; ++i) {
     const size_t k = static_cast<size_t>(i);
     correction.light_offset_mm[k] = unknowns[light(view) + i] * light_distance_mm(view);
-    correction.ambient_rgb[k] = unknowns[ambient() + i] * irradiance(view);
+    correction.ambient_rgb[k] = unknowns[ambient() + i] * irradiance_;
   }
   correction.exposure = std::exp(unknowns[exposure(view)]);
   for (int i = 0; registration_ && i < 4; ++i) {
@@ -75,7 +75,7 @@ Eigen::VectorXd ViewUnknowns::Of(const std::vector<ViewCorrection>& corrections)
     for (int i = 0; i < 3; ++i) {
       const size_t k = static_cast<size_t>(i);
       unknowns[light(v) + i] = correction.light_offset_mm[k] / light_distance_mm(v);
-      unknowns[ambient() + i] = correction.ambient_rgb[k] / irradiance(v);
+      unknowns[ambient() + i] = correction.ambient_rgb[k] / irradiance_;
     }
     unknowns.segment<3>(shared_light()) +=
         LightFrame(v).transpose() * unknowns.segment<3>(light(v)) / views();

@@ -1,7 +1,8 @@
 // What is unknown about the views, as one vector. By the view: the light's offset by the light's
 // distance (3), the logarithm of the exposure, and the displacement of the picture's corners
 // (columns 4, rows 4; last of all, and only with registration). For all views: what the lights'
-// offsets share, in the frame of each light (3), and the ambient irradiance by the flash's (3).
+// offsets share, in the frame of each light (3), and the ambient irradiance by the flash's mean
+// (3).
 #pragma once
 
 #include <Eigen/Core>
@@ -27,8 +28,9 @@ class ViewUnknowns {
   int shift(int view) const { return first_shift() + 8 * view; }
 
   double light_distance_mm(int view) const { return light_distance_mm_[At(view)]; }
-  // Of the flash at the sample's centre, unexposed, mean of the channels.
-  double irradiance(int view) const { return irradiance_[At(view)]; }
+  // Of the flash at the sample's centre, unexposed, mean of channels and views: what the ambient
+  // light, which is the same for all views, is measured by.
+  double irradiance() const { return irradiance_; }
   // Toward the light as it was said to be.
   Vec3d LightDirection(int view) const;
   // The least turn that takes z there: what is beside an upright camera's lens, in the sample's
@@ -47,7 +49,8 @@ class ViewUnknowns {
 
   const PhotographSet& set_;
   bool registration_;
-  std::vector<double> light_distance_mm_, irradiance_;
+  std::vector<double> light_distance_mm_;
+  double irradiance_ = 0;
 };
 
 }  // namespace glint

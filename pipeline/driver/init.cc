@@ -196,7 +196,8 @@ Surroundings WithoutBoard() {
   return {
       "[calib]\nposes = \"colmap\"                 # cameras from the photographs alone; or "
       "\"colmap:DIR\", a model\n\n"
-      "[poses]                          # one length is needed: take the comment off one\n"
+      "[poses]                          # one length is needed: photo and corners_px, or "
+      "height_mm\n"
       "# photo = \"photos/IMG_0001.jpg\"  # the pixels below are of this photograph\n"
       "# corners_px = [[441, 275], [732, 288], [720, 579], [429, 567]]  # the sample's: top "
       "left, top right, bottom right, bottom left\n"
@@ -239,16 +240,19 @@ std::string InitResult::BriefReport() const {
   if (photos == 0) {
     text += "put the photographs into " + (file.parent_path() / "photos").string() + "\n";
   }
-  return text + "check the measures in it, then: glint run " + folder + "\n";
+  text += has_board ? "check the measures in it" : "say in [poses] how large the sample is";
+  return text + ", then: glint run " + folder + "\n";
 }
 
 std::string CaptureText(const InitOptions& options, InitResult* result) {
   RequireCount(options.light_offset_mm, 3, "light-offset-mm", "X,Y,Z");
   CheckEncoding(options.encoding);
-  const std::string board_photos =
-      Patterns(options.folder, "board", IsPhoto, &result->board_photos);
-  const bool has_board = options.board != "none";
-  const Surroundings around = has_board ? WithBoard(options, board_photos) : WithoutBoard();
+  result->has_board = options.board != "none";
+  std::string board_photos;
+  if (result->has_board) {
+    board_photos = Patterns(options.folder, "board", IsPhoto, &result->board_photos);
+  }
+  const Surroundings around = result->has_board ? WithBoard(options, board_photos) : WithoutBoard();
   if (!options.sample_mm.empty()) CheckSampleSize(options.sample_mm);
   const std::vector<double>& size_mm =
       options.sample_mm.empty() ? around.sample_mm : options.sample_mm;
@@ -267,7 +271,7 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   text += "# power = 30000                  # radiance times mm^2; left out: estimated\n";
   text += "# ambient = [0, 0, 0]\n\n";
   text += "# Options of the stages, as on their command lines (glint help fit):\n";
-  text += has_board ? "# [calib]\n" : "";
+  text += result->has_board ? "# [calib]\n" : "";
   text += "# [rectify]\n# [fit]\n# [refine]\n# [export]\n# [report]\n";
   return text;
 }

@@ -29,6 +29,7 @@ struct InitOptions {
 struct InitResult {
   std::filesystem::path file;
   size_t photos = 0, board_photos = 0;
+  bool has_board = true;
   std::string BriefReport() const;
 };
 

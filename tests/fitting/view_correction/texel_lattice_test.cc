@@ -40,7 +40,7 @@ struct Case {
       }
     }
     unknowns = std::make_unique<ViewUnknowns>(disturbed.set, registration);
-    lattice = std::make_unique<TexelLattice>(disturbed.set, disturbed.maps, *unknowns, 36, 1);
+    lattice = std::make_unique<TexelLattice>(disturbed.set, disturbed.maps, *unknowns, 36, 0.1, 1);
     lattice->SetHold(hold);
     x = SomeCorrections(*unknowns);
     values = lattice->Starts();
@@ -95,7 +95,7 @@ TEST(TexelLattice, AnyNumberOfTexelsIsReduced) {
   const ViewUnknowns unknowns(disturbed.set, true);
   const VectorXd x = VectorXd::Zero(unknowns.size());
   for (const int texels : {1, 4, 36, 144, 3600}) {
-    TexelLattice lattice(disturbed.set, disturbed.maps, unknowns, texels, 2);
+    TexelLattice lattice(disturbed.set, disturbed.maps, unknowns, texels, 0.1, 2);
     const NormalEquations equations = lattice.Reduce(x, lattice.Starts());
     EXPECT_TRUE(equations.hessian.allFinite()) << lattice.size();
     EXPECT_GT(equations.gradient.norm(), 0) << lattice.size();

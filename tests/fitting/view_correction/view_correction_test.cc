@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "tests/fitting/view_correction/disturbed_set.h"
@@ -98,6 +100,37 @@ TEST(CorrectViews, FindsTheAmbientLight) {
     EXPECT_NEAR(found.views[0].ambient_rgb[c], 3.14159 * test::kAmbientShare, 0.035);
     EXPECT_EQ(found.views[0].ambient_rgb[c], found.views[7].ambient_rgb[c]);
   }
+}
+
+// Phones are now nearer, now farther; the room is not.
+TEST(CorrectViews, AmbientLightIsTheSameForViewsFromAnyDistance) {
+  DisturbedSet disturbed = Disturb(6, 0.05, 0, true);
+  disturbed.set.convention.falloff = LightFalloff::kInverseSquare;
+  for (size_t i = 0; i < disturbed.set.photographs.size(); ++i) {
+    View& view = disturbed.set.photographs[i].view;
+    for (double& power : view.light_rgb) power *= 5 + static_cast<double>(i);
+    view.light_in_sample_mm[2] *= 1 + 0.1 * static_cast<double>(i);
+  }
+  const ViewCorrectionResult found = Correct(disturbed, Few());
+  EXPECT_NE(found.views[0].ambient_rgb, (Vec3d{0, 0, 0}));
+  for (const ViewCorrection& c : found.views) {
+    EXPECT_EQ(c.ambient_rgb, found.views[0].ambient_rgb);
+  }
+}
+
+TEST(CorrectViews, WhatIsMaskedMayBeAnything) {
+  DisturbedSet disturbed = Disturb(12, 0.1, 0, false);
+  Photograph& photograph = disturbed.set.photographs[4];
+  const size_t texels = photograph.mask.size();
+  for (size_t k = 0; k < texels; ++k) {
+    if (k % 64 < 50) continue;
+    photograph.mask[k] = 0;
+    for (size_t c = 0; c < 3; ++c) {
+      photograph.rgb[c * texels + k] = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  const ViewCorrectionResult found = Correct(disturbed, Few());
+  EXPECT_LT(LightErrorDeg(disturbed, found.views), 1.5);
 }
 
 TEST(CorrectViews, FindsAnExposureThatIsOffWhereItMay) {
