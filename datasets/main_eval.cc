@@ -100,7 +100,7 @@ int RunViews(int argc, char** argv, const ProgramInfo& info) {
     };
     ViewError mean;
     for (const RectifiedView& view : views) {
-      const RectifiedImage photograph = ReadRectifiedImage(set, view);
+      const RectifiedImage photograph = PhotographOfFit(fit, set, view);
       const std::vector<float> rendered = RenderFit(fit, set, view, common.threads);
       const ViewError error = CompareView(rendered, photograph, view.ldr);
       line(view.name, view.photo, error);

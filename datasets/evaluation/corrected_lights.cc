@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/contract/errors.h"
+#include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/manifest.h"
 
 namespace glint {
@@ -22,16 +22,13 @@ double AngleDeg(const Vec3d& a, const Vec3d& b) {
 
 LightAngles CompareLights(const PlannedViews& planned, const std::filesystem::path& fit_manifest) {
   const Manifest manifest = ReadManifest(fit_manifest);
-  const Json corrections = manifest.data.value("corrections", Json::array());
+  const auto corrections = ReadCorrections(fit_manifest, manifest.data);
   LightAngles angles;
   for (size_t i = 0; i < planned.views.size(); ++i) {
-    Vec3d light = planned.views[i].light_in_sample_mm;
-    for (const Json& correction : corrections) {
-      if (RequireString(fit_manifest, correction, "corrections[]", "name") != ViewName(i)) continue;
-      const auto offset_mm =
-          RequireNumbers(fit_manifest, correction, "corrections[]", "light_offset_mm", 3);
-      for (size_t k = 0; k < 3; ++k) light[k] += offset_mm[k];
-    }
+    const auto found = corrections.find(ViewName(i));
+    const View view = found == corrections.end() ? planned.views[i]
+                                                 : CorrectedView(planned.views[i], found->second);
+    const Vec3d& light = view.light_in_sample_mm;
     const double off_deg = AngleDeg(light, planned.taken[i].light_in_sample_mm);
     angles.mean_deg += off_deg / static_cast<double>(planned.views.size());
     angles.worst_deg = std::max(angles.worst_deg, off_deg);

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fitting/photographs/picture_shift.h"
 #include "fitting/render/renderer.h"
+#include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/manifest.h"
@@ -70,7 +72,20 @@ FittedMaps ReadFittedMaps(const fs::path& path) {
   fit.maps = ReadSvbrdf(file.parent_path() / "svbrdf.exr", &fit.convention);
   fit.light_scale_rgb =
       OptionalNumbers(file, manifest.data, "light_scale_rgb", fit.light_scale_rgb);
+  fit.corrections = ReadCorrections(file, manifest.data);
   return fit;
+}
+
+RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
+                               const RectifiedView& view) {
+  RectifiedImage photograph = ReadRectifiedImage(set, view);
+  const auto found = fit.corrections.find(view.name);
+  if (found != fit.corrections.end() && found->second.shifts.any()) {
+    const CornerShifts& shifts = found->second.shifts;
+    ShiftPicture(shifts, set.plane.width, set.plane.height, &photograph.rgb);
+    ShiftMask(shifts, set.plane.width, set.plane.height, &photograph.mask);
+  }
+  return photograph;
 }
 
 std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
@@ -81,7 +96,8 @@ std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
   // The maps are of the fit's diffuse weight; light and texels are the set's.
   ReflectanceConvention convention = set.convention;
   convention.diffuse_weight = fit.convention.diffuse_weight;
-  View lit = view.view;
+  const auto found = fit.corrections.find(view.name);
+  View lit = found == fit.corrections.end() ? view.view : CorrectedView(view.view, found->second);
   for (int c = 0; c < 3; ++c) {
     lit.light_rgb[c] *= fit.light_scale_rgb[c];
   }

@@ -3,11 +3,13 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/view_correction/view_correction.h"
 #include "pipeline/contract/rectified_set.h"
 
 namespace glint {
@@ -25,18 +27,24 @@ struct ViewError {
 // differ.
 ViewError CompareView(std::span<const float> rendered, const RectifiedImage& photograph, bool ldr);
 
-// The result of fit or refine: maps, and what the fit found for the light's power.
+// The result of fit or refine: maps, and what was found about the photographs.
 struct FittedMaps {
   SvbrdfMaps maps;
   ReflectanceConvention convention;
-  std::array<double, 3> light_scale_rgb{1, 1, 1};  // multiplies every light_rgb
+  std::array<double, 3> light_scale_rgb{1, 1, 1};     // multiplies every light_rgb
+  std::map<std::string, ViewCorrection> corrections;  // by view, of those that were refined from
 };
 
 // `path`: manifest.json of fit or refine, the folder that holds it, or svbrdf.exr alone (then the
-// scale is 1). Throws UserError.
+// scale is 1 and nothing is corrected). Throws UserError.
 FittedMaps ReadFittedMaps(const std::filesystem::path& path);
 
-// Renders `view` of `set` from the fit, at the set's size.
+// The photograph of `view`, looked up where the fit found that it belongs. Throws as
+// ReadRectifiedImage() does.
+RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
+                               const RectifiedView& view);
+
+// Renders `view` of `set`, as the fit found it to be lit, from the fit, at the set's size.
 std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
                              const RectifiedView& view, int threads);
 

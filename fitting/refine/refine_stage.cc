@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "fitting/reflectance/brdf.h"
+#include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/progress.h"
@@ -96,17 +97,7 @@ void AddCorrections(const CorrectionResult& found, const RectifiedSet& set,
     const ViewCorrection& c = found.corrections[i];
     turned_deg += LightTurnedDeg(views[i].view, c) / static_cast<double>(views.size());
     shifted += MeanShift(c.shifts) / static_cast<double>(views.size());
-    Json columns = Json::array(), rows = Json::array();
-    for (int k = 0; k < 4; ++k) {
-      columns.push_back(c.shifts.column[k]);
-      rows.push_back(c.shifts.row[k]);
-    }
-    entries.push_back({{"name", views[i].name},
-                       {"light_offset_mm", c.light_offset_mm},
-                       {"ambient_rgb", c.ambient_rgb},
-                       {"exposure", c.exposure},
-                       {"corner_columns_texel", columns},
-                       {"corner_rows_texel", rows}});
+    entries.push_back(JsonOf(views[i].name, c));
   }
   result->data["corrections"] = entries;
   const Vec3d& ambient = found.corrections[0].ambient_rgb;

@@ -308,6 +308,15 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
   return result;
 }
 
+View CorrectedView(View view, const ViewCorrection& correction) {
+  for (size_t k = 0; k < 3; ++k) {
+    view.light_in_sample_mm[k] += correction.light_offset_mm[k];
+    view.ambient_rgb[k] += correction.ambient_rgb[k];
+  }
+  view.exposure *= correction.exposure;
+  return view;
+}
+
 PhotographSet Corrected(PhotographSet set, const std::vector<ViewCorrection>& corrections,
                         int threads) {
   if (corrections.size() != set.photographs.size()) {
@@ -317,11 +326,7 @@ PhotographSet Corrected(PhotographSet set, const std::vector<ViewCorrection>& co
     const size_t i = static_cast<size_t>(piece);
     Photograph& photograph = set.photographs[i];
     const ViewCorrection& c = corrections[i];
-    for (size_t k = 0; k < 3; ++k) {
-      photograph.view.light_in_sample_mm[k] += c.light_offset_mm[k];
-      photograph.view.ambient_rgb[k] += c.ambient_rgb[k];
-    }
-    photograph.view.exposure *= c.exposure;
+    photograph.view = CorrectedView(photograph.view, c);
     if (!c.shifts.any()) return;
     ShiftPicture(c.shifts, set.plane.width, set.plane.height, &photograph.rgb);
     ShiftMask(c.shifts, set.plane.width, set.plane.height, &photograph.mask);

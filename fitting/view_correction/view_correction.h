@@ -91,6 +91,9 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
                                   const ViewCorrectionOptions& options, int threads,
                                   const std::vector<ViewCorrection>& known = {});
 
+// The view as the correction says.
+View CorrectedView(View view, const ViewCorrection& correction);
+
 // The photographs as the corrections say: lights moved, ambient added, pictures looked up anew.
 // Throws std::invalid_argument unless there is a correction for every photograph.
 PhotographSet Corrected(PhotographSet set, const std::vector<ViewCorrection>& corrections,

@@ -158,7 +158,7 @@ std::string ViewsSection(const ReportInput& input, const ReportOptions& options,
     int count = 0;
   } means[2];
   for (const RectifiedView& view : input.set.views) {
-    const RectifiedImage photograph = ReadRectifiedImage(input.set, view);
+    const RectifiedImage photograph = PhotographOfFit(input.fit, input.set, view);
     const std::vector<float> rendered = RenderFit(input.fit, input.set, view, threads);
     const ViewError error = CompareView(rendered, photograph, view.ldr);
     const bool used = Used(input, view);

@@ -7,6 +7,7 @@
 
 #include "datasets/procedural/material.h"
 #include "datasets/synth/view_set.h"
+#include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/hash.h"
@@ -99,6 +100,34 @@ TEST_F(FittedMapsTest, LightScaleMultipliesTheRendering) {
   for (size_t i = 0; i < doubled.size(); ++i) {
     ASSERT_NEAR(doubled[i], 2 * image.rgb[i], 1e-5 * (1 + image.rgb[i]));
   }
+}
+
+TEST_F(FittedMapsTest, ViewsAreComparedAsTheyWereCorrected) {
+  ViewCorrection correction;
+  correction.exposure = 2;
+  std::fill_n(correction.shifts.column, 4, 1.0);  // one texel to the right
+  const std::string& name = set_.views[0].name;
+  const FittedMaps fit = ReadFittedMaps(
+      WriteFit("refine", {{"corrections", Json::array({JsonOf(name, correction)})}}));
+  const RectifiedImage seen = ReadRectifiedImage(set_, set_.views[0]);
+  const auto doubled = RenderFit(fit, set_, set_.views[0], 1);
+  const RectifiedImage moved = PhotographOfFit(fit, set_, set_.views[0]);
+  for (size_t i = 0; i < doubled.size(); ++i) {
+    ASSERT_NEAR(doubled[i], 2 * seen.rgb[i], 1e-5 * (1 + seen.rgb[i]));
+    if (i % 24 == 23) continue;
+    ASSERT_NEAR(moved.rgb[i], seen.rgb[i + 1], 1e-5 * (1 + seen.rgb[i + 1]));
+  }
+  EXPECT_EQ(ErrorOf(fit).mse, 0);  // the other view has no correction
+  EXPECT_EQ(PhotographOfFit(fit, set_, set_.views[1]).rgb,
+            ReadRectifiedImage(set_, set_.views[1]).rgb);
+}
+
+TEST_F(FittedMapsTest, BrokenCorrectionsAreUserErrors) {
+  EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"corrections", 3}})), UserError);
+  Json entry = JsonOf("view_000", {});
+  entry["light_offset_mm"] = "far";
+  EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"corrections", Json::array({entry})}})),
+               UserError);
 }
 
 TEST_F(FittedMapsTest, OtherStagesAndBrokenScalesAreUserErrors) {
