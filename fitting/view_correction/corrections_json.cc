@@ -36,8 +36,7 @@ std::map<std::string, ViewCorrection> ReadCorrections(const std::filesystem::pat
     const auto light = numbers("light_offset_mm", 3), ambient = numbers("ambient_rgb", 3);
     std::copy(light.begin(), light.end(), correction.light_offset_mm.begin());
     std::copy(ambient.begin(), ambient.end(), correction.ambient_rgb.begin());
-    correction.exposure =
-        RequireNumber(manifest_file, entry, "data.corrections[]", "exposure");
+    correction.exposure = RequireNumber(manifest_file, entry, "data.corrections[]", "exposure");
     const auto columns = numbers("corner_columns_texel", 4), rows = numbers("corner_rows_texel", 4);
     std::copy(columns.begin(), columns.end(), correction.shifts.column);
     std::copy(rows.begin(), rows.end(), correction.shifts.row);
