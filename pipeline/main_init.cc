@@ -41,7 +41,8 @@ int main(int argc, char** argv) {
       {"glint-init", "Writes a commented capture.toml, never over one that is there.",
        GLINT_VERSION,
        "A board.json in the folder (glint board) is taken for the board; else the options describe "
-       "it.\nExamples:\n  glint init wood --squares 12,12 --square-mm 15 --sample-mm 100,100\n"
+       "it, or say that there is none.\nExamples:\n  glint init wood --squares 12,12 --square-mm "
+       "15 --sample-mm 100,100\n"
        "  glint init wood --list"},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         if (list) {

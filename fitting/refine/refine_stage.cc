@@ -113,6 +113,16 @@ void AddCorrections(const CorrectionResult& found, const RectifiedSet& set,
                                         {"ambient_of_flash", room / flash}});
 }
 
+CorrectionResult CorrectViewsWithBar(const PhotographSet& photographs, const SvbrdfMaps& maps,
+                                     const RefineStageOptions& options, int threads) {
+  std::unique_ptr<Progress> bar;
+  return FindCorrections(photographs, maps, options.refine, options.correction, threads,
+                         [&](std::int64_t done, std::int64_t total) {
+                           if (!bar) bar = std::make_unique<Progress>("views", total);
+                           bar->Set(done);
+                         });
+}
+
 Image ConfidenceImage(const RefineResult& result) {
   Image image(result.maps.width, result.maps.height, kConfidenceChannels);
   image.samples = result.confidence;
@@ -187,15 +197,7 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
   const auto began = std::chrono::steady_clock::now();
   RefineResult refined;
   RefineStageResult result;
-  {
-    std::unique_ptr<Progress> bar;
-    result.correction = FindCorrections(photographs, maps, options.refine, options.correction,
-                                        threads, [&](std::int64_t done, std::int64_t total) {
-                                          if (!bar)
-                                            bar = std::make_unique<Progress>("views", total);
-                                          bar->Set(done);
-                                        });
-  }
+  result.correction = CorrectViewsWithBar(photographs, maps, options, threads);
   if (result.correction.taken) {
     photographs = Corrected(std::move(photographs), result.correction.corrections, threads);
   }

@@ -149,15 +149,16 @@ TexelGeometry<T> MakeTexelGeometry(const T light[3], const T camera[3], const T 
   return geometry;
 }
 
-// Geometry of the texel at (x_mm, y_mm, 0) in the sample frame.
+// Geometry of the texel at (x_mm, y_mm, 0) in the sample frame, with the light of `view` moved to
+// `light_in_sample_mm`, which may carry derivatives.
 template <class T>
-TexelGeometry<T> TexelGeometryInView(const View& view, LightFalloff falloff, const T& x_mm,
-                                     const T& y_mm) {
+TexelGeometry<T> TexelGeometryLitFrom(const View& view, LightFalloff falloff,
+                                      const T light_in_sample_mm[3], const T& x_mm, const T& y_mm) {
   using std::sqrt;
   const T position[3] = {x_mm, y_mm, T(0)};
   T light[3], camera[3], irradiance[3], ambient[3];
   for (int i = 0; i < 3; ++i) {
-    light[i] = T(view.light_in_sample_mm[i]) - position[i];
+    light[i] = light_in_sample_mm[i] - position[i];
     camera[i] = T(view.camera_in_sample_mm[i]) - position[i];
   }
   const T light_inverse = T(1) / sqrt(Dot(light, light));
@@ -171,6 +172,14 @@ TexelGeometry<T> TexelGeometryInView(const View& view, LightFalloff falloff, con
     ambient[i] = T(view.exposure * view.ambient_rgb[i]);
   }
   return MakeTexelGeometry(light, camera, irradiance, ambient);
+}
+
+template <class T>
+TexelGeometry<T> TexelGeometryInView(const View& view, LightFalloff falloff, const T& x_mm,
+                                     const T& y_mm) {
+  const T light_in_sample_mm[3] = {T(view.light_in_sample_mm[0]), T(view.light_in_sample_mm[1]),
+                                   T(view.light_in_sample_mm[2])};
+  return TexelGeometryLitFrom(view, falloff, light_in_sample_mm, x_mm, y_mm);
 }
 
 }  // namespace glint

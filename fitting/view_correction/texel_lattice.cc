@@ -47,30 +47,19 @@ void ShadeByLight(const TexelSvbrdf<double>& svbrdf, const View& view,
                   const ReflectanceConvention& convention, double offset_mm, double x_mm,
                   double y_mm, Jet radiance[3]) {
   TexelSvbrdf<Jet> constant;
-  Jet light[3], camera[3], irradiance[3], ambient[3];
-  const double position[3] = {x_mm, y_mm, 0};
+  Jet light_in_sample_mm[3];
   for (int i = 0; i < 3; ++i) {
-    const size_t axis = static_cast<size_t>(i);
     constant.normal[i] = Jet(svbrdf.normal[i]);
     constant.diffuse[i] = Jet(svbrdf.diffuse[i]);
     constant.specular[i] = Jet(svbrdf.specular[i]);
-    light[i] = Jet(view.light_in_sample_mm[axis] - position[i]);
-    light[i].v[i] = offset_mm;
-    camera[i] = Jet(view.camera_in_sample_mm[axis] - position[i]);
-    ambient[i] = Jet(view.exposure * view.ambient_rgb[axis]);
+    light_in_sample_mm[i] = Jet(view.light_in_sample_mm[static_cast<size_t>(i)]);
+    light_in_sample_mm[i].v[i] = offset_mm;
   }
   constant.roughness = Jet(svbrdf.roughness);
-  const Jet light_inverse = 1.0 / sqrt(Dot(light, light));
-  const Jet camera_inverse = 1.0 / sqrt(Dot(camera, camera));
-  const Jet attenuation =
-      convention.falloff == LightFalloff::kInverseSquare ? light_inverse * light_inverse : Jet(1.0);
-  for (int i = 0; i < 3; ++i) {
-    light[i] *= light_inverse;
-    camera[i] *= camera_inverse;
-    irradiance[i] = view.exposure * view.light_rgb[static_cast<size_t>(i)] * attenuation;
-  }
-  ShadeRadiance(constant, MakeTexelGeometry(light, camera, irradiance, ambient),
-                convention.diffuse_weight, radiance);
+  ShadeRadiance(
+      constant,
+      TexelGeometryLitFrom(view, convention.falloff, light_in_sample_mm, Jet(x_mm), Jet(y_mm)),
+      convention.diffuse_weight, radiance);
 }
 
 // How the residual of texel_kernel.h depends on the radiances that it compares.

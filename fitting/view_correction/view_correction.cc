@@ -52,8 +52,8 @@ class Adjustment {
 
   // Residuals expected, and as how many a view's count.
   void Weigh(double sigma, double evidence);
-  // From where it stands. Returns the steps tried.
-  int Descend(double tolerance);
+  // From where it stands, until a step gains less than `tolerance` of the cost.
+  void Descend(double tolerance);
   // Expects offsets like those found.
   void Learn();
   void BeginWith(const std::vector<ViewCorrection>& known) { MoveTo(unknowns_.Of(known)); }
@@ -163,13 +163,11 @@ VectorXd Adjustment::Step(const NormalEquations& equations, double damping) cons
   return to - x_;
 }
 
-int Adjustment::Descend(double tolerance) {
+void Adjustment::Descend(double tolerance) {
   double total = weight_ * cost_ + HoldCost(x_, values_);
   double damping = 1e-3;
   std::unique_ptr<NormalEquations> equations;
-  int steps = 0;
-  while (steps < options_.iterations && damping < kMostDamping) {
-    ++steps;
+  for (int i = 0; i < options_.iterations && damping < kMostDamping; ++i) {
     if (!equations) equations = std::make_unique<NormalEquations>(Equations());
     const VectorXd step = Step(*equations, damping);
     if (!step.allFinite()) break;
@@ -189,7 +187,6 @@ int Adjustment::Descend(double tolerance) {
     damping = std::max(0.2 * damping, 1e-7);
     if (gain < tolerance) break;
   }
-  return steps;
 }
 
 std::vector<ViewCorrection> Adjustment::Corrections() const {
@@ -223,14 +220,12 @@ ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
   const bool noise = fine->SharedNoise() < kLooksLikeNoise;
   fine->Weigh(std::max(kLeastSigma, fine->residual_rms()),
               noise ? options.noise_evidence : options.evidence);
+  fine->Descend(kLastTolerance);
   ViewCorrectionResult result;
-  result.iterations = fine->Descend(kLastTolerance);
   result.cost_before = fine->CostUncorrected();
   result.cost_after = fine->cost();
   result.gain =
       (result.cost_before - result.cost_after) / (result.cost_before + fine->RoundingCost());
-  result.residual_rms = fine->residual_rms();
-  result.shared_noise = fine->SharedNoise();
   result.views = fine->Corrections();
   return result;
 }
@@ -293,17 +288,15 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
   result.views.resize(set.photographs.size());
   if (coarse.empty()) return result;
   coarse.Weigh(kFirstSigma, options.evidence);
-  int iterations = 0;
   if (known.empty()) {
-    iterations += coarse.Descend(kFirstTolerance);
+    coarse.Descend(kFirstTolerance);
   } else {
     coarse.BeginWith(known);
   }
   coarse.Learn();
   coarse.Weigh(std::max(kLeastSigma, coarse.residual_rms()), options.evidence);
-  iterations += coarse.Descend(kSecondTolerance);
+  coarse.Descend(kSecondTolerance);
   result = Finish(set, maps, options, coarse, threads);
-  result.iterations += iterations;
   if (options.registration) CentreShifts(&result.views);
   return result;
 }

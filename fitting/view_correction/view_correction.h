@@ -77,9 +77,6 @@ struct ViewCorrectionResult {
   // Relative fall of the cost and of what rounding to 8 bits would add to it: where photographs are
   // explained better than that, nothing is gained.
   double gain = 0;
-  double residual_rms = 0;  // afterwards, log units
-  double shared_noise = 1;  // 1 to 3: how much of that the channels share (residual_noise.h)
-  int iterations = 0;       // of all descents
 };
 
 // `maps`: what the texels start from and are held to, as weakly as one more observation; of the
