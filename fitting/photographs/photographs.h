@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fitting/reflectance/convention.h"
+#include "fitting/reflectance/room_light.h"
 #include "fitting/reflectance/view.h"
 
 namespace glint {
@@ -20,6 +21,7 @@ struct PhotographSet {
   SamplePlane plane;
   ReflectanceConvention convention;
   bool light_power_known = true;  // false: light_rgb is a first guess up to one common factor
+  RoomLight room;                 // beside what each view has as ambient light
   std::vector<Photograph> photographs;
 
   // Empty: all is well; otherwise what is wrong (sizes, no photograph, no usable texel).

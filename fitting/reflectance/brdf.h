@@ -41,12 +41,13 @@ struct TexelSvbrdf {
 // One texel in one view. Make it with MakeTexelGeometry or TexelGeometryInView.
 template <class T>
 struct TexelGeometry {
-  T light[3];       // unit, texel to light
-  T camera[3];      // unit, texel to camera
-  T half[3];        // unit, between them
-  T fresnel;        // the power of two in F: depends on the directions only
-  T irradiance[3];  // exposure·E
-  T ambient[3];     // exposure·ambient
+  T light[3];             // unit, texel to light
+  T camera[3];            // unit, texel to camera
+  T half[3];              // unit, between them
+  T fresnel;              // the power of two in F: depends on the directions only
+  T irradiance[3];        // exposure·E
+  T ambient[3];           // exposure·ambient, as the diffuse lobe receives it …
+  T ambient_specular[3];  // … and as the specular one does: the same but under a RoomLight
 };
 
 template <class T>
@@ -99,10 +100,12 @@ T DiffuseLobe(const TexelSvbrdf<T>& texel, DiffuseWeight weight, int channel) {
   return weight == DiffuseWeight::kOne ? lobe : lobe * (T(1) - texel.specular[channel]);
 }
 
-// What is reflected of a uniform surround: radiance over irradiance, of one channel.
+// What is reflected of the surroundings, one channel of the radiance.
 template <class T>
-T AmbientLobe(const TexelSvbrdf<T>& texel, DiffuseWeight weight, int channel) {
-  return DiffuseLobe(texel, weight, channel) + texel.specular[channel] * T(kInversePi);
+T AmbientRadiance(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
+                  DiffuseWeight weight, int channel) {
+  return geometry.ambient[channel] * DiffuseLobe(texel, weight, channel) +
+         geometry.ambient_specular[channel] * texel.specular[channel] * T(kInversePi);
 }
 
 // The BRDF f, per channel [1/sr]. `geometry` needs its directions only.
@@ -124,7 +127,7 @@ void ShadeRadiance(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry
   EvaluateBrdf(texel, geometry, weight, radiance);
   for (int c = 0; c < 3; ++c) {
     radiance[c] = geometry.irradiance[c] * radiance[c] * n_dot_l +
-                  geometry.ambient[c] * AmbientLobe(texel, weight, c);
+                  AmbientRadiance(texel, geometry, weight, c);
   }
 }
 
@@ -143,7 +146,7 @@ TexelGeometry<T> MakeTexelGeometry(const T light[3], const T camera[3], const T 
     geometry.camera[i] = camera[i];
     geometry.half[i] = sum[i] * inverse;
     geometry.irradiance[i] = irradiance[i];
-    geometry.ambient[i] = ambient[i];
+    geometry.ambient[i] = geometry.ambient_specular[i] = ambient[i];
   }
   geometry.fresnel = FresnelWeight(ClampBelow(Dot(geometry.camera, geometry.half), kDotClamp));
   return geometry;

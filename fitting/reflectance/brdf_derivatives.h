@@ -96,10 +96,10 @@ void ShadeTexelCompact(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geom
     const T diffuse = DiffuseLobe(texel, weight, c);
     const T received = (irradiance * n_dot_l + geometry.ambient[c]) * T(kInversePi);
     radiance[c] = irradiance * (diffuse * n_dot_l + lobe.value * fresnel) +
-                  geometry.ambient[c] * AmbientLobe(texel, weight, c);
+                  AmbientRadiance(texel, geometry, weight, c);
     derivatives->diffuse[c] = received;
-    derivatives->specular[c] =
-        irradiance * lobe.value * (T(1) - geometry.fresnel) + geometry.ambient[c] * T(kInversePi);
+    derivatives->specular[c] = irradiance * lobe.value * (T(1) - geometry.fresnel) +
+                               geometry.ambient_specular[c] * T(kInversePi);
     if (weight == DiffuseWeight::kOneMinusSpecular) {
       derivatives->diffuse[c] *= T(1) - texel.specular[c];
       derivatives->specular[c] -= received * texel.diffuse[c];

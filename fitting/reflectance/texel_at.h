@@ -27,6 +27,7 @@ TexelGeometry<T> GeometryAs(const TexelGeometry<double>& from) {
     to.half[i] = T(from.half[i]);
     to.irradiance[i] = T(from.irradiance[i]);
     to.ambient[i] = T(from.ambient[i]);
+    to.ambient_specular[i] = T(from.ambient_specular[i]);
   }
   to.fresnel = T(from.fresnel);
   return to;

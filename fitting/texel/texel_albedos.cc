@@ -21,13 +21,15 @@ struct AlbedoSums {
   for (int v = 0; v < observations.padded_views(); v += kLanes) {
     const Lanes e = load(observations.plane(TexelObservations::kIrradiance + channel) + v);
     const Lanes ambient = load(observations.plane(TexelObservations::kAmbient + channel) + v);
+    const Lanes ambient_specular =
+        load(observations.plane(TexelObservations::kAmbientSpecular + channel) + v);
     const Lanes fresnel = load(observations.plane(TexelObservations::kFresnel) + v);
     const Lanes nl = load(rows.lobe(kNormalLight) + v);
     const Lanes s = load(rows.lobe(kLobe) + v);
     const Lanes w = load(inverse + v);
     const Lanes usable = load(rows.row(channel, KernelRows::kResidual) + v);
     const Lanes a = w * (e * nl + ambient) * kInversePi;
-    const Lanes b = w * (e * s * (1.0 - fresnel) + ambient * kInversePi);
+    const Lanes b = w * (e * s * (1.0 - fresnel) + ambient_specular * kInversePi);
     const Lanes y = usable - w * (e * s * fresnel + kLogOffset);
     aa += a * a;
     ab += a * b;

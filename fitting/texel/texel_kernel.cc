@@ -26,6 +26,8 @@ namespace {
   const double* __restrict irradiance =
       observations.plane(TexelObservations::kIrradiance + channel);
   const double* __restrict ambient = observations.plane(TexelObservations::kAmbient + channel);
+  const double* __restrict ambient_specular =
+      observations.plane(TexelObservations::kAmbientSpecular + channel);
   const double* __restrict target = observations.plane(TexelObservations::kLogTarget + channel);
   const double* __restrict ceiling = observations.plane(TexelObservations::kCeiling + channel);
   const double* __restrict weight = observations.plane(TexelObservations::kWeight);
@@ -48,7 +50,7 @@ namespace {
     const double e = irradiance[v];
     const double f = specular + (1.0 - specular) * fresnel[v];
     const double received = e * nl[v] + ambient[v];
-    const double surround = ambient[v] * kInversePi;  // as the specular part reflects it
+    const double surround = ambient_specular[v] * kInversePi;
     const double offset_radiance =
         lobe * received + e * f * s[v] + specular * surround + kLogOffset;
 

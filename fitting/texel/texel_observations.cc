@@ -34,6 +34,7 @@ void TexelObservations::Add(const TexelGeometry<double>& geometry, const double 
     plane(kHalfX + i)[v] = geometry.half[i];
     plane(kIrradiance + i)[v] = geometry.irradiance[i];
     plane(kAmbient + i)[v] = geometry.ambient[i];
+    plane(kAmbientSpecular + i)[v] = geometry.ambient_specular[i];
     plane(kLogTarget + i)[v] = radiance[i] + kLogOffset;
     plane(kCeiling + i)[v] = clipped[i] ? 0.0 : kNoCeiling;
   }

@@ -31,15 +31,16 @@ class TexelObservations {
     kHalfX,
     kHalfY,
     kHalfZ,
-    kFresnel,         // the power of two in F
-    kIrradiance,      // 3 planes: exposure·E
-    kAmbient = 13,    // 3 planes: exposure·ambient
-    kLogTarget = 16,  // 3 planes: log(I + 0.01)
-    kCeiling = 19,    // 3 planes: most the residual log(R + 0.01) − log(I + 0.01) can be; 0 where
-                      // the photograph clips, so that a brighter rendering satisfies it
-    kWeight = 22,     // square root of the weight of the view's squared residuals
-    kInverseTarget = 23,  // 3 planes: 1/(I + 0.01)
-    kPlanes = 26
+    kFresnel,               // the power of two in F
+    kIrradiance,            // 3 planes: exposure·E
+    kAmbient = 13,          // 3 planes: exposure·ambient, as the diffuse lobe receives it …
+    kAmbientSpecular = 16,  // … 3 planes: and as the specular one does
+    kLogTarget = 19,        // 3 planes: log(I + 0.01)
+    kCeiling = 22,  // 3 planes: most the residual log(R + 0.01) − log(I + 0.01) can be; 0 where
+                    // the photograph clips, so that a brighter rendering satisfies it
+    kWeight = 25,   // square root of the weight of the view's squared residuals
+    kInverseTarget = 26,  // 3 planes: 1/(I + 0.01)
+    kPlanes = 29
   };
 
   explicit TexelObservations(int most_views);

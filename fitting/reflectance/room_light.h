@@ -1,0 +1,65 @@
+// Light that reaches the sample from the room and not from the flash, and what a texel reflects of
+// it.
+//
+// Radiance over directions in real spherical harmonics about the sample's frame, in the usual order
+// (by degree l, then m from -l to l), scaled so that the mean of each term's square over all
+// directions is 1.
+//
+// Diffuse: the irradiance of the texel's plane has the terms of degree l times π, 2π/3, π/4, 0, ...
+// at the normal (Ramamoorthi and Hanrahan, "An efficient representation for irradiance environment
+// maps", SIGGRAPH 2001). Specular: the radiance from the mirrored direction, of degree l times the
+// lobe's integral seen from the front
+//   h_l = ∫ D·G1(cos 2θ)·P_l(cos 2θ)·cos θ dω   over half vectors, θ from the normal,
+// without Fresnel's rise toward grazing views, as the ambient term of brdf.h.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "fitting/reflectance/brdf.h"
+
+namespace glint {
+
+inline constexpr int kRoomDegree = 8;  // the highest
+inline constexpr int kRoomTerms = (kRoomDegree + 1) * (kRoomDegree + 1);
+
+struct RoomLight {
+  std::vector<Vec3d> radiance_rgb;  // (degree + 1)² terms, at most kRoomTerms; empty: dark
+
+  int terms() const { return static_cast<int>(radiance_rgb.size()); }
+  int degree() const;
+  bool any() const { return !radiance_rgb.empty(); }
+  void Add(const RoomLight& more);
+  // Of the sample's plane.
+  Vec3d PlaneIrradiance() const;
+};
+
+using RoomHarmonics = std::array<double, kRoomTerms>;
+
+// What one texel reflects of each term, as irradiance.
+class RoomReflection {
+ public:
+  // Normal and roughness are taken from `texel`.
+  explicit RoomReflection(const TexelSvbrdf<double>& texel);
+
+  // What its diffuse lobe receives (TexelGeometry::ambient), whatever the view …
+  const RoomHarmonics& diffuse() const { return diffuse_; }
+  // … and π times what its highlight sees (ambient_specular), seen from `camera`: unit, texel to
+  // camera. Terms above `degree` are 0.
+  RoomHarmonics Specular(const double camera[3], int degree = kRoomDegree) const;
+
+  // Adds the room's light to what the texel receives in a view of `exposure`.
+  void AddTo(const RoomLight& room, double exposure, TexelGeometry<double>* geometry) const;
+
+ private:
+  double normal_[3];
+  RoomHarmonics diffuse_;
+  std::array<double, kRoomDegree + 1> filter_;
+  int specular_degree_ = kRoomDegree;  // above it the highlight is too wide to see any
+};
+
+// What a room gives: Σ terms·radiance_rgb, of the terms that the room has.
+Vec3d RoomIrradiance(const RoomLight& room, const RoomHarmonics& terms);
+
+}  // namespace glint
