@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "fitting/photographs/picture_shift.h"
+#include "fitting/render/render_room.h"
 #include "fitting/render/renderer.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/errors.h"
@@ -73,6 +74,7 @@ FittedMaps ReadFittedMaps(const fs::path& path) {
   fit.light_scale_rgb =
       OptionalNumbers(file, manifest.data, "light_scale_rgb", fit.light_scale_rgb);
   fit.corrections = ReadCorrections(file, manifest.data);
+  fit.room = ReadRoomLight(file, manifest.data);
   return fit;
 }
 
@@ -103,6 +105,7 @@ std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
   }
   std::vector<float> rendered(3 * maps.texels());
   RenderView(maps, set.plane, lit, convention, rendered.data(), threads);
+  AddRoomLight(fit.room, maps, set.plane, lit, convention, rendered.data(), threads);
   return rendered;
 }
 

@@ -33,6 +33,7 @@ struct FittedMaps {
   ReflectanceConvention convention;
   std::array<double, 3> light_scale_rgb{1, 1, 1};     // multiplies every light_rgb
   std::map<std::string, ViewCorrection> corrections;  // by view, of those that were refined from
+  RoomLight room;                                     // added to every view's
 };
 
 // `path`: manifest.json of fit or refine, the folder that holds it, or svbrdf.exr alone (then the

@@ -216,7 +216,7 @@ Side Measure(const Scene& scene, const PriorWeights& weights, const Solve& solve
   double total = 0.0;
   const double began = Now();
   for (size_t t = 0; t < texels; ++t) {
-    GatherObservations(scene.problem, t, &observations);
+    GatherObservations(scene.problem, scene.start, t, &observations);
     TexelValues texel = ReadTexel(scene.start, t);
     const TexelPrior prior(weights, texel);
     total += solve(t, observations, prior, &texel);

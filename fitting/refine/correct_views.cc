@@ -20,6 +20,24 @@ PhotographSet AtWorkingSize(const PhotographSet& set, int working_size, int thre
   return Downsampled(set, scaled(set.plane.width), scaled(set.plane.height), threads);
 }
 
+// What is to be put right, and what was found of it.
+struct Finding {
+  ViewCorrectionOptions options;
+  ViewCorrectionResult result;
+};
+
+Finding Find(const PhotographSet& set, const SvbrdfMaps& start, const CorrectionOptions& options,
+             const ViewCorrectionOptions& view, int threads) {
+  Finding all{view, CorrectViews(set, start, view, threads)};
+  if (options.room_terms == 0) return all;
+  ViewCorrectionOptions room_alone = view;
+  room_alone.light = room_alone.exposure = room_alone.registration = false;
+  room_alone.room_terms = options.room_terms;
+  Finding room{room_alone, CorrectViews(set, start, room_alone, threads)};
+  const bool views_tell = all.result.GainOver(room.result.cost_after) > options.least_views_gain;
+  return views_tell ? all : room;
+}
+
 }  // namespace
 
 bool CorrectionOptions::Wanted(double distinct_views_of_set) const {
@@ -30,7 +48,9 @@ std::string CorrectionOptions::Check() const {
   if (when != "auto" && when != "always" && when != "never") {
     return "views are corrected auto, always or never";
   }
-  if (!(least_gain >= 0 && least_gain < 1)) return "the least gain must be from 0 to 1";
+  if (!(least_gain >= 0 && least_gain < 1) || !(least_views_gain >= 0 && least_views_gain < 1)) {
+    return "the least gain must be from 0 to 1";
+  }
   if (rounds < 1) return "at least one round of corrections is needed";
   if (working_size < 16) return "the working size must be at least 16 texels";
   return view.Check();
@@ -40,6 +60,7 @@ RefineProblem ProblemOf(const PhotographSet& set) {
   RefineProblem problem;
   problem.plane = set.plane;
   problem.convention = set.convention;
+  problem.room = set.room;
   for (const Photograph& p : set.photographs) {
     problem.views.push_back({p.view, p.ldr, p.rgb, p.mask});
   }
@@ -64,26 +85,27 @@ CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& sta
   ViewCorrectionOptions view = options.view;
   view.robust_scale = refine.robust_scale;
   const SvbrdfMaps small_start = ResampleSvbrdf(start, width, height);
-  ViewCorrectionResult found = CorrectViews(small, small_start, view, threads);
+  Finding finding = Find(small, small_start, options, view, threads);
+  ViewCorrectionResult& found = finding.result;
   result.cost_before = found.cost_before;
   result.cost_after = found.cost_after;
-  result.taken = found.gain > options.least_gain;
+  result.taken = found.GainOver(found.cost_before) > options.least_gain;
   if (!result.taken) {
     report(steps);
     return result;
   }
   for (int round = 1; round < options.rounds; ++round) {
     report(2 * round - 1);
-    const PhotographSet corrected = Corrected(small, found.views, threads);
+    const PhotographSet corrected = Corrected(small, found.corrections, threads);
     const SvbrdfMaps maps = Refine(ProblemOf(corrected), small_start, refine, threads).maps;
     report(2 * round);
-    found = CorrectViews(small, maps, view, threads, found.views);
+    found = CorrectViews(small, maps, finding.options, threads, found.corrections);
     const bool settled = found.cost_after > (1 - options.least_gain) * result.cost_after;
     result.cost_after = found.cost_after;
     if (settled) break;
   }
   report(steps);
-  result.corrections = AtSize(found.views, width, height, set.plane.width, set.plane.height);
+  result.corrections = AtSize(found.corrections, width, height, set.plane.width, set.plane.height);
   return result;
 }
 

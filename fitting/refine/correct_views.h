@@ -16,8 +16,15 @@ namespace glint {
 struct CorrectionOptions {
   std::string when = "auto";  // auto: with views enough; always; never
   double distinct_views = 5;  // of the set (refine_prior.h) from which on "auto" looks
-  // ViewCorrectionResult::gain up to which nothing is taken: views that are right stay untouched.
-  double least_gain = 0.03;
+  // ViewCorrectionResult::GainOver() up to which nothing is taken: views that are right stay
+  // untouched.
+  double least_gain = 0.02;
+  // Terms of the room's light where that is all that is put right: polished samples mirror the
+  // room.
+  int room_terms = kRoomTerms;
+  // Lights, exposures and registration are put right only where that explains so much more than a
+  // room's light alone does: what is left of a room is a little like lights that are off.
+  double least_views_gain = 0.05;
   // Corrections and refinements in turn, at most: texels in wrong minima hold the views back, and
   // refined with views that are nearly right they leave them.
   int rounds = 3;
@@ -31,8 +38,8 @@ struct CorrectionOptions {
 
 struct CorrectionResult {
   bool taken = false;
-  double cost_before = 0, cost_after = 0;   // 0: not looked
-  std::vector<ViewCorrection> corrections;  // one per photograph, at their size; empty: not taken
+  double cost_before = 0, cost_after = 0;  // 0: not looked
+  ViewCorrections corrections;             // at the photographs' size; no views: not taken
 };
 
 // The problem that Refine() solves for these photographs; its spans are of `set`.

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 
+#include "fitting/reflectance/texel_at.h"
+
 namespace glint {
 
-void GatherObservations(const RefineProblem& problem, size_t texel,
+void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps, size_t texel,
                         TexelObservations* observations) {
   const size_t texels = static_cast<size_t>(problem.plane.width) * problem.plane.height;
   const double x = problem.plane.x_mm(static_cast<int>(texel % problem.plane.width));
   const double y = problem.plane.y_mm(static_cast<int>(texel / problem.plane.width));
+  const bool lit_by_room = problem.room.any();
+  const RoomReflection reflection(TexelAt(maps, texel));
   observations->Clear();
   for (const RefineView& view : problem.views) {
     if (!(view.mask[texel] >= 0.5f)) continue;
@@ -18,8 +22,10 @@ void GatherObservations(const RefineProblem& problem, size_t texel,
       radiance[c] = std::max(static_cast<double>(view.rgb[c * texels + texel]), 0.0);
       clipped[c] = view.ldr && radiance[c] >= kClipped;
     }
-    observations->Add(TexelGeometryInView<double>(view.view, problem.convention.falloff, x, y),
-                      radiance, clipped);
+    TexelGeometry<double> geometry =
+        TexelGeometryInView<double>(view.view, problem.convention.falloff, x, y);
+    if (lit_by_room) reflection.AddTo(problem.room, view.view.exposure, &geometry);
+    observations->Add(geometry, radiance, clipped);
   }
   observations->Finish();
 }

@@ -6,8 +6,9 @@
 
 namespace glint {
 
-// Replaces what `observations` holds by the usable views of the texel.
-void GatherObservations(const RefineProblem& problem, size_t texel,
+// Replaces what `observations` holds by the usable views of the texel. The room lights it as if it
+// were as `maps` say (it changes slowly with the normal, and is faint).
+void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps, size_t texel,
                         TexelObservations* observations);
 
 }  // namespace glint

@@ -160,7 +160,7 @@ void Refiner::EstimateNoise() {
   ForEachPieceByWorker(static_cast<int>(sampled), threads_, [&](int i, int worker) {
     Worker& w = *workers_[worker];
     const size_t texel = texels * i / sampled;
-    GatherObservations(problem_, texel, &w.observations);
+    GatherObservations(problem_, start_, texel, &w.observations);
     const int freedom = 3 * w.observations.views() - kTexelParameters;
     if (freedom < 6) return;
     const TexelValues start = ReadTexel(start_, texel);
@@ -210,7 +210,7 @@ void Refiner::Keep(size_t texel, const TexelSolution& solution) {
 
 void Refiner::SolveFromStarts() {
   ForEachTexel([&](size_t texel, Worker* worker) {
-    GatherObservations(problem_, texel, &worker->observations);
+    GatherObservations(problem_, start_, texel, &worker->observations);
     if (worker->observations.views() == 0) {
       origin_[texel] = kConverged;  // nothing to learn: the start stays
       ConcludeTexel(texel, worker);
@@ -252,7 +252,7 @@ void Refiner::SolveFromNeighbours(int half_pass) {
     add(row, column + 1);
     add(row + 1, column);
     if (!any_change) return;
-    GatherObservations(problem_, texel, &worker->observations);
+    GatherObservations(problem_, start_, texel, &worker->observations);
     const TexelPrior prior(WeightsAt(texel), ReadTexel(start_, texel));
     const TexelSolution current = Current(texel, prior, worker);
     const TexelSearch::Found found = worker->search.FromNeighbours(
@@ -305,7 +305,7 @@ void Refiner::Conclude() {
   const size_t views = problem_.views.size();
   ForEachTexel([&](size_t texel, Worker* worker) {
     if (origin_[texel] & kConcluded) return;
-    GatherObservations(problem_, texel, &worker->observations);
+    GatherObservations(problem_, start_, texel, &worker->observations);
     ConcludeTexel(texel, worker);
   });
   const size_t columns = SumColumns();

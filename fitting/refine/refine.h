@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "fitting/reflectance/convention.h"
+#include "fitting/reflectance/room_light.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/reflectance/view.h"
 
@@ -42,6 +43,7 @@ struct RefineProblem {
   SamplePlane plane;
   ReflectanceConvention convention;
   std::vector<RefineView> views;
+  RoomLight room;  // beside what each view has as ambient light
   // H·W each: errors expected of the start's roughness and specular albedo, texel by texel; empty:
   // those of texel_prior.h.
   std::span<const float> roughness_error, specular_error;

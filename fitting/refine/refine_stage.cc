@@ -94,13 +94,14 @@ void AddCorrections(const CorrectionResult& found, const RectifiedSet& set,
   Json entries = Json::array();
   double turned_deg = 0, shifted = 0;
   for (size_t i = 0; i < views.size(); ++i) {
-    const ViewCorrection& c = found.corrections[i];
+    const ViewCorrection& c = found.corrections.views[i];
     turned_deg += LightTurnedDeg(views[i].view, c) / static_cast<double>(views.size());
     shifted += MeanShift(c.shifts) / static_cast<double>(views.size());
     entries.push_back(JsonOf(views[i].name, c));
   }
   result->data["corrections"] = entries;
-  const Vec3d& ambient = found.corrections[0].ambient_rgb;
+  result->data["room_light"] = JsonOf(found.corrections.room);
+  const Vec3d ambient = found.corrections.room.PlaneIrradiance();
   const TexelGeometry<double> centre =
       TexelGeometryInView(views[0].view, set.convention.falloff, 0.0, 0.0);
   double flash = 0, room = 0;
@@ -147,7 +148,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "residuals (logarithms) beyond it count linearly");
   set->AddChoice("correct-views", &options->correction.when, {"auto", "always", "never"},
                  "find from the photographs where lights, registration and ambient light are off; "
-                 "auto: from five distinct views on, and taken where it explains 3 % more");
+                 "auto: from five distinct views on, and taken where it explains 2 % more");
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");
   set->Add("views", &options->views, "views to use, by name or photo (default: those of fit)");

@@ -1,6 +1,7 @@
 #include "fitting/view_correction/corrections_json.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/contract/errors.h"
 
@@ -14,7 +15,6 @@ Json JsonOf(const std::string& view, const ViewCorrection& correction) {
   }
   return {{"name", view},
           {"light_offset_mm", correction.light_offset_mm},
-          {"ambient_rgb", correction.ambient_rgb},
           {"exposure", correction.exposure},
           {"corner_columns_texel", columns},
           {"corner_rows_texel", rows}};
@@ -33,9 +33,8 @@ std::map<std::string, ViewCorrection> ReadCorrections(const std::filesystem::pat
       return RequireNumbers(manifest_file, entry, "data.corrections[]", field, count);
     };
     ViewCorrection correction;
-    const auto light = numbers("light_offset_mm", 3), ambient = numbers("ambient_rgb", 3);
+    const auto light = numbers("light_offset_mm", 3);
     std::copy(light.begin(), light.end(), correction.light_offset_mm.begin());
-    std::copy(ambient.begin(), ambient.end(), correction.ambient_rgb.begin());
     correction.exposure = RequireNumber(manifest_file, entry, "data.corrections[]", "exposure");
     const auto columns = numbers("corner_columns_texel", 4), rows = numbers("corner_rows_texel", 4);
     std::copy(columns.begin(), columns.end(), correction.shifts.column);
@@ -43,6 +42,30 @@ std::map<std::string, ViewCorrection> ReadCorrections(const std::filesystem::pat
     corrections[RequireString(manifest_file, entry, "data.corrections[]", "name")] = correction;
   }
   return corrections;
+}
+
+Json JsonOf(const RoomLight& room) { return {{"radiance_rgb", room.radiance_rgb}}; }
+
+RoomLight ReadRoomLight(const std::filesystem::path& manifest_file, const Json& data) {
+  RoomLight room;
+  if (!data.contains("room_light")) return room;
+  const Json& terms =
+      RequireField(manifest_file, data["room_light"], "data.room_light", "radiance_rgb");
+  const auto is_square = [](size_t n) {
+    const auto root = static_cast<size_t>(std::lround(std::sqrt(static_cast<double>(n))));
+    return root * root == n;
+  };
+  if (!terms.is_array() || terms.size() > kRoomTerms || !is_square(terms.size())) {
+    throw UserError(manifest_file, "data.room_light.radiance_rgb", terms.dump(),
+                    "run glint-refine again");
+  }
+  room.radiance_rgb.resize(terms.size());
+  for (size_t j = 0; j < terms.size(); ++j) {
+    const auto rgb = RequireNumbers(manifest_file, Json{{"term", terms[j]}},
+                                    "data.room_light.radiance_rgb[]", "term", 3);
+    std::copy(rgb.begin(), rgb.end(), room.radiance_rgb[j].begin());
+  }
+  return room;
 }
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// Corrections of views in a manifest: data.corrections (docs/manifest.md).
+// What was corrected, in a manifest: data.corrections and data.room_light (docs/manifest.md).
 #pragma once
 
 #include <filesystem>
@@ -15,5 +15,10 @@ Json JsonOf(const std::string& view, const ViewCorrection& correction);
 // By the views' names; none where `data` has no corrections. Throws UserError.
 std::map<std::string, ViewCorrection> ReadCorrections(const std::filesystem::path& manifest_file,
                                                       const Json& data);
+
+Json JsonOf(const RoomLight& room);
+
+// Dark where `data` has no room_light. Throws UserError.
+RoomLight ReadRoomLight(const std::filesystem::path& manifest_file, const Json& data);
 
 }  // namespace glint

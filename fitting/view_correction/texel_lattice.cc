@@ -2,11 +2,11 @@
 
 #include <ceres/jet.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel/parallel.h"
+#include "fitting/reflectance/texel_at.h"
 #include "fitting/texel/residual_noise.h"
 #include "fitting/texel/texel_parameters.h"
 
@@ -20,7 +20,6 @@ constexpr int kTexelStarts = 2;
 constexpr int kTexelsPerPiece = 32;
 // Sums of normal equations, whatever the number of threads: each has views² memory.
 constexpr int kSums = 8;
-constexpr int kBatch = 16;         // texels whose outer products are summed by one matrix product
 constexpr double kMostStep = 0.3;  // of roughness and slopes together, as a texel follows
 
 using Jet = ceres::Jet<double, 3>;  // by the light's offset
@@ -84,6 +83,9 @@ struct TexelLattice::Texel {
   double corner_weights[4];
   TexelValues start;
   std::vector<int> views;  // that see it
+  // What it reflects of the room, as the start says: that changes slowly with the normal.
+  RoomHarmonics room_diffuse;
+  std::vector<RoomHarmonics> room_specular;  // by view that sees it
 };
 
 struct TexelLattice::Worker {
@@ -97,35 +99,6 @@ struct TexelLattice::Worker {
   TexelObservations observations;
   TexelSearch search;
   std::vector<LookedUp> seen;  // by usable view and channel
-  Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> products;
-  Eigen::MatrixXd batch;  // kBatch · kTexelParameters rows, of which are filled …
-  int batched = 0;
-
-  // The residual of a usable view and channel, as the solver's rows have it.
-  void AddResidual(int view, int channel, const TexelValues& by_variable,
-                   const std::vector<std::pair<int, double>>& by_views,
-                   NormalEquations* equations) {
-    const KernelRows& rows = search.solver().rows();
-    const auto at = [&](KernelRows::Row r) { return rows.row(channel, r)[view]; };
-    equations->Add(at(KernelRows::kResidual), by_views);
-    const std::pair<int, double> by_texel[] = {
-        {DiffuseParameter(channel), at(KernelRows::kByDiffuse)},
-        {SpecularParameter(channel), at(KernelRows::kBySpecular)},
-        {kRough, at(KernelRows::kByRough)},
-        {kSlopeX, at(KernelRows::kBySlopeX)},
-        {kSlopeY, at(KernelRows::kBySlopeY)}};
-    for (const auto& [parameter, derivative] : by_texel) {
-      const double by = derivative * by_variable[static_cast<size_t>(parameter)];
-      for (const auto& [unknown, by_view] : by_views) products(parameter, unknown) += by * by_view;
-    }
-  }
-
-  void Flush(NormalEquations* equations) {
-    if (batched == 0) return;  // Eigen divides by the number of rows
-    equations->hessian.selfadjointView<Eigen::Lower>().rankUpdate(
-        batch.topRows(batched).transpose(), -1);
-    batched = 0;
-  }
 };
 
 TexelLattice::~TexelLattice() = default;
@@ -142,13 +115,21 @@ TexelLattice::TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps,
   for (int row = kMargin + stride / 2; row < height - kMargin; row += stride) {
     for (int column = kMargin + stride / 2; column < width - kMargin; column += stride) {
       const size_t index = static_cast<size_t>(row) * width + column;
-      Texel texel{column, row, set.plane.x_mm(column), set.plane.y_mm(row), {}, {}, {}};
+      Texel texel{column, row, set.plane.x_mm(column), set.plane.y_mm(row), {}, {}, {}, {}, {}};
       for (int v = 0; v < unknowns.views(); ++v) {
         const std::vector<float>& mask = set.photographs[static_cast<size_t>(v)].mask;
         if (UsableAround(mask, width, column, row)) texel.views.push_back(v);
       }
       if (texel.views.empty()) continue;
       texel.start = ReadTexel(maps, index);
+      const RoomReflection reflection(TexelAt(maps, index));
+      texel.room_diffuse = reflection.diffuse();
+      for (const int v : texel.views) {
+        const TexelGeometry<double> geometry =
+            TexelGeometryInView<double>(set.photographs[static_cast<size_t>(v)].view,
+                                        set.convention.falloff, texel.x_mm, texel.y_mm);
+        texel.room_specular.push_back(reflection.Specular(geometry.camera));
+      }
       CornerWeights((column + 0.5) / width, (row + 0.5) / height, texel.corner_weights);
       residuals_ += 3.0 * static_cast<double>(texel.views.size());
       texels_.push_back(std::move(texel));
@@ -184,12 +165,15 @@ TexelPrior TexelLattice::PriorOf(const Texel& texel) const {
 void TexelLattice::Gather(const Texel& texel, const Eigen::VectorXd& x, Worker* worker) const {
   const SamplePlane& plane = set_.plane;
   const size_t texels = static_cast<size_t>(plane.width) * plane.height;
+  const RoomLight room = unknowns_.RoomAt(x);
+  const Vec3d diffuse = RoomIrradiance(room, texel.room_diffuse);
   worker->observations.Clear();
   worker->seen.clear();
-  for (const int v : texel.views) {
+  for (size_t k = 0; k < texel.views.size(); ++k) {
+    const int v = texel.views[k];
     const Photograph& photograph = set_.photographs[static_cast<size_t>(v)];
     double column = texel.column, row = texel.row;
-    for (int i = 0; unknowns_.registration() && i < 4; ++i) {
+    for (int i = 0; unknowns_.kinds().registration && i < 4; ++i) {
       column += texel.corner_weights[i] * x[unknowns_.shift(v) + i];
       row += texel.corner_weights[i] * x[unknowns_.shift(v) + 4 + i];
     }
@@ -202,10 +186,15 @@ void TexelLattice::Gather(const Texel& texel, const Eigen::VectorXd& x, Worker* 
       clipped[c] = photograph.ldr && radiance[c] >= kClipped;
       worker->seen.push_back(seen);
     }
-    worker->observations.Add(
-        TexelGeometryInView<double>(unknowns_.ViewAt(v, x), set_.convention.falloff, texel.x_mm,
-                                    texel.y_mm),
-        radiance, clipped);
+    const View view = unknowns_.ViewAt(v, x);
+    TexelGeometry<double> geometry =
+        TexelGeometryInView<double>(view, set_.convention.falloff, texel.x_mm, texel.y_mm);
+    const Vec3d specular = RoomIrradiance(room, texel.room_specular[k]);
+    for (size_t c = 0; c < 3; ++c) {
+      geometry.ambient[c] += view.exposure * diffuse[c];
+      geometry.ambient_specular[c] += view.exposure * specular[c];
+    }
+    worker->observations.Add(geometry, radiance, clipped);
   }
   worker->observations.Finish();
 }
@@ -237,10 +226,13 @@ double TexelLattice::Fit(const Eigen::VectorXd& x, const Values* others, Values*
   return sum;
 }
 
-void TexelLattice::AddProducts(const Texel& texel, const Eigen::VectorXd& x,
-                               const TexelValues& values, const TexelValues& by_variable,
-                               Worker* worker, NormalEquations* equations) const {
+void TexelLattice::AddResiduals(const Texel& texel, const Eigen::VectorXd& x,
+                                const TexelValues& values, Worker* worker,
+                                TexelReduction* reduction) const {
   const TexelSvbrdf<double> svbrdf = TexelFromValues(values.data());
+  const UnknownKinds& kinds = unknowns_.kinds();
+  const RoomLight room = unknowns_.RoomAt(x);
+  Eigen::VectorXd by_room(room.terms());
   std::vector<std::pair<int, double>> by_views;
   for (size_t k = 0; k < texel.views.size(); ++k) {
     const int v = texel.views[k];
@@ -251,75 +243,58 @@ void TexelLattice::AddProducts(const Texel& texel, const Eigen::VectorXd& x,
     const bool ldr = set_.photographs[static_cast<size_t>(v)].ldr;
     for (int c = 0; c < 3; ++c) {
       const LookedUp& seen = worker->seen[3 * k + static_cast<size_t>(c)];
+      radiance[c].a += ReflectRoom(texel, k, svbrdf, view.exposure, room, c, &by_room);
       const LogResidual residual(radiance[c].a, seen.value, worker->kernel.robust_scale);
       if (ldr && seen.value >= kClipped && residual.error > 0) continue;  // satisfied
       by_views.clear();
-      for (int i = 0; i < 3; ++i) {
-        by_views.emplace_back(ViewUnknowns::light(v) + i, residual.by_rendered * radiance[c].v[i]);
+      for (int i = 0; kinds.light && i < 3; ++i) {
+        by_views.emplace_back(unknowns_.light(v) + i, residual.by_rendered * radiance[c].v[i]);
       }
-      by_views.emplace_back(unknowns_.ambient() + c,
-                            residual.by_rendered * view.exposure * unknowns_.irradiance() *
-                                AmbientLobe(svbrdf, set_.convention.diffuse_weight, c));
-      by_views.emplace_back(unknowns_.exposure(v), residual.by_rendered * radiance[c].a);
-      for (int i = 0; unknowns_.registration() && i < 4; ++i) {
+      if (kinds.exposure) {
+        by_views.emplace_back(unknowns_.exposure(v), residual.by_rendered * radiance[c].a);
+      }
+      for (int i = 0; kinds.registration && i < 4; ++i) {
         const double weight = residual.by_shown * texel.corner_weights[i];
         by_views.emplace_back(unknowns_.shift(v) + i, weight * seen.by_column);
         by_views.emplace_back(unknowns_.shift(v) + 4 + i, weight * seen.by_row);
       }
-      worker->AddResidual(static_cast<int>(k), c, by_variable, by_views, equations);
+      reduction->Add(worker->search.solver().rows(), static_cast<int>(k), c, by_views,
+                     residual.by_rendered * unknowns_.room_unit() * by_room.head(kinds.room_terms));
     }
   }
 }
 
-void TexelLattice::ReduceTexel(int index, const Eigen::VectorXd& x, const TexelValues& values,
-                               Worker* worker, NormalEquations* equations) {
-  using Square = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
-  const Texel& texel = texels_[static_cast<size_t>(index)];
-  Following& following = following_[static_cast<size_t>(index)];
-  Gather(texel, x, worker);
-  TexelGram gram;
-  worker->search.solver().Gram(worker->observations, PriorOf(texel), values, &gram);
-  // By the solver's variables: a value at its bound does not follow.
-  double variables[kTexelParameters];
-  ToVariables(values, variables);
-  TexelValues same, by_variable;
-  ToTexelValues(variables, &same, &by_variable);
-  Square own;
-  Eigen::Matrix<double, kTexelParameters, 1> gradient;
-  for (int i = 0; i < kTexelParameters; ++i) {
-    const size_t a = static_cast<size_t>(i);
-    for (int j = i; j < kTexelParameters; ++j) {
-      const size_t b = static_cast<size_t>(j);
-      own(i, j) = own(j, i) = gram[a][b] * by_variable[a] * by_variable[b];
-    }
-    own(i, i) += 1e-8;
-    gradient[i] = gram[a][kTexelParameters] * by_variable[a];
+double TexelLattice::ReflectRoom(const Texel& texel, size_t k, const TexelSvbrdf<double>& svbrdf,
+                                 double exposure, const RoomLight& room, int channel,
+                                 Eigen::VectorXd* by_term) const {
+  const double diffuse = exposure * DiffuseLobe(svbrdf, set_.convention.diffuse_weight, channel);
+  const double specular = exposure * svbrdf.specular[channel] * kInversePi;
+  double radiance = 0;
+  for (size_t j = 0; j < room.radiance_rgb.size(); ++j) {
+    const double by = diffuse * texel.room_diffuse[j] + specular * texel.room_specular[k][j];
+    (*by_term)[static_cast<Eigen::Index>(j)] = by;
+    radiance += by * room.radiance_rgb[j][static_cast<size_t>(channel)];
   }
-  worker->products.setZero(kTexelParameters, unknowns_.size());
-  AddProducts(texel, x, values, by_variable, worker, equations);
-  const Eigen::LLT<Square> factor(own);
-  const Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> half =
-      factor.matrixL().solve(worker->products);
-  const Eigen::Matrix<double, kTexelParameters, 1> half_gradient = factor.matrixL().solve(gradient);
-  equations->gradient.noalias() -= half.transpose() * half_gradient;
-  worker->batch.middleRows<kTexelParameters>(worker->batched) = half;
-  worker->batched += kTexelParameters;
-  if (worker->batched == worker->batch.rows()) worker->Flush(equations);
-  following.by_views = factor.matrixU().solve(half);
-  following.own = factor.matrixU().solve(half_gradient);
+  return radiance;
 }
 
 NormalEquations TexelLattice::Reduce(const Eigen::VectorXd& x, const Values& values) {
-  std::vector<NormalEquations> sums(kSums, NormalEquations(unknowns_.size()));
+  std::vector<NormalEquations> sums(kSums, NormalEquations(0));
   ForEachPieceByWorker(kSums, threads_, [&](int piece, int at) {
     const int first = size() * piece / kSums, last = size() * (piece + 1) / kSums;
     Worker* worker = workers_[static_cast<size_t>(at)].get();
-    NormalEquations* sum = &sums[static_cast<size_t>(piece)];
-    worker->batch.resize(kBatch * kTexelParameters, unknowns_.size());
+    TexelReduction reduction(unknowns_.size(), unknowns_.kinds().room_terms);
     for (int i = first; i < last; ++i) {
-      ReduceTexel(i, x, values[static_cast<size_t>(i)], worker, sum);
+      const size_t k = static_cast<size_t>(i);
+      Gather(texels_[k], x, worker);
+      TexelGram gram;
+      worker->search.solver().Gram(worker->observations, PriorOf(texels_[k]), values[k], &gram);
+      reduction.Begin(values[k]);
+      AddResiduals(texels_[k], x, values[k], worker, &reduction);
+      reduction.Eliminate(gram, &following_[k]);
     }
-    worker->Flush(sum);
+    reduction.Finish();
+    sums[static_cast<size_t>(piece)] = std::move(reduction.equations);
   });
   NormalEquations total(unknowns_.size());
   for (const NormalEquations& sum : sums) {
@@ -355,7 +330,8 @@ Eigen::Vector2d TexelLattice::MeanSlope(const Values& values) const {
 
 Eigen::MatrixXd TexelLattice::MeanSlopeByViews() const {
   Eigen::MatrixXd by = Eigen::MatrixXd::Zero(2, unknowns_.size());
-  for (const Following& following : following_) by -= following.by_views.middleRows<2>(kSlopeX);
+  for (const TexelFollowing& following : following_)
+    by -= following.by_views.middleRows<2>(kSlopeX);
   return by / std::max(1, size());
 }
 

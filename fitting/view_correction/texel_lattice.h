@@ -7,6 +7,7 @@
 
 #include "fitting/texel/texel_search.h"
 #include "fitting/view_correction/normal_equations.h"
+#include "fitting/view_correction/texel_reduction.h"
 #include "fitting/view_correction/view_unknowns.h"
 
 namespace glint {
@@ -49,20 +50,15 @@ class TexelLattice {
  private:
   struct Texel;
   struct Worker;
-  // How one texel follows the views: by the solver's variables, −∂u/∂x and −its own step.
-  struct Following {
-    Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> by_views;
-    Eigen::Matrix<double, kTexelParameters, 1> own;
-  };
   TexelPrior PriorOf(const Texel& texel) const;
   void Gather(const Texel& texel, const Eigen::VectorXd& x, Worker* worker) const;
-  // One texel's products of derivatives by its variables with those by the views; adds those by the
-  // views alone to `equations`.
-  void AddProducts(const Texel& texel, const Eigen::VectorXd& x, const TexelValues& values,
-                   const TexelValues& by_variable, Worker* worker,
-                   NormalEquations* equations) const;
-  void ReduceTexel(int index, const Eigen::VectorXd& x, const TexelValues& values, Worker* worker,
-                   NormalEquations* equations);
+  // One texel's residuals with their derivatives by the views.
+  void AddResiduals(const Texel& texel, const Eigen::VectorXd& x, const TexelValues& values,
+                    Worker* worker, TexelReduction* reduction) const;
+  // What the texel's k-th view shows of the room, and its derivatives by the room's terms.
+  double ReflectRoom(const Texel& texel, size_t k, const TexelSvbrdf<double>& svbrdf,
+                     double exposure, const RoomLight& room, int channel,
+                     Eigen::VectorXd* by_term) const;
 
   const PhotographSet& set_;
   const ViewUnknowns& unknowns_;
@@ -70,7 +66,7 @@ class TexelLattice {
   double hold_ = 0.02;
   double residuals_ = 0;
   std::vector<Texel> texels_;
-  std::vector<Following> following_;
+  std::vector<TexelFollowing> following_;
   std::vector<std::unique_ptr<Worker>> workers_;
 };
 

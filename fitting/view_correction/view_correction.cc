@@ -43,7 +43,7 @@ class Adjustment {
   Adjustment(const PhotographSet& set, const SvbrdfMaps& maps, const ViewCorrectionOptions& options,
              bool registration, int texels, int threads)
       : options_(options),
-        unknowns_(set, registration),
+        unknowns_(set, {options.light, options.exposure, registration, options.room_terms}),
         lattice_(set, maps, unknowns_, texels, options.robust_scale, threads),
         expected_(options.expected),
         x_(VectorXd::Zero(unknowns_.size())) {}
@@ -56,7 +56,7 @@ class Adjustment {
   void Descend(double tolerance);
   // Expects offsets like those found.
   void Learn();
-  void BeginWith(const std::vector<ViewCorrection>& known) { MoveTo(unknowns_.Of(known)); }
+  void BeginWith(const ViewCorrections& known) { MoveTo(unknowns_.Of(known)); }
   // To the texels' best at `x`.
   void MoveTo(const VectorXd& x);
   // Cost of texels fitted to the views as they were, from their starts or from where they are now.
@@ -70,7 +70,7 @@ class Adjustment {
   }
   double residual_rms() const { return std::sqrt(2 * cost_ / lattice_.residuals()); }
   double SharedNoise() { return lattice_.SharedNoise(x_, values_); }
-  std::vector<ViewCorrection> Corrections() const;
+  ViewCorrections Corrections() const { return unknowns_.CorrectionsAt(x_); }
 
  private:
   ViewHolds Holds() const { return ViewHolds(unknowns_, expected_, lattice_.UsableViews()); }
@@ -128,18 +128,15 @@ NormalEquations Adjustment::Equations() {
 
 std::vector<bool> Adjustment::Free() const {
   std::vector<bool> free(static_cast<size_t>(unknowns_.size()), true);
-  const auto set = [&](int first, int count, bool is_free) {
-    std::fill_n(free.begin() + first, count, is_free);
-  };
+  const auto hold = [&](int first, int count) { std::fill_n(free.begin() + first, count, false); };
+  const UnknownKinds& kinds = unknowns_.kinds();
   const std::vector<bool> usable = lattice_.UsableViews();
   for (int v = 0; v < unknowns_.views(); ++v) {
-    const bool sees = usable[static_cast<size_t>(v)];
-    set(ViewUnknowns::light(v), 3, sees && options_.light);
-    set(unknowns_.exposure(v), 1, sees && options_.exposure);
-    if (unknowns_.registration()) set(unknowns_.shift(v), 8, sees);
+    if (usable[static_cast<size_t>(v)]) continue;
+    if (kinds.light) hold(unknowns_.light(v), 3);
+    if (kinds.exposure) hold(unknowns_.exposure(v), 1);
+    if (kinds.registration) hold(unknowns_.shift(v), 8);
   }
-  set(unknowns_.shared_light(), 3, options_.light);
-  set(unknowns_.ambient(), 3, options_.ambient);
   return free;
 }
 
@@ -156,9 +153,9 @@ VectorXd Adjustment::Step(const NormalEquations& equations, double damping) cons
     gradient[i] = 0;
   }
   VectorXd to = x_ - damped.ldlt().solve(gradient);
-  for (int c = 0; c < 3; ++c) {
-    double& ambient = to[unknowns_.ambient() + c];
-    ambient = std::max(ambient, unknowns_.LeastAmbient(c));
+  for (int c = 0; unknowns_.kinds().room_terms > 0 && c < 3; ++c) {
+    double& even = to[unknowns_.room(c)];
+    even = std::max(even, unknowns_.LeastRoom(c));
   }
   return to - x_;
 }
@@ -189,14 +186,6 @@ void Adjustment::Descend(double tolerance) {
   }
 }
 
-std::vector<ViewCorrection> Adjustment::Corrections() const {
-  std::vector<ViewCorrection> corrections;
-  for (int v = 0; v < unknowns_.views(); ++v) {
-    corrections.push_back(unknowns_.CorrectionAt(v, x_));
-  }
-  return corrections;
-}
-
 // The last descent: on more texels, with displacements only where they tell, and with more trust
 // where all but noise is explained.
 ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
@@ -224,9 +213,8 @@ ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
   ViewCorrectionResult result;
   result.cost_before = fine->CostUncorrected();
   result.cost_after = fine->cost();
-  result.gain =
-      (result.cost_before - result.cost_after) / (result.cost_before + fine->RoundingCost());
-  result.views = fine->Corrections();
+  result.rounding_cost = fine->RoundingCost();
+  result.corrections = fine->Corrections();
   return result;
 }
 
@@ -256,6 +244,7 @@ std::string ViewCorrectionOptions::Check() const {
   }
   if (!above_zero(expected.level)) return "the sample's expected slope must be above 0";
   if (!above_zero(expected.ambient)) return "the expected ambient light must be above 0";
+  if (room_terms < 0 || room_terms > kRoomTerms) return "there are no such terms of a room's light";
   if (!above_zero(expected.exposure)) return "the exposures' expected deviation must be above 0";
   if (!above_zero(expected.registration_texel)) {
     return "the expected displacement must be above 0";
@@ -272,23 +261,23 @@ std::string ViewCorrectionOptions::Check() const {
 
 ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& maps,
                                   const ViewCorrectionOptions& options, int threads,
-                                  const std::vector<ViewCorrection>& known) {
+                                  const ViewCorrections& known) {
   std::string wrong = options.Check();
   if (wrong.empty()) wrong = set.Check();
   if (!wrong.empty()) throw std::invalid_argument("view correction: " + wrong);
   if (maps.width != set.plane.width || maps.height != set.plane.height) {
     throw std::invalid_argument("view correction: the maps' size is not the photographs'");
   }
-  if (!known.empty() && known.size() != set.photographs.size()) {
+  if (!known.views.empty() && known.views.size() != set.photographs.size()) {
     throw std::invalid_argument("view correction: as many corrections as photographs are needed");
   }
   Adjustment coarse(set, maps, options, options.registration,
                     LatticeTexels(options.texels, set.photographs.size()), threads);
   ViewCorrectionResult result;
-  result.views.resize(set.photographs.size());
+  result.corrections.views.resize(set.photographs.size());
   if (coarse.empty()) return result;
   coarse.Weigh(kFirstSigma, options.evidence);
-  if (known.empty()) {
+  if (known.views.empty()) {
     coarse.Descend(kFirstTolerance);
   } else {
     coarse.BeginWith(known);
@@ -297,39 +286,38 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
   coarse.Weigh(std::max(kLeastSigma, coarse.residual_rms()), options.evidence);
   coarse.Descend(kSecondTolerance);
   result = Finish(set, maps, options, coarse, threads);
-  if (options.registration) CentreShifts(&result.views);
+  if (options.registration) CentreShifts(&result.corrections.views);
   return result;
 }
 
 View CorrectedView(View view, const ViewCorrection& correction) {
   for (size_t k = 0; k < 3; ++k) {
     view.light_in_sample_mm[k] += correction.light_offset_mm[k];
-    view.ambient_rgb[k] += correction.ambient_rgb[k];
   }
   view.exposure *= correction.exposure;
   return view;
 }
 
-PhotographSet Corrected(PhotographSet set, const std::vector<ViewCorrection>& corrections,
-                        int threads) {
-  if (corrections.size() != set.photographs.size()) {
+PhotographSet Corrected(PhotographSet set, const ViewCorrections& corrections, int threads) {
+  if (corrections.views.size() != set.photographs.size()) {
     throw std::invalid_argument("view correction: as many corrections as photographs are needed");
   }
   ForEachPiece(static_cast<int>(set.photographs.size()), threads, [&](int piece) {
     const size_t i = static_cast<size_t>(piece);
     Photograph& photograph = set.photographs[i];
-    const ViewCorrection& c = corrections[i];
+    const ViewCorrection& c = corrections.views[i];
     photograph.view = CorrectedView(photograph.view, c);
     if (!c.shifts.any()) return;
     ShiftPicture(c.shifts, set.plane.width, set.plane.height, &photograph.rgb);
     ShiftMask(c.shifts, set.plane.width, set.plane.height, &photograph.mask);
   });
+  set.room.Add(corrections.room);
   return set;
 }
 
-std::vector<ViewCorrection> AtSize(std::vector<ViewCorrection> corrections, int from_width,
-                                   int from_height, int to_width, int to_height) {
-  for (ViewCorrection& c : corrections) {
+ViewCorrections AtSize(ViewCorrections corrections, int from_width, int from_height, int to_width,
+                       int to_height) {
+  for (ViewCorrection& c : corrections.views) {
     for (int i = 0; i < 4; ++i) {
       c.shifts.column[i] *= static_cast<double>(to_width) / from_width;
       c.shifts.row[i] *= static_cast<double>(to_height) / from_height;

@@ -1,5 +1,5 @@
 // What calibration and rectification left wrong in the views, found from the photographs alone:
-// where each flash was, what the surroundings add, and by how much each picture is displaced on the
+// where each flash was, what the room adds, and by how much each picture is displaced on the
 // sample:
 //
 //   min over views  Σ_texels min over texel Σ_views ρ( log(R(texel; view) + 0.01) − log(I + 0.01) )
@@ -22,6 +22,7 @@
 
 #include "fitting/photographs/photographs.h"
 #include "fitting/photographs/picture_shift.h"
+#include "fitting/reflectance/room_light.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
@@ -29,9 +30,14 @@ namespace glint {
 // Added to what the view says. Nothing to correct: the default.
 struct ViewCorrection {
   Vec3d light_offset_mm{0, 0, 0};
-  Vec3d ambient_rgb{0, 0, 0};  // irradiance; the same for all views of a set
-  double exposure = 1;         // factor
-  CornerShifts shifts;         // the picture is to be looked up so far off, in texels
+  double exposure = 1;  // factor
+  CornerShifts shifts;  // the picture is to be looked up so far off, in texels
+};
+
+// All that is to be corrected about a set.
+struct ViewCorrections {
+  std::vector<ViewCorrection> views;  // one per photograph
+  RoomLight room;                     // added to the set's
 };
 
 // Standard deviations expected beforehand.
@@ -41,14 +47,16 @@ struct ViewExpectations {
   // the flash stands elsewhere beside the lens of an upright camera.
   double shared_light = 0.3;
   double level = 0.01;    // of the sample's mean slope
-  double ambient = 0.1;   // of the ambient irradiance, of the flash's at the sample's centre
+  double ambient = 0.1;   // of each term of the room's light, of the flash's at the sample's centre
   double exposure = 0.1;  // of its logarithm
   double registration_texel = 1.0;
 };
 
 struct ViewCorrectionOptions {
   bool light = true;
-  bool ambient = true;
+  // Of the room's light (room_light.h); 0: none, 1: an even one. Lights that are off and a room
+  // that is not even explain some of the same.
+  int room_terms = 1;
   bool exposure = false;
   bool registration = true;
   ViewExpectations expected;
@@ -70,13 +78,15 @@ struct ViewCorrectionOptions {
 };
 
 struct ViewCorrectionResult {
-  std::vector<ViewCorrection> views;  // one per photograph
+  ViewCorrections corrections;
   // Half the sum of squared residuals of the last lattice, its texels fitted to the views as they
   // were and as they are now.
   double cost_before = 0, cost_after = 0;
-  // Relative fall of the cost and of what rounding to 8 bits would add to it: where photographs are
-  // explained better than that, nothing is gained.
-  double gain = 0;
+  double rounding_cost = 0;  // what rounding to 8 bits would add
+
+  // Relative fall of a cost of the same lattice to this one, rounding included: where photographs
+  // are explained better than that, nothing is gained.
+  double GainOver(double cost) const { return (cost - cost_after) / (cost + rounding_cost); }
 };
 
 // `maps`: what the texels start from and are held to, as weakly as one more observation; of the
@@ -86,19 +96,18 @@ struct ViewCorrectionResult {
 // Throws std::invalid_argument when sizes or options are wrong.
 ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& maps,
                                   const ViewCorrectionOptions& options, int threads,
-                                  const std::vector<ViewCorrection>& known = {});
+                                  const ViewCorrections& known = {});
 
 // The view as the correction says.
 View CorrectedView(View view, const ViewCorrection& correction);
 
-// The photographs as the corrections say: lights moved, ambient added, pictures looked up anew.
+// The photographs as the corrections say: lights moved, the room lit, pictures looked up anew.
 // Throws std::invalid_argument unless there is a correction for every photograph.
-PhotographSet Corrected(PhotographSet set, const std::vector<ViewCorrection>& corrections,
-                        int threads);
+PhotographSet Corrected(PhotographSet set, const ViewCorrections& corrections, int threads);
 
 // The same corrections for pictures of another size.
-std::vector<ViewCorrection> AtSize(std::vector<ViewCorrection> corrections, int from_width,
-                                   int from_height, int to_width, int to_height);
+ViewCorrections AtSize(ViewCorrections corrections, int from_width, int from_height, int to_width,
+                       int to_height);
 
 // Angle at the sample's centre between where the light was said to be and where it is found.
 double LightTurnedDeg(const View& view, const ViewCorrection& correction);

@@ -22,7 +22,7 @@ double AddSimple(const Eigen::VectorXd& x, int at, double sigma, NormalEquations
 
 // What a light's offset has of its own.
 Eigen::Vector3d OwnOffset(const ViewUnknowns& unknowns, int view, const Eigen::VectorXd& x) {
-  return x.segment<3>(ViewUnknowns::light(view)) -
+  return x.segment<3>(unknowns.light(view)) -
          unknowns.LightFrame(view) * x.segment<3>(unknowns.shared_light());
 }
 
@@ -45,7 +45,7 @@ double ViewHolds::AddLight(int view, const Eigen::VectorXd& x, NormalEquations* 
   for (int i = 0; i < 3; ++i) {
     Derivatives row;
     for (int j = 0; j < 3; ++j) {
-      row.emplace_back(ViewUnknowns::light(view) + j, by_own(i, j));
+      row.emplace_back(unknowns_.light(view) + j, by_own(i, j));
       row.emplace_back(unknowns_.shared_light() + j, by_shared(i, j));
     }
     cost += AddOne(residuals[i], row, equations);
@@ -56,15 +56,18 @@ double ViewHolds::AddLight(int view, const Eigen::VectorXd& x, NormalEquations* 
 double ViewHolds::Add(const Eigen::VectorXd& x, NormalEquations* equations) const {
   double cost = 0;
   const int views = unknowns_.views();
+  const UnknownKinds& kinds = unknowns_.kinds();
   for (int v = 0; v < views; ++v) {
     if (!usable_[static_cast<size_t>(v)]) continue;
-    cost += AddLight(v, x, equations);
-    cost += AddSimple(x, unknowns_.exposure(v), expected_.exposure, equations);
-    for (int i = 0; unknowns_.registration() && i < 8; ++i) {
+    if (kinds.light) cost += AddLight(v, x, equations);
+    if (kinds.exposure) {
+      cost += AddSimple(x, unknowns_.exposure(v), expected_.exposure, equations);
+    }
+    for (int i = 0; kinds.registration && i < 8; ++i) {
       cost += AddSimple(x, unknowns_.shift(v) + i, expected_.registration_texel, equations);
     }
   }
-  for (int i = 0; unknowns_.registration() && i < 8; ++i) {
+  for (int i = 0; kinds.registration && i < 8; ++i) {
     Derivatives row;
     double sum = 0;
     for (int v = 0; v < views; ++v) {
@@ -73,16 +76,19 @@ double ViewHolds::Add(const Eigen::VectorXd& x, NormalEquations* equations) cons
     }
     cost += AddOne(sum / (kSharedShift * views), row, equations);
   }
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; kinds.light && i < 3; ++i) {
     cost += AddSimple(x, unknowns_.shared_light() + i,
                       i < 2 ? expected_.shared_light : expected_.distance, equations);
-    // One ambient light against the evidence of all views.
-    cost += AddSimple(x, unknowns_.ambient() + i, expected_.ambient / std::sqrt(views), equations);
+  }
+  // One room against the evidence of all views.
+  for (int i = 0; i < 3 * kinds.room_terms; ++i) {
+    cost += AddSimple(x, unknowns_.room(0) + i, expected_.ambient / std::sqrt(views), equations);
   }
   return cost;
 }
 
 ViewExpectations ViewHolds::Learned(const Eigen::VectorXd& x, const ViewExpectations& least) const {
+  if (!unknowns_.kinds().light) return least;
   double across = 0, along = 0, count = 0;
   for (int v = 0; v < unknowns_.views(); ++v) {
     if (!usable_[static_cast<size_t>(v)]) continue;

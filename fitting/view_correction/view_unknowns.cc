@@ -3,20 +3,27 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "fitting/reflectance/brdf.h"
 
 namespace glint {
+namespace {
 
-ViewUnknowns::ViewUnknowns(const PhotographSet& set, bool registration)
-    : set_(set), registration_(registration) {
+constexpr double kPi = std::numbers::pi;
+
+}  // namespace
+
+ViewUnknowns::ViewUnknowns(const PhotographSet& set, const UnknownKinds& kinds)
+    : set_(set), kinds_(kinds) {
   for (const Photograph& photograph : set.photographs) {
     const Vec3d& light = photograph.view.light_in_sample_mm;
     light_distance_mm_.push_back(std::hypot(light[0], light[1], light[2]));
     const TexelGeometry<double> centre =
         TexelGeometryInView(photograph.view, set.convention.falloff, 0.0, 0.0);
-    irradiance_ += (centre.irradiance[0] + centre.irradiance[1] + centre.irradiance[2]) /
-                   (3 * photograph.view.exposure * static_cast<double>(set.photographs.size()));
+    room_unit_ +=
+        (centre.irradiance[0] + centre.irradiance[1] + centre.irradiance[2]) /
+        (3 * kPi * photograph.view.exposure * static_cast<double>(set.photographs.size()));
   }
 }
 
@@ -33,54 +40,76 @@ Eigen::Matrix3d ViewUnknowns::LightFrame(int view) const {
       .toRotationMatrix();
 }
 
-double ViewUnknowns::LeastAmbient(int channel) const {
+double ViewUnknowns::LeastRoom(int channel) const {
+  const size_t c = static_cast<size_t>(channel);
+  const double even = set_.room.any() ? set_.room.radiance_rgb[0][c] : 0;
   double least = -1e9;
   for (int v = 0; v < views(); ++v) {
     const Vec3d& ambient_rgb = set_.photographs[At(v)].view.ambient_rgb;
-    least = std::max(least, -ambient_rgb[static_cast<size_t>(channel)] / irradiance_);
+    least = std::max(least, -(ambient_rgb[c] / kPi + even) / room_unit_);
   }
   return least;
 }
 
 View ViewUnknowns::ViewAt(int view, const Eigen::VectorXd& unknowns) const {
-  View moved = set_.photographs[At(view)].view;
-  for (int i = 0; i < 3; ++i) {
-    const size_t k = static_cast<size_t>(i);
-    moved.light_in_sample_mm[k] += unknowns[light(view) + i] * light_distance_mm(view);
-    moved.ambient_rgb[k] += unknowns[ambient() + i] * irradiance_;
-  }
-  moved.exposure *= std::exp(unknowns[exposure(view)]);
-  return moved;
+  return CorrectedView(set_.photographs[At(view)].view, CorrectionAt(view, unknowns));
 }
 
 ViewCorrection ViewUnknowns::CorrectionAt(int view, const Eigen::VectorXd& unknowns) const {
   ViewCorrection correction;
-  for (int i = 0; i < 3; ++i) {
-    const size_t k = static_cast<size_t>(i);
-    correction.light_offset_mm[k] = unknowns[light(view) + i] * light_distance_mm(view);
-    correction.ambient_rgb[k] = unknowns[ambient() + i] * irradiance_;
+  for (int i = 0; kinds_.light && i < 3; ++i) {
+    correction.light_offset_mm[At(i)] = unknowns[light(view) + i] * light_distance_mm(view);
   }
-  correction.exposure = std::exp(unknowns[exposure(view)]);
-  for (int i = 0; registration_ && i < 4; ++i) {
+  if (kinds_.exposure) correction.exposure = std::exp(unknowns[exposure(view)]);
+  for (int i = 0; kinds_.registration && i < 4; ++i) {
     correction.shifts.column[i] = unknowns[shift(view) + i];
     correction.shifts.row[i] = unknowns[shift(view) + 4 + i];
   }
   return correction;
 }
 
-Eigen::VectorXd ViewUnknowns::Of(const std::vector<ViewCorrection>& corrections) const {
-  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(size());
-  for (int v = 0; v < views(); ++v) {
-    const ViewCorrection& correction = corrections[At(v)];
-    for (int i = 0; i < 3; ++i) {
-      const size_t k = static_cast<size_t>(i);
-      unknowns[light(v) + i] = correction.light_offset_mm[k] / light_distance_mm(v);
-      unknowns[ambient() + i] = correction.ambient_rgb[k] / irradiance_;
+RoomLight ViewUnknowns::RoomOf(const Eigen::VectorXd& unknowns) const {
+  RoomLight light;
+  light.radiance_rgb.resize(At(kinds_.room_terms));
+  for (int j = 0; j < kinds_.room_terms; ++j) {
+    for (int c = 0; c < 3; ++c) {
+      light.radiance_rgb[At(j)][At(c)] = unknowns[room(c) + j] * room_unit_;
     }
-    unknowns.segment<3>(shared_light()) +=
-        LightFrame(v).transpose() * unknowns.segment<3>(light(v)) / views();
-    unknowns[exposure(v)] = std::log(correction.exposure);
-    for (int i = 0; registration_ && i < 4; ++i) {
+  }
+  return light;
+}
+
+RoomLight ViewUnknowns::RoomAt(const Eigen::VectorXd& unknowns) const {
+  RoomLight light = set_.room;
+  light.Add(RoomOf(unknowns));
+  return light;
+}
+
+ViewCorrections ViewUnknowns::CorrectionsAt(const Eigen::VectorXd& unknowns) const {
+  ViewCorrections corrections;
+  for (int v = 0; v < views(); ++v) corrections.views.push_back(CorrectionAt(v, unknowns));
+  corrections.room = RoomOf(unknowns);
+  return corrections;
+}
+
+Eigen::VectorXd ViewUnknowns::Of(const ViewCorrections& corrections) const {
+  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(size());
+  for (int j = 0; j < std::min(kinds_.room_terms, corrections.room.terms()); ++j) {
+    for (int c = 0; c < 3; ++c) {
+      unknowns[room(c) + j] = corrections.room.radiance_rgb[At(j)][At(c)] / room_unit_;
+    }
+  }
+  for (int v = 0; v < views(); ++v) {
+    const ViewCorrection& correction = corrections.views[At(v)];
+    for (int i = 0; kinds_.light && i < 3; ++i) {
+      unknowns[light(v) + i] = correction.light_offset_mm[At(i)] / light_distance_mm(v);
+    }
+    if (kinds_.light) {
+      unknowns.segment<3>(shared_light()) +=
+          LightFrame(v).transpose() * unknowns.segment<3>(light(v)) / views();
+    }
+    if (kinds_.exposure) unknowns[exposure(v)] = std::log(correction.exposure);
+    for (int i = 0; kinds_.registration && i < 4; ++i) {
       unknowns[shift(v) + i] = correction.shifts.column[i];
       unknowns[shift(v) + 4 + i] = correction.shifts.row[i];
     }

@@ -1,8 +1,8 @@
-// What is unknown about the views, as one vector. By the view: the light's offset by the light's
-// distance (3), the logarithm of the exposure, and the displacement of the picture's corners
-// (columns 4, rows 4; last of all, and only with registration). For all views: what the lights'
-// offsets share, in the frame of each light (3), and the ambient irradiance by the flash's mean
-// (3).
+// What is unknown about the views, as one vector: the room's light (by the channel, term by term:
+// the irradiance of a uniform room that is as bright, by the flash's mean); by the view the light's
+// offset by the light's distance (3); what these offsets share, in the frame of each light (3); by
+// the view the logarithm of the exposure; by the view the displacement of the picture's corners
+// (columns 4, rows 4).
 #pragma once
 
 #include <Eigen/Core>
@@ -12,45 +12,61 @@
 
 namespace glint {
 
+// What is taken as unknown.
+struct UnknownKinds {
+  bool light = true;
+  bool exposure = true;
+  bool registration = true;
+  int room_terms = kRoomTerms;  // of the room's light, 0: none
+};
+
 class ViewUnknowns {
  public:
   // `set` must outlive this.
-  ViewUnknowns(const PhotographSet& set, bool registration);
+  ViewUnknowns(const PhotographSet& set, const UnknownKinds& kinds);
 
   int views() const { return static_cast<int>(light_distance_mm_.size()); }
-  bool registration() const { return registration_; }
-  int size() const { return first_shift() + (registration_ ? 8 * views() : 0); }
-  static int light(int view) { return 3 * view; }
-  int shared_light() const { return 3 * views(); }
-  int ambient() const { return shared_light() + 3; }
-  int exposure(int view) const { return ambient() + 3 + view; }
-  int first_shift() const { return exposure(views()); }
+  const UnknownKinds& kinds() const { return kinds_; }
+  int size() const { return first_shift() + (kinds_.registration ? 8 * views() : 0); }
+  // Where they begin, if their kind is unknown.
+  int room(int channel) const { return kinds_.room_terms * channel; }
+  int light(int view) const { return 3 * kinds_.room_terms + 3 * view; }
+  int shared_light() const { return light(views()); }
+  int exposure(int view) const { return first_exposure() + view; }
+  int first_shift() const { return first_exposure() + (kinds_.exposure ? views() : 0); }
   int shift(int view) const { return first_shift() + 8 * view; }
 
   double light_distance_mm(int view) const { return light_distance_mm_[At(view)]; }
-  // Of the flash at the sample's centre, unexposed, mean of channels and views: what the ambient
-  // light, which is the same for all views, is measured by.
-  double irradiance() const { return irradiance_; }
+  // Of the flash at the sample's centre, unexposed, mean of channels and views, by π: what the
+  // room's light, which is the same for all views, is measured by.
+  double room_unit() const { return room_unit_; }
   // Toward the light as it was said to be.
   Vec3d LightDirection(int view) const;
   // The least turn that takes z there: what is beside an upright camera's lens, in the sample's
   // frame.
   Eigen::Matrix3d LightFrame(int view) const;
-  // Least value of the ambient unknown of a channel: the surroundings take no light.
-  double LeastAmbient(int channel) const;
+  // Least value of the room's even term of a channel: rooms take no light.
+  double LeastRoom(int channel) const;
 
   View ViewAt(int view, const Eigen::VectorXd& unknowns) const;
-  ViewCorrection CorrectionAt(int view, const Eigen::VectorXd& unknowns) const;
+  // The set's and what is unknown of it.
+  RoomLight RoomAt(const Eigen::VectorXd& unknowns) const;
+  ViewCorrections CorrectionsAt(const Eigen::VectorXd& unknowns) const;
   // The unknowns that say so; what the lights share is their mean.
-  Eigen::VectorXd Of(const std::vector<ViewCorrection>& corrections) const;
+  Eigen::VectorXd Of(const ViewCorrections& corrections) const;
 
  private:
+  int first_exposure() const {
+    return 3 * kinds_.room_terms + (kinds_.light ? 3 * views() + 3 : 0);
+  }
   static size_t At(int view) { return static_cast<size_t>(view); }
+  ViewCorrection CorrectionAt(int view, const Eigen::VectorXd& unknowns) const;
+  RoomLight RoomOf(const Eigen::VectorXd& unknowns) const;
 
   const PhotographSet& set_;
-  bool registration_;
+  UnknownKinds kinds_;
   std::vector<double> light_distance_mm_;
-  double irradiance_ = 0;
+  double room_unit_ = 0;
 };
 
 }  // namespace glint

@@ -7,6 +7,7 @@
 
 #include "datasets/procedural/material.h"
 #include "datasets/synth/view_set.h"
+#include "fitting/render/render_room.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
@@ -120,6 +121,28 @@ TEST_F(FittedMapsTest, ViewsAreComparedAsTheyWereCorrected) {
   EXPECT_EQ(ErrorOf(fit).mse, 0);  // the other view has no correction
   EXPECT_EQ(PhotographOfFit(fit, set_, set_.views[1]).rgb,
             ReadRectifiedImage(set_, set_.views[1]).rgb);
+}
+
+// The room lights views that were kept back, too.
+TEST_F(FittedMapsTest, EveryViewIsLitByTheRoomThatWasFound) {
+  RoomLight room;
+  room.radiance_rgb = {{0.2, 0.1, 0.1}, {0, 0, 0}, {0.1, 0, 0}, {0, 0, 0}};
+  const FittedMaps dark = ReadFittedMaps(WriteFit("refine", Json::object()));
+  const FittedMaps fit = ReadFittedMaps(WriteFit("refine", {{"room_light", JsonOf(room)}}));
+  for (const RectifiedView& view : set_.views) {
+    std::vector<float> expected = RenderFit(dark, set_, view, 1);
+    AddRoomLight(room, material_.maps, set_.plane, view.view, set_.convention, expected.data());
+    EXPECT_EQ(RenderFit(fit, set_, view, 2), expected);
+    EXPECT_NE(expected, RenderFit(dark, set_, view, 1));
+  }
+}
+
+TEST_F(FittedMapsTest, ABrokenRoomIsAUserError) {
+  EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"room_light", 3}})), UserError);
+  const Json two_terms = {{"radiance_rgb", {{1, 1, 1}, {0, 0, 0}}}};
+  EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"room_light", two_terms}})), UserError);
+  const Json two_channels = {{"radiance_rgb", {{1, 1}}}};
+  EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"room_light", two_channels}})), UserError);
 }
 
 TEST_F(FittedMapsTest, BrokenCorrectionsAreUserErrors) {

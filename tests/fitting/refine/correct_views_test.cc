@@ -26,15 +26,15 @@ CorrectionResult Find(const DisturbedSet& disturbed) {
 // Degrees between the lights found and the true ones, mean over the views.
 double LightErrorDeg(const DisturbedSet& disturbed, const CorrectionResult& found) {
   double sum = 0;
-  for (size_t i = 0; i < disturbed.errors.size(); ++i) {
+  for (size_t i = 0; i < disturbed.errors.views.size(); ++i) {
     View real = disturbed.set.photographs[i].view;
     ViewCorrection rest;
     for (size_t k = 0; k < 3; ++k) {
-      real.light_in_sample_mm[k] += disturbed.errors[i].light_offset_mm[k];
-      rest.light_offset_mm[k] = (found.taken ? found.corrections[i].light_offset_mm[k] : 0) -
-                                disturbed.errors[i].light_offset_mm[k];
+      real.light_in_sample_mm[k] += disturbed.errors.views[i].light_offset_mm[k];
+      rest.light_offset_mm[k] = (found.taken ? found.corrections.views[i].light_offset_mm[k] : 0) -
+                                disturbed.errors.views[i].light_offset_mm[k];
     }
-    sum += LightTurnedDeg(real, rest) / static_cast<double>(disturbed.errors.size());
+    sum += LightTurnedDeg(real, rest) / static_cast<double>(disturbed.errors.views.size());
   }
   return sum;
 }
@@ -46,6 +46,26 @@ TEST(FindCorrections, LightsThatAreOffByTenDegreesComeBack) {
     EXPECT_GT(LightErrorDeg(disturbed, {}), 8);
     ASSERT_TRUE(found.taken);
     EXPECT_LT(LightErrorDeg(disturbed, found), 0.8) << (together ? "together" : "each");
+  }
+}
+
+// A room that is not even explains a little of what lights that are off would, and the other way.
+TEST(FindCorrections, ARoomsLightMovesNoFlash) {
+  RoomLight room;
+  room.radiance_rgb.assign(16, {0, 0, 0});
+  for (size_t j = 0; j < 16; ++j) {
+    for (size_t c = 0; c < 3; ++c) {
+      room.radiance_rgb[j][c] = j == 0 ? 0.06 : 0.02 * std::sin(2.7 * static_cast<double>(j));
+    }
+  }
+  const DisturbedSet disturbed = test::DisturbLitBy(room, 20, 0, 0, 32, false);
+  const CorrectionResult found = Find(disturbed);
+  ASSERT_TRUE(found.taken);
+  EXPECT_LT(found.cost_after, 0.5 * found.cost_before);
+  EXPECT_LT(LightErrorDeg(disturbed, found), 1e-4);
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(found.corrections.room.PlaneIrradiance()[c], room.PlaneIrradiance()[c],
+                0.25 * room.PlaneIrradiance()[c]);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "fitting/render/render_room.h"
 #include "fitting/render/renderer.h"
 #include "fitting/view_correction/view_correction.h"
 #include "tests/fitting/bootstrap/synthetic_set.h"
@@ -49,18 +50,17 @@ inline SvbrdfMaps CrossedWaves(int size) {
 }
 
 struct DisturbedSet {
-  SvbrdfMaps maps;                     // the truth
-  PhotographSet set;                   // as believed
-  std::vector<ViewCorrection> errors;  // what would make it right
+  SvbrdfMaps maps;         // the truth
+  PhotographSet set;       // as believed
+  ViewCorrections errors;  // what would make it right
 };
 
-// Every light `light_off` of its distance away from where it is believed to be, every picture moved
-// by up to `shift_texel` at its corners (at most a texel), ambient light of kAmbientShare of the
-// flash if `ambient`. `together`: all lights in one direction.
-inline DisturbedSet Disturb(int count, double light_off, double shift_texel, bool ambient,
-                            int size = 64, bool together = false) {
+// As below, with a room's light of any kind.
+inline DisturbedSet DisturbLitBy(const RoomLight& room, int count, double light_off,
+                                 double shift_texel, int size, bool together) {
   DisturbedSet made{CrossedWaves(size), {}, {}};
   made.set = PhotographMaps(made.maps, count, false);
+  made.errors.room = room;
   for (int i = 0; i < count; ++i) {
     Photograph& photo = made.set.photographs[static_cast<size_t>(i)];
     ViewCorrection error;
@@ -73,15 +73,9 @@ inline DisturbedSet Disturb(int count, double light_off, double shift_texel, boo
       error.shifts.column[k] = shift_texel * std::sin(3.7 * i + k);
       error.shifts.row[k] = shift_texel * std::cos(5.3 * i - k);
     }
-    if (ambient)
-      error.ambient_rgb = {3.14159 * kAmbientShare, 3.14159 * kAmbientShare,
-                           3.14159 * kAmbientShare};
-    View real = photo.view;
-    for (size_t k = 0; k < 3; ++k) {
-      real.light_in_sample_mm[k] += error.light_offset_mm[k];
-      real.ambient_rgb[k] += error.ambient_rgb[k];
-    }
+    const View real = CorrectedView(photo.view, error);
     RenderView(made.maps, made.set.plane, real, made.set.convention, photo.rgb.data());
+    AddRoomLight(room, made.maps, made.set.plane, real, made.set.convention, photo.rgb.data());
     // Looked up the other way: what a picture that is moved so shows.
     CornerShifts away;
     for (int k = 0; k < 4; ++k) {
@@ -89,9 +83,19 @@ inline DisturbedSet Disturb(int count, double light_off, double shift_texel, boo
       away.row[k] = -error.shifts.row[k];
     }
     ShiftPicture(away, size, size, &photo.rgb);
-    made.errors.push_back(error);
+    made.errors.views.push_back(error);
   }
   return made;
+}
+
+// Every light `light_off` of its distance away from where it is believed to be, every picture moved
+// by up to `shift_texel` at its corners (at most a texel), an even room of kAmbientShare of the
+// flash if `ambient`. `together`: all lights in one direction.
+inline DisturbedSet Disturb(int count, double light_off, double shift_texel, bool ambient,
+                            int size = 64, bool together = false) {
+  RoomLight room;
+  if (ambient) room.radiance_rgb = {{kAmbientShare, kAmbientShare, kAmbientShare}};
+  return DisturbLitBy(room, count, light_off, shift_texel, size, together);
 }
 
 }  // namespace glint::test

@@ -16,13 +16,14 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kViews = 6;
+constexpr int kTerms = 16;  // of the room's light
 
 // Corrections of every kind.
 VectorXd SomeCorrections(const ViewUnknowns& unknowns) {
   VectorXd x(unknowns.size());
   for (int i = 0; i < x.size(); ++i) x[i] = 0.02 * std::sin(2.3 * i + 1);
-  for (int c = 0; c < 3; ++c) x[unknowns.ambient() + c] = 0.03 + 0.01 * c;
-  for (int v = 0; unknowns.registration() && v < unknowns.views(); ++v) {
+  for (int c = 0; c < 3; ++c) x[unknowns.room(c)] = 0.05 + 0.01 * c;
+  for (int v = 0; unknowns.kinds().registration && v < unknowns.views(); ++v) {
     for (int i = 0; i < 8; ++i) x[unknowns.shift(v) + i] *= 10;
   }
   return x;
@@ -39,7 +40,8 @@ struct Case {
         for (double& power : p.view.light_rgb) power *= 5;
       }
     }
-    unknowns = std::make_unique<ViewUnknowns>(disturbed.set, registration);
+    unknowns = std::make_unique<ViewUnknowns>(disturbed.set,
+                                              UnknownKinds{true, true, registration, kTerms});
     lattice = std::make_unique<TexelLattice>(disturbed.set, disturbed.maps, *unknowns, 36, 0.1, 1);
     lattice->SetHold(hold);
     x = SomeCorrections(*unknowns);
@@ -92,7 +94,7 @@ TEST(TexelLattice, AStepOfTheReducedEquationsLowersTheCost) {
 // Texels are summed in batches within pieces: none, some, and just as many as fill them.
 TEST(TexelLattice, AnyNumberOfTexelsIsReducedByAnyNumberOfThreads) {
   const test::DisturbedSet disturbed = test::Disturb(2, 0.05, 0.3, false);
-  const ViewUnknowns unknowns(disturbed.set, true);
+  const ViewUnknowns unknowns(disturbed.set, {});
   const VectorXd x = VectorXd::Zero(unknowns.size());
   for (const int texels : {1, 4, 36, 144, 3600}) {
     TexelLattice one(disturbed.set, disturbed.maps, unknowns, texels, 0.1, 1);
@@ -108,7 +110,7 @@ TEST(TexelLattice, TexelsAndTheirMeanSlopeFollowAsPredicted) {
   Case c(false, false);
   c.lattice->Reduce(c.x, c.values);
   VectorXd step = VectorXd::Zero(c.unknowns->size());
-  for (int v = 0; v < kViews; ++v) step[ViewUnknowns::light(v)] = 0.01;
+  for (int v = 0; v < kViews; ++v) step[c.unknowns->light(v)] = 0.01;
   const TexelLattice::Values followed = c.lattice->Follow(step, c.values);
   TexelLattice::Values fitted = c.values;
   for (int i = 0; i < 3; ++i) c.lattice->Fit(c.x + step, nullptr, &fitted);
@@ -150,14 +152,14 @@ TEST(ViewHolds, ASharedOffsetIsNotHeldByEveryLight) {
   for (int v = 0; v < kViews; ++v) {
     const Vec3d d = c.unknowns->LightDirection(v);
     const Eigen::Vector3d direction(d[0], d[1], d[2]);
-    shared.segment<3>(ViewUnknowns::light(v)) =
+    shared.segment<3>(c.unknowns->light(v)) =
         Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction) *
         Eigen::Vector3d(0.1, 0, 0);
   }
   EXPECT_NEAR(holds.Add(shared, nullptr), 0.5 * (0.1 / 0.3) * (0.1 / 0.3), 1e-9);
   EXPECT_EQ(holds.Learned(shared, {}).light, ViewExpectations{}.light);
   VectorXd own = VectorXd::Zero(c.unknowns->size());
-  for (int v = 0; v < kViews; ++v) own[ViewUnknowns::light(v) + 1] = v % 2 == 0 ? 0.2 : -0.2;
+  for (int v = 0; v < kViews; ++v) own[c.unknowns->light(v) + 1] = v % 2 == 0 ? 0.2 : -0.2;
   EXPECT_GT(holds.Learned(own, {}).light, 0.08);
 }
 

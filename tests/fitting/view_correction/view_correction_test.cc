@@ -27,14 +27,14 @@ ViewCorrectionResult Correct(const DisturbedSet& disturbed, const ViewCorrection
 
 // Degrees between the light found and the true one, mean over the views.
 double LightErrorDeg(const DisturbedSet& disturbed, const std::vector<ViewCorrection>& found) {
+  const std::vector<ViewCorrection>& errors = disturbed.errors.views;
   double sum = 0;
   for (size_t i = 0; i < found.size(); ++i) {
     View real = disturbed.set.photographs[i].view;
     ViewCorrection rest;
     for (size_t k = 0; k < 3; ++k) {
-      real.light_in_sample_mm[k] += disturbed.errors[i].light_offset_mm[k];
-      rest.light_offset_mm[k] =
-          found[i].light_offset_mm[k] - disturbed.errors[i].light_offset_mm[k];
+      real.light_in_sample_mm[k] += errors[i].light_offset_mm[k];
+      rest.light_offset_mm[k] = found[i].light_offset_mm[k] - errors[i].light_offset_mm[k];
     }
     sum += LightTurnedDeg(real, rest) / static_cast<double>(found.size());
   }
@@ -44,9 +44,9 @@ double LightErrorDeg(const DisturbedSet& disturbed, const std::vector<ViewCorrec
 TEST(CorrectViews, BringsLightsBackThatAreOff) {
   const DisturbedSet disturbed = Disturb(12, 0.1, 0, false);
   const ViewCorrectionResult found = Correct(disturbed, Few());
-  const std::vector<ViewCorrection> none(disturbed.errors.size());
+  const std::vector<ViewCorrection> none(disturbed.errors.views.size());
   EXPECT_GT(LightErrorDeg(disturbed, none), 4.5);
-  EXPECT_LT(LightErrorDeg(disturbed, found.views), 1.5);
+  EXPECT_LT(LightErrorDeg(disturbed, found.corrections.views), 1.5);
   EXPECT_LT(found.cost_after, 0.1 * found.cost_before);
 }
 
@@ -66,9 +66,9 @@ TEST(CorrectViews, BringsLightsBackThatAreAllOffAlikeAndHaveTiltedTheNormals) {
     }
   }
   const ViewCorrectionResult found = Correct(disturbed, Few());
-  const std::vector<ViewCorrection> none(disturbed.errors.size());
+  const std::vector<ViewCorrection> none(disturbed.errors.views.size());
   EXPECT_GT(LightErrorDeg(disturbed, none), 8);
-  EXPECT_LT(LightErrorDeg(disturbed, found.views), 1.0);
+  EXPECT_LT(LightErrorDeg(disturbed, found.corrections.views), 1.0);
 }
 
 TEST(CorrectViews, FindsHowPicturesAreDisplaced) {
@@ -78,12 +78,12 @@ TEST(CorrectViews, FindsHowPicturesAreDisplaced) {
   double squares = 0, count = 0;
   for (int k = 0; k < 4; ++k) {
     double common = 0;
-    for (const ViewCorrection& e : disturbed.errors) {
-      common += e.shifts.column[k] / static_cast<double>(disturbed.errors.size());
+    for (const ViewCorrection& e : disturbed.errors.views) {
+      common += e.shifts.column[k] / static_cast<double>(disturbed.errors.views.size());
     }
-    for (size_t i = 0; i < found.views.size(); ++i) {
-      const double error =
-          found.views[i].shifts.column[k] - (disturbed.errors[i].shifts.column[k] - common);
+    for (size_t i = 0; i < found.corrections.views.size(); ++i) {
+      const double error = found.corrections.views[i].shifts.column[k] -
+                           (disturbed.errors.views[i].shifts.column[k] - common);
       squares += error * error;
       ++count;
     }
@@ -97,24 +97,50 @@ TEST(CorrectViews, FindsTheAmbientLight) {
   options.expected.ambient = 1;  // albedos explain most of it too: a firm prior would prefer them
   const ViewCorrectionResult found = Correct(disturbed, options);
   for (size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(found.views[0].ambient_rgb[c], 3.14159 * test::kAmbientShare, 0.035);
-    EXPECT_EQ(found.views[0].ambient_rgb[c], found.views[7].ambient_rgb[c]);
+    EXPECT_NEAR(found.corrections.room.PlaneIrradiance()[c], 3.14159 * test::kAmbientShare, 0.035);
   }
 }
 
 // Phones are now nearer, now farther; the room is not.
-TEST(CorrectViews, AmbientLightIsTheSameForViewsFromAnyDistance) {
-  DisturbedSet disturbed = Disturb(6, 0.05, 0, true);
+TEST(CorrectViews, TheRoomsLightIsTheSameForViewsFromAnyDistance) {
+  DisturbedSet disturbed = Disturb(12, 0, 0, false);
   disturbed.set.convention.falloff = LightFalloff::kInverseSquare;
+  const RoomLight room{{{test::kAmbientShare, test::kAmbientShare, test::kAmbientShare}}};
   for (size_t i = 0; i < disturbed.set.photographs.size(); ++i) {
-    View& view = disturbed.set.photographs[i].view;
-    for (double& power : view.light_rgb) power *= 5 + static_cast<double>(i);
-    view.light_in_sample_mm[2] *= 1 + 0.1 * static_cast<double>(i);
+    Photograph& photograph = disturbed.set.photographs[i];
+    View& view = photograph.view;
+    view.light_in_sample_mm[2] *= 1 + 0.05 * static_cast<double>(i);
+    for (double& power : view.light_rgb) power *= 5;
+    RenderView(disturbed.maps, disturbed.set.plane, view, disturbed.set.convention,
+               photograph.rgb.data());
+    AddRoomLight(room, disturbed.maps, disturbed.set.plane, view, disturbed.set.convention,
+                 photograph.rgb.data());
   }
-  const ViewCorrectionResult found = Correct(disturbed, Few());
-  EXPECT_NE(found.views[0].ambient_rgb, (Vec3d{0, 0, 0}));
-  for (const ViewCorrection& c : found.views) {
-    EXPECT_EQ(c.ambient_rgb, found.views[0].ambient_rgb);
+  ViewCorrectionOptions options = Few();
+  options.light = options.registration = false;
+  options.expected.ambient = 1;
+  const ViewCorrectionResult found = Correct(disturbed, options);
+  const Vec3d irradiance = found.corrections.room.PlaneIrradiance();
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(irradiance[c], 3.14159 * test::kAmbientShare, 0.035);
+}
+
+// A window to the right that the sample's gloss sees too.
+TEST(CorrectViews, FindsWhereTheRoomsLightComesFrom) {
+  RoomLight room;
+  room.radiance_rgb.assign(9, {0, 0, 0});
+  room.radiance_rgb[0] = {0.05, 0.05, 0.06};
+  room.radiance_rgb[3] = {0.03, 0.02, 0.02};  // toward +x
+  const DisturbedSet disturbed = test::DisturbLitBy(room, 12, 0, 0, 64, false);
+  ViewCorrectionOptions options = Few();
+  options.light = options.registration = false;
+  options.expected.ambient = 1;
+  options.room_terms = 9;
+  const ViewCorrectionResult found = Correct(disturbed, options);
+  EXPECT_LT(found.cost_after, 0.05 * found.cost_before);
+  const std::vector<Vec3d>& terms = found.corrections.room.radiance_rgb;
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(terms[3][c], room.radiance_rgb[3][c], 0.003);
+    EXPECT_NEAR(terms[1][c], 0, 0.003);  // toward +y
   }
 }
 
@@ -130,19 +156,21 @@ TEST(CorrectViews, WhatIsMaskedMayBeAnything) {
     }
   }
   const ViewCorrectionResult found = Correct(disturbed, Few());
-  EXPECT_LT(LightErrorDeg(disturbed, found.views), 1.5);
+  EXPECT_LT(LightErrorDeg(disturbed, found.corrections.views), 1.5);
 }
 
 TEST(CorrectViews, FindsAnExposureThatIsOffWhereItMay) {
   DisturbedSet disturbed = Disturb(12, 0, 0, false);
   for (float& value : disturbed.set.photographs[3].rgb) value *= 1.15f;
   ViewCorrectionOptions options = Few();
-  options.registration = options.ambient = false;
-  EXPECT_EQ(Correct(disturbed, options).views[3].exposure, 1);
+  options.registration = false;
+  options.room_terms = 0;
+  EXPECT_EQ(Correct(disturbed, options).corrections.views[3].exposure, 1);
   options.exposure = true;
   const ViewCorrectionResult found = Correct(disturbed, options);
-  EXPECT_NEAR(found.views[3].exposure / found.views[4].exposure, 1.15, 0.02);
-  EXPECT_NEAR(found.views[5].exposure / found.views[4].exposure, 1, 0.02);
+  EXPECT_NEAR(found.corrections.views[3].exposure / found.corrections.views[4].exposure, 1.15,
+              0.02);
+  EXPECT_NEAR(found.corrections.views[5].exposure / found.corrections.views[4].exposure, 1, 0.02);
 }
 
 TEST(CorrectViews, LeavesRightViewsRight) {
@@ -150,7 +178,7 @@ TEST(CorrectViews, LeavesRightViewsRight) {
   ViewCorrectionOptions options = Few();
   options.last_texels = 3600;  // all: a lattice of fewer is not as level as the sample
   const ViewCorrectionResult found = Correct(right, options);
-  for (const ViewCorrection& c : found.views) {
+  for (const ViewCorrection& c : found.corrections.views) {
     for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(c.light_offset_mm[k], 0, 1e-3);
     for (int k = 0; k < 4; ++k) EXPECT_NEAR(c.shifts.column[k], 0, 1e-3);
   }
@@ -159,16 +187,17 @@ TEST(CorrectViews, LeavesRightViewsRight) {
 TEST(CorrectViews, HoldsWhatItIsToldToHold) {
   const DisturbedSet disturbed = Disturb(6, 0.1, 0.5, true);
   ViewCorrectionOptions options = Few();
-  options.light = options.ambient = false;
+  options.light = false;
+  options.room_terms = 0;
   const ViewCorrectionResult found = Correct(disturbed, options);
   bool moved = false;
-  for (const ViewCorrection& c : found.views) {
+  for (const ViewCorrection& c : found.corrections.views) {
     EXPECT_EQ(c.light_offset_mm, (Vec3d{0, 0, 0}));
-    EXPECT_EQ(c.ambient_rgb, (Vec3d{0, 0, 0}));
     EXPECT_EQ(c.exposure, 1);
     moved = moved || c.shifts.any();
   }
   EXPECT_TRUE(moved);
+  EXPECT_FALSE(found.corrections.room.any());
 }
 
 TEST(CorrectViews, AViewThatShowsNothingStaysAsItIs) {
@@ -178,8 +207,8 @@ TEST(CorrectViews, AViewThatShowsNothingStaysAsItIs) {
   ViewCorrectionOptions options = Few();
   options.registration = false;
   const ViewCorrectionResult found = Correct(disturbed, options);
-  EXPECT_EQ(found.views[2].light_offset_mm, (Vec3d{0, 0, 0}));
-  EXPECT_NE(found.views[1].light_offset_mm, (Vec3d{0, 0, 0}));
+  EXPECT_EQ(found.corrections.views[2].light_offset_mm, (Vec3d{0, 0, 0}));
+  EXPECT_NE(found.corrections.views[1].light_offset_mm, (Vec3d{0, 0, 0}));
 }
 
 TEST(CorrectViews, TheSameForAnyNumberOfThreads) {
@@ -189,10 +218,10 @@ TEST(CorrectViews, TheSameForAnyNumberOfThreads) {
   const ViewCorrectionResult one = CorrectViews(disturbed.set, disturbed.maps, options, 1);
   const ViewCorrectionResult three = CorrectViews(disturbed.set, disturbed.maps, options, 3);
   EXPECT_EQ(one.cost_after, three.cost_after);
-  for (size_t i = 0; i < one.views.size(); ++i) {
-    EXPECT_EQ(one.views[i].light_offset_mm, three.views[i].light_offset_mm);
-    EXPECT_EQ(one.views[i].ambient_rgb, three.views[i].ambient_rgb);
+  for (size_t i = 0; i < one.corrections.views.size(); ++i) {
+    EXPECT_EQ(one.corrections.views[i].light_offset_mm, three.corrections.views[i].light_offset_mm);
   }
+  EXPECT_EQ(one.corrections.room.radiance_rgb, three.corrections.room.radiance_rgb);
 }
 
 TEST(CorrectViews, RefusesMapsOfAnotherSize) {
@@ -211,7 +240,9 @@ TEST(Corrected, UndoesTheDisturbanceForAnyNumberOfThreads) {
   std::vector<float> rendered(3 * disturbed.maps.texels());
   for (size_t i = 0; i < one.photographs.size(); ++i) {
     EXPECT_EQ(one.photographs[i].rgb, two.photographs[i].rgb);
-    RenderView(disturbed.maps, one.plane, one.photographs[i].view, one.convention, rendered.data());
+    const View& view = one.photographs[i].view;
+    RenderView(disturbed.maps, one.plane, view, one.convention, rendered.data());
+    AddRoomLight(one.room, disturbed.maps, one.plane, view, one.convention, rendered.data());
     for (size_t t = 0; t < rendered.size(); ++t) {
       if (one.photographs[i].mask[t % disturbed.maps.texels()] < 0.5f) continue;
       left += std::abs(rendered[t] - one.photographs[i].rgb[t]);
@@ -225,9 +256,9 @@ TEST(AtSize, ScalesDisplacementsWithThePicture) {
   ViewCorrection c;
   c.shifts.column[1] = 0.5;
   c.shifts.row[2] = -0.25;
-  const auto large = AtSize({c}, 100, 50, 200, 200);
-  EXPECT_DOUBLE_EQ(large[0].shifts.column[1], 1.0);
-  EXPECT_DOUBLE_EQ(large[0].shifts.row[2], -1.0);
+  const ViewCorrections large = AtSize({{c}, {}}, 100, 50, 200, 200);
+  EXPECT_DOUBLE_EQ(large.views[0].shifts.column[1], 1.0);
+  EXPECT_DOUBLE_EQ(large.views[0].shifts.row[2], -1.0);
 }
 
 }  // namespace

@@ -1,0 +1,108 @@
+#include "fitting/view_correction/texel_reduction.h"
+
+#include <Eigen/Cholesky>
+
+namespace glint {
+namespace {
+
+constexpr int kTexelBatch = 16;
+constexpr int kRoomBatch = 256;  // residuals
+
+}  // namespace
+
+TexelReduction::TexelReduction(int unknowns, int room_terms)
+    : equations(unknowns), room_terms_(room_terms) {
+  texels_.rows.resize(kTexelBatch * kTexelParameters, unknowns);
+  for (Batch& batch : room_) batch.rows.resize(kRoomBatch, room_terms);
+  products_.resize(kTexelParameters, unknowns);
+}
+
+void TexelReduction::Begin(const TexelValues& values) {
+  double variables[kTexelParameters];
+  ToVariables(values, variables);
+  TexelValues same;
+  ToTexelValues(variables, &same, &by_variable_);
+  products_.setZero();
+}
+
+void TexelReduction::Add(const KernelRows& rows, int view, int channel,
+                         const std::vector<std::pair<int, double>>& by_views,
+                         const Eigen::VectorXd& by_room) {
+  const auto at = [&](KernelRows::Row row) { return rows.row(channel, row)[view]; };
+  const std::pair<int, double> by_texel[] = {{DiffuseParameter(channel), at(KernelRows::kByDiffuse)},
+                                             {SpecularParameter(channel), at(KernelRows::kBySpecular)},
+                                             {kRough, at(KernelRows::kByRough)},
+                                             {kSlopeX, at(KernelRows::kBySlopeX)},
+                                             {kSlopeY, at(KernelRows::kBySlopeY)}};
+  for (const auto& [parameter, derivative] : by_texel) {
+    const double by = derivative * by_variable_[static_cast<size_t>(parameter)];
+    for (const auto& [unknown, by_view] : by_views) products_(parameter, unknown) += by * by_view;
+    products_.row(parameter).segment(first_of_room(channel), room_terms_) +=
+        by * by_room.transpose();
+  }
+  equations.Add(at(KernelRows::kResidual), by_views);
+  if (room_terms_ > 0) AddRoom(channel, at(KernelRows::kResidual), by_views, by_room);
+}
+
+// The room's terms are many and dense.
+void TexelReduction::AddRoom(int channel, double residual,
+                             const std::vector<std::pair<int, double>>& by_views,
+                             const Eigen::VectorXd& by_room) {
+  const int first = first_of_room(channel);
+  equations.gradient.segment(first, room_terms_) += residual * by_room;
+  for (const auto& [unknown, by_view] : by_views) {
+    equations.hessian.row(unknown).segment(first, room_terms_) += by_view * by_room.transpose();
+  }
+  Batch& batch = room_[static_cast<size_t>(channel)];
+  batch.rows.row(batch.filled++) = by_room.transpose();
+  if (batch.filled == batch.rows.rows()) FlushRoom(channel);
+}
+
+void TexelReduction::Eliminate(const TexelGram& gram, TexelFollowing* following) {
+  using Square = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
+  Square own;
+  Eigen::Matrix<double, kTexelParameters, 1> gradient;
+  for (int i = 0; i < kTexelParameters; ++i) {
+    const size_t a = static_cast<size_t>(i);
+    for (int j = i; j < kTexelParameters; ++j) {
+      const size_t b = static_cast<size_t>(j);
+      own(i, j) = own(j, i) = gram[a][b] * by_variable_[a] * by_variable_[b];
+    }
+    own(i, i) += 1e-8;
+    gradient[i] = gram[a][kTexelParameters] * by_variable_[a];
+  }
+  const Eigen::LLT<Square> factor(own);
+  const Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> half =
+      factor.matrixL().solve(products_);
+  const Eigen::Matrix<double, kTexelParameters, 1> half_gradient = factor.matrixL().solve(gradient);
+  equations.gradient.noalias() -= half.transpose() * half_gradient;
+  texels_.rows.middleRows<kTexelParameters>(texels_.filled) = half;
+  texels_.filled += kTexelParameters;
+  if (texels_.filled == texels_.rows.rows()) Flush();
+  following->by_views = factor.matrixU().solve(half);
+  following->own = factor.matrixU().solve(half_gradient);
+}
+
+void TexelReduction::Finish() {
+  Flush();
+  for (int c = 0; c < 3; ++c) FlushRoom(c);
+}
+
+void TexelReduction::Flush() {
+  if (texels_.filled == 0) return;  // Eigen divides by the number of rows
+  equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(
+      texels_.rows.topRows(texels_.filled).transpose(), -1);
+  texels_.filled = 0;
+}
+
+void TexelReduction::FlushRoom(int channel) {
+  Batch& batch = room_[static_cast<size_t>(channel)];
+  if (batch.filled == 0) return;
+  const int first = first_of_room(channel);
+  equations.hessian.block(first, first, room_terms_, room_terms_)
+      .selfadjointView<Eigen::Lower>()
+      .rankUpdate(batch.rows.topRows(batch.filled).transpose(), 1);
+  batch.filled = 0;
+}
+
+}  // namespace glint

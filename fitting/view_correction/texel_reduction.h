@@ -1,0 +1,59 @@
+// Normal equations of the views from which texels are eliminated, one texel after the other: their
+// Schur complement (Kaufman's form of variable projection).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "fitting/texel/texel_kernel.h"
+#include "fitting/texel/texel_parameters.h"
+#include "fitting/view_correction/normal_equations.h"
+
+namespace glint {
+
+// How one texel follows the views: by the solver's variables, −∂u/∂x and −its own step.
+struct TexelFollowing {
+  Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> by_views;
+  Eigen::Matrix<double, kTexelParameters, 1> own;
+};
+
+class TexelReduction {
+ public:
+  // `room_terms`: of a channel; the room's unknowns come first of all, channel by channel.
+  TexelReduction(int unknowns, int room_terms);
+
+  // A texel with these values.
+  void Begin(const TexelValues& values);
+  // One residual of it, and its derivatives by a few unknowns and by the channel's terms of the
+  // room's light (of no size without these); those by the texel's values are in `rows`.
+  void Add(const KernelRows& rows, int view, int channel,
+           const std::vector<std::pair<int, double>>& by_views, const Eigen::VectorXd& by_room);
+  // Takes the texel out; `gram`: its own products.
+  void Eliminate(const TexelGram& gram, TexelFollowing* following);
+  // After the last texel. Only the lower triangle of `equations` is complete.
+  void Finish();
+
+  NormalEquations equations;
+
+ private:
+  // Rows whose outer products are summed by one matrix product.
+  struct Batch {
+    Eigen::MatrixXd rows;
+    Eigen::Index filled = 0;
+  };
+  void AddRoom(int channel, double residual, const std::vector<std::pair<int, double>>& by_views,
+               const Eigen::VectorXd& by_room);
+  void Flush();
+  void FlushRoom(int channel);
+  int first_of_room(int channel) const { return room_terms_ * channel; }
+
+  int room_terms_;
+  TexelValues by_variable_{};  // ∂value/∂(the solver's variable): a value at its bound stays
+  Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> products_;
+  Batch texels_;
+  std::array<Batch, 3> room_;
+};
+
+}  // namespace glint
