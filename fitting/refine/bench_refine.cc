@@ -268,7 +268,7 @@ int Main() {
                       refined.summary.final_cost};
     Print("refine, all of it", refine);
 
-    const PriorWeights weights = HoldToStart(options.prior, refined.summary.telling_sigma(),
+    const PriorWeights weights = HoldToStart(options.prior, refined.summary.holding_sigma(),
                                              refined.summary.distinct_views, {});
     const Side plain = Measure(
         scene, weights,

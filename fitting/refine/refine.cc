@@ -181,7 +181,7 @@ void Refiner::EstimateNoise() {
     summary.residual_sigma = std::sqrt(std::max(*middle, 1e-8));
   }
   for (auto& worker : workers_) worker->search.SetNoise(summary.residual_sigma);
-  weights_ = HoldToStart(options_.prior, summary.telling_sigma(), summary.distinct_views, {});
+  weights_ = HoldToStart(options_.prior, summary.holding_sigma(), summary.distinct_views, {});
 }
 
 PriorWeights Refiner::WeightsAt(size_t texel) const {
@@ -366,7 +366,8 @@ RefineResult Refine(const RefineProblem& problem, const SvbrdfMaps& start,
   if (!wrong.empty()) throw std::invalid_argument("refine: " + wrong);
   CheckProblem(problem, start);
   // Progress of all passes as of one long one.
-  const int passes = DistinctViews(problem) < kPoolingViews ? 0 : options.pooling_passes;
+  const bool pools = static_cast<int>(problem.views.size()) >= kPoolingViews;
+  const int passes = pools ? options.pooling_passes : 0;
   int pass = 0;
   const auto report = [&](std::int64_t done, std::int64_t total) {
     if (progress) progress(pass * total + done, (passes + 1) * total);

@@ -12,7 +12,7 @@
 //   4. Standard deviations from the final normal equations.
 //   5. All again, `pooling_passes` times, from a start in which each texel's highlight is what its
 //      neighbours of like colour know of it (highlight_pool.h): one that no photograph shows near
-//      its highlight learns from those that were seen. Not with fewer distinct views than
+//      its highlight learns from those that were seen. Not with fewer photographs than
 //      kPoolingViews, which leave highlights too open for anyone to learn from.
 // Texels are independent within a step, so the result does not depend on the number of threads.
 #pragma once
@@ -49,7 +49,7 @@ struct RefineProblem {
   std::span<const float> roughness_error, specular_error;
 };
 
-inline constexpr double kPoolingViews = 2.5;
+inline constexpr int kPoolingViews = 3;
 
 struct RefineOptions {
   int iterations = 40;        // most Levenberg–Marquardt steps of one solve
@@ -91,6 +91,9 @@ struct RefineSummary {
 
   // What residuals are worth as evidence.
   double telling_sigma() const { return residual_sigma * std::sqrt(shared_noise); }
+  // The same, as far as it is a reason to hold to the start: residuals of more than 5 % are errors
+  // of the model (glitter, layers) more than of the photographs, and the start is as wrong by them.
+  double holding_sigma() const { return std::fmin(telling_sigma(), 0.05); }
   std::string BriefReport() const;
 };
 

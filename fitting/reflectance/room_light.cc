@@ -11,7 +11,9 @@ constexpr double kPi = std::numbers::pi;
 
 using ByDegree = std::array<double, kRoomDegree + 1>;
 
-constexpr size_t TermOf(int degree, int m) { return static_cast<size_t>(degree * (degree + 1) + m); }
+constexpr size_t TermOf(int degree, int m) {
+  return static_cast<size_t>(degree * (degree + 1) + m);
+}
 
 // (degree − m)! / (degree + m)!
 double RatioOfFactorials(int degree, int m) {

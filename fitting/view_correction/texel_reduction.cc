@@ -29,11 +29,12 @@ void TexelReduction::Add(const KernelRows& rows, int view, int channel,
                          const std::vector<std::pair<int, double>>& by_views,
                          const Eigen::VectorXd& by_room) {
   const auto at = [&](KernelRows::Row row) { return rows.row(channel, row)[view]; };
-  const std::pair<int, double> by_texel[] = {{DiffuseParameter(channel), at(KernelRows::kByDiffuse)},
-                                             {SpecularParameter(channel), at(KernelRows::kBySpecular)},
-                                             {kRough, at(KernelRows::kByRough)},
-                                             {kSlopeX, at(KernelRows::kBySlopeX)},
-                                             {kSlopeY, at(KernelRows::kBySlopeY)}};
+  const std::pair<int, double> by_texel[] = {
+      {DiffuseParameter(channel), at(KernelRows::kByDiffuse)},
+      {SpecularParameter(channel), at(KernelRows::kBySpecular)},
+      {kRough, at(KernelRows::kByRough)},
+      {kSlopeX, at(KernelRows::kBySlopeX)},
+      {kSlopeY, at(KernelRows::kBySlopeY)}};
   for (const auto& [parameter, derivative] : by_texel) {
     const double by = derivative * by_variable_[static_cast<size_t>(parameter)];
     for (const auto& [unknown, by_view] : by_views) products_(parameter, unknown) += by * by_view;

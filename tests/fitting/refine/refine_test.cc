@@ -168,6 +168,18 @@ TEST(Refine, StopsLookingAtTheStartAsViewsGrow) {
   }
 }
 
+TEST(RefineSummary, ErrorsOfTheModelAreNoReasonToHoldToTheStart) {
+  RefineSummary noise;
+  noise.residual_sigma = 0.01;
+  noise.shared_noise = 2.25;
+  EXPECT_DOUBLE_EQ(noise.holding_sigma(), noise.telling_sigma());
+  RefineSummary glitter = noise, more_glitter = noise;
+  glitter.residual_sigma = 0.1;
+  more_glitter.residual_sigma = 0.3;
+  EXPECT_LT(glitter.holding_sigma(), glitter.telling_sigma());
+  EXPECT_EQ(glitter.holding_sigma(), more_glitter.holding_sigma());
+}
+
 TEST(Refine, ConfidenceGrowsWithViews) {
   const SvbrdfMaps truth = QuarteredMaps(16, 18);
   const SvbrdfMaps start = DisturbedMaps(truth, 0.5f, 19);

@@ -38,8 +38,8 @@ void ForEachCell(double polar0, double polar1,
     const double polar = polar0 + (polar1 - polar0) * (i + 0.5) / kRings;
     for (int j = 0; j < kSectors; ++j) {
       const double azimuth = 2 * kPi * (j + 0.5) / kSectors;
-      const double d[3] = {std::sin(polar) * std::cos(azimuth),
-                           std::sin(polar) * std::sin(azimuth), std::cos(polar)};
+      const double d[3] = {std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                           std::cos(polar)};
       visit(d, std::sin(polar) * (polar1 - polar0) / kRings * 2 * kPi / kSectors);
     }
   }
@@ -127,8 +127,7 @@ TEST(RoomLight, AnEvenRoomLightsLikeAnAmbientLight) {
   View lit = view;
   lit.ambient_rgb = {0.1 * kPi, 0.2 * kPi, 0.3 * kPi};
   TexelGeometry<double> by_room = TexelGeometryInView(view, LightFalloff::kNone, 5.0, 5.0);
-  const TexelGeometry<double> by_ambient =
-      TexelGeometryInView(lit, LightFalloff::kNone, 5.0, 5.0);
+  const TexelGeometry<double> by_ambient = TexelGeometryInView(lit, LightFalloff::kNone, 5.0, 5.0);
   RoomReflection(Gloss(0.1, 0.4)).AddTo(room, view.exposure, &by_room);
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(by_room.ambient[c], by_ambient.ambient[c], 1e-12);
@@ -141,8 +140,7 @@ TEST(RoomLight, AnEvenRoomLightsLikeAnAmbientLight) {
 TEST(RoomLight, SumsHaveAllTermsOfBoth) {
   RoomLight sum{{{1, 2, 3}}};
   sum.Add({{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}});
-  EXPECT_EQ(sum.radiance_rgb,
-            (std::vector<Vec3d>{{2, 2, 3}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}));
+  EXPECT_EQ(sum.radiance_rgb, (std::vector<Vec3d>{{2, 2, 3}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}));
   EXPECT_EQ(sum.degree(), 1);
   sum.Add({});
   EXPECT_EQ(sum.terms(), 4);
