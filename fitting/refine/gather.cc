@@ -1,6 +1,7 @@
 #include "fitting/refine/gather.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "fitting/reflectance/texel_at.h"
 
@@ -11,8 +12,8 @@ void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps, si
   const size_t texels = static_cast<size_t>(problem.plane.width) * problem.plane.height;
   const double x = problem.plane.x_mm(static_cast<int>(texel % problem.plane.width));
   const double y = problem.plane.y_mm(static_cast<int>(texel / problem.plane.width));
-  const bool lit_by_room = problem.room.any();
-  const RoomReflection reflection(TexelAt(maps, texel));
+  std::optional<RoomReflection> reflection;
+  if (problem.room.any()) reflection.emplace(TexelAt(maps, texel));
   observations->Clear();
   for (const RefineView& view : problem.views) {
     if (!(view.mask[texel] >= 0.5f)) continue;
@@ -24,7 +25,7 @@ void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps, si
     }
     TexelGeometry<double> geometry =
         TexelGeometryInView<double>(view.view, problem.convention.falloff, x, y);
-    if (lit_by_room) reflection.AddTo(problem.room, view.view.exposure, &geometry);
+    if (reflection) reflection->AddTo(problem.room, view.view.exposure, &geometry);
     observations->Add(geometry, radiance, clipped);
   }
   observations->Finish();

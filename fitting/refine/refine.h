@@ -91,9 +91,9 @@ struct RefineSummary {
 
   // What residuals are worth as evidence.
   double telling_sigma() const { return residual_sigma * std::sqrt(shared_noise); }
-  // The same, as far as it is a reason to hold to the start: residuals of more than 5 % are errors
+  // The same, as far as it is a reason to hold to the start: residuals of more than 8 % are errors
   // of the model (glitter, layers) more than of the photographs, and the start is as wrong by them.
-  double holding_sigma() const { return std::fmin(telling_sigma(), 0.05); }
+  double holding_sigma() const { return std::fmin(telling_sigma(), 0.08); }
   std::string BriefReport() const;
 };
 

@@ -112,6 +112,7 @@ TexelLattice::TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps,
   const int width = set.plane.width, height = set.plane.height;
   const int stride = std::max(
       1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(maps.texels()) / texels))));
+  const int room_degree = unknowns.RoomAt(Eigen::VectorXd::Zero(unknowns.size())).degree();
   for (int row = kMargin + stride / 2; row < height - kMargin; row += stride) {
     for (int column = kMargin + stride / 2; column < width - kMargin; column += stride) {
       const size_t index = static_cast<size_t>(row) * width + column;
@@ -128,7 +129,7 @@ TexelLattice::TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps,
         const TexelGeometry<double> geometry =
             TexelGeometryInView<double>(set.photographs[static_cast<size_t>(v)].view,
                                         set.convention.falloff, texel.x_mm, texel.y_mm);
-        texel.room_specular.push_back(reflection.Specular(geometry.camera));
+        texel.room_specular.push_back(reflection.Specular(geometry.camera, room_degree));
       }
       CornerWeights((column + 0.5) / width, (row + 0.5) / height, texel.corner_weights);
       residuals_ += 3.0 * static_cast<double>(texel.views.size());
