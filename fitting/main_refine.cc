@@ -16,7 +16,11 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined) {
                   refined.width, refined.height, refined.views.size(), refined.seconds,
                   texels / refined.seconds, refined.summary.BriefReport());
   const Json& correction = refined.metrics["correction"];
-  if (refined.correction.taken) {
+  if (refined.correction.taken && !correction["views_moved"].get<bool>()) {
+    result.text += fmt::format(
+        "  room's light found: {:.1f} % of the flash; lights and pictures as they were\n",
+        100 * correction["ambient_of_flash"].get<double>());
+  } else if (refined.correction.taken) {
     result.text += fmt::format(
         "  views corrected: lights turned by {:.1f} deg, pictures moved by {:.2f} texels, ambient "
         "light {:.1f} % of the flash (means)\n",

@@ -93,10 +93,12 @@ void AddCorrections(const CorrectionResult& found, const RectifiedSet& set,
   if (!found.taken) return;
   Json entries = Json::array();
   double turned_deg = 0, shifted = 0;
+  bool moved = false;
   for (size_t i = 0; i < views.size(); ++i) {
     const ViewCorrection& c = found.corrections.views[i];
     turned_deg += LightTurnedDeg(views[i].view, c) / static_cast<double>(views.size());
     shifted += MeanShift(c.shifts) / static_cast<double>(views.size());
+    moved = moved || !c.none();
     entries.push_back(JsonOf(views[i].name, c));
   }
   result->data["corrections"] = entries;
@@ -109,7 +111,8 @@ void AddCorrections(const CorrectionResult& found, const RectifiedSet& set,
     flash += light_scale_rgb[k] * centre.irradiance[k] / views[0].view.exposure;
     room += ambient[k];
   }
-  result->metrics["correction"].update({{"light_turned_deg", turned_deg},
+  result->metrics["correction"].update({{"views_moved", moved},
+                                        {"light_turned_deg", turned_deg},
                                         {"registration_texel", shifted},
                                         {"ambient_of_flash", room / flash}});
 }

@@ -32,6 +32,8 @@ struct ViewCorrection {
   Vec3d light_offset_mm{0, 0, 0};
   double exposure = 1;  // factor
   CornerShifts shifts;  // the picture is to be looked up so far off, in texels
+
+  bool none() const { return light_offset_mm == Vec3d{0, 0, 0} && exposure == 1 && !shifts.any(); }
 };
 
 // All that is to be corrected about a set.

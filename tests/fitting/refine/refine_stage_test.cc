@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "fitting/render/render_room.h"
+#include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_file.h"
@@ -16,13 +18,17 @@ using test::ReadAll;
 
 constexpr int kSize = 24;
 
-// A capture as rectify and fit leave it: three views, a fit of half the size, light found 2× too
-// weak.
-void WriteCapture(const fs::path& folder) {
+// A capture as rectify and fit leave it: a fit of half the size, light found 2× too weak.
+void WriteCapture(const fs::path& folder, int views = 3, const RoomLight& room = {}) {
   test::WriteAll(folder / "capture.toml",
                  "[sample]\nsize_mm = [2, 2]\n[photos]\nfiles = [\"photos/*.png\"]\n");
   test::WriteAll(folder / "photos/0.png", "refine reads rectified views only");
-  const test::SyntheticScene scene = test::Photograph(test::QuarteredMaps(kSize, 1), 3, 8);
+  test::SyntheticScene scene = test::Photograph(test::QuarteredMaps(kSize, 1), views, 8);
+  for (size_t i = 0; i < scene.views.size(); ++i) {
+    AddRoomLight(room, scene.truth, scene.plane, scene.views[i], scene.convention,
+                 scene.photographs[i].data());
+  }
+  Json names = Json::array();
   CommonOptions common;
   common.threads = 1;
   const OptionSet none;
@@ -35,6 +41,7 @@ void WriteCapture(const fs::path& folder) {
     for (size_t i = 0; i < scene.views.size(); ++i) {
       RectifiedView view;
       view.name = "view_00" + std::to_string(i);
+      names.push_back(view.name);
       view.file = view.name + ".exr";
       view.photo = "photos/" + std::to_string(i) + ".png";
       view.view = scene.views[i];
@@ -54,7 +61,7 @@ void WriteCapture(const fs::path& folder) {
   WriteSvbrdf(stage.Output("svbrdf.exr"), start, scene.convention);
   stage.Commit({{"convention", ToString(scene.convention)},
                 {"light_scale_rgb", {2.0, 2.0, 2.0}},
-                {"views", {"view_000", "view_001", "view_002"}},
+                {"views", names},
                 {"method", "latent"}},
                Json::object());
 }
@@ -106,6 +113,22 @@ TEST(RefineStage, KeepsViewsBack) {
   ASSERT_EQ(Refine(folder.path(), {"--exclude", "view_001"}).code, 0);
   const Manifest manifest = ReadManifest(folder.path() / "glint/refine/manifest.json", "refine");
   EXPECT_EQ(manifest.data["views"], Json({"view_000", "view_002"}));
+}
+
+TEST(RefineStage, ARoomThatIsFoundStandsInTheManifest) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path(), 9, {{{0.1, 0.1, 0.12}, {0, 0, 0}, {0, 0, 0}, {0.05, 0.05, 0.05}}});
+  const test::Outcome outcome = Refine(folder.path(), {"--correct-views", "always"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("room's light found"), std::string::npos) << outcome.out;
+  const fs::path file = folder.path() / "glint/refine/manifest.json";
+  const Manifest manifest = ReadManifest(file, "refine");
+  EXPECT_EQ(manifest.metrics["correction"]["views_moved"], false);
+  const auto corrections = ReadCorrections(file, manifest.data);
+  ASSERT_EQ(corrections.size(), 9u);
+  for (const auto& [name, correction] : corrections) EXPECT_TRUE(correction.none()) << name;
+  const Vec3d irradiance = ReadRoomLight(file, manifest.data).PlaneIrradiance();
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(irradiance[c], c == 2 ? 0.38 : 0.31, 0.15);
 }
 
 TEST(RefineStage, ThreadsDoNotChangeABytes) {
