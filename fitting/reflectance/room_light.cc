@@ -147,6 +147,10 @@ Vec3d RoomLight::PlaneIrradiance() const {
   return RoomIrradiance(*this, DiffuseTerms(kUp));
 }
 
+Vec3d RoomLight::RadianceFrom(const Vec3d& direction) const {
+  return RoomIrradiance(*this, HarmonicsAt(direction[0], direction[1], direction[2], kRoomDegree));
+}
+
 Vec3d RoomIrradiance(const RoomLight& room, const RoomHarmonics& terms) {
   Vec3d sum{0, 0, 0};
   for (size_t j = 0; j < room.radiance_rgb.size(); ++j) {

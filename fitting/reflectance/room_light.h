@@ -33,6 +33,8 @@ struct RoomLight {
   void Add(const RoomLight& more);
   // Of the sample's plane.
   Vec3d PlaneIrradiance() const;
+  // From where the unit `direction` points.
+  Vec3d RadianceFrom(const Vec3d& direction) const;
 };
 
 using RoomHarmonics = std::array<double, kRoomTerms>;

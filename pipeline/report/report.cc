@@ -1,6 +1,7 @@
 #include "pipeline/report/report.h"
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/report/corrections_section.h"
 #include "pipeline/report/guidance_section.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/sections.h"
@@ -71,6 +72,7 @@ Report MakeReport(const ReportInput& input, const ReportOptions& options, int th
   std::string body = OverviewSection(input, report.metrics);
   body += MapsSection(input, options);
   body += GuidanceSection(input);
+  body += CorrectionsSection(input);
   body += views;
   body += GeometrySection(input);
   for (const std::string& stage : StagesShown(options.from)) {

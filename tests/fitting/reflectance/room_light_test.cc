@@ -137,6 +137,14 @@ TEST(RoomLight, AnEvenRoomLightsLikeAnAmbientLight) {
   }
 }
 
+TEST(RoomLight, RadianceComesFromWhereTheTermsSay) {
+  const RoomLight room{{{0.2, 0.2, 0.2}, {0, 0, 0}, {0, 0, 0}, {0.1, 0, 0}}};
+  EXPECT_NEAR(room.RadianceFrom({1, 0, 0})[0], 0.2 + 0.1 * std::sqrt(3), 1e-12);
+  EXPECT_NEAR(room.RadianceFrom({-1, 0, 0})[0], 0.2 - 0.1 * std::sqrt(3), 1e-12);
+  EXPECT_NEAR(room.RadianceFrom({0, 0.6, 0.8})[0], 0.2, 1e-12);
+  EXPECT_NEAR(room.RadianceFrom({1, 0, 0})[1], 0.2, 1e-12);
+}
+
 TEST(RoomLight, SumsHaveAllTermsOfBoth) {
   RoomLight sum{{{1, 2, 3}}};
   sum.Add({{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}});

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "fitting/render/renderer.h"
+#include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/image.h"
@@ -162,6 +163,40 @@ TEST_F(ReportTest, ShowsWhatCalibAdvisesOnceWithItsPictures) {
   ASSERT_THAT(html, HasSubstr(caption));
   EXPECT_THAT(html, Not(HasSubstr("<figcaption>guidance_coverage.png")));
   EXPECT_THAT(html, Not(HasSubstr("<h3>guidance")));
+}
+
+TEST_F(ReportTest, ShowsWhatWasCorrectedAndTheRoom) {
+  ViewCorrection moved;
+  moved.light_offset_mm = {0, 30, 0};
+  moved.exposure = 1.25;
+  RoomLight room;
+  room.radiance_rgb = {{0.1, 0.1, 0.1}, {0, 0, 0}, {0, 0, 0}, {0.05, 0.05, 0.05}};
+  const auto make = [&](const Json& data, const Json& correction) {
+    OptionSet options;
+    Stage stage(work() / "refine", {"refine", 1}, options, CommonOptions(),
+                {work() / "fit/manifest.json"}, true);
+    WriteSvbrdf(stage.Output("svbrdf.exr"), Maps(), ReflectanceConvention());
+    stage.Commit(data, {{"correction", correction}});
+    return MakeReport(ReadReportInput(work(), "refine"), ReportOptions(), 1).html;
+  };
+  const Json views = {"view_000", "view_001"};
+  EXPECT_THAT(make({{"views", views}}, {{"taken", false}}), Not(HasSubstr("<h2>Corrected")));
+
+  const Json still = Json::array({JsonOf("view_000", ViewCorrection())});
+  const std::string lit =
+      make({{"views", views}, {"corrections", still}, {"room_light", JsonOf(room)}},
+           {{"taken", true}, {"ambient_of_flash", 0.0375}});
+  EXPECT_THAT(lit, HasSubstr("metrics.correction.ambient_of_flash\">0.0375<"));
+  EXPECT_THAT(lit, HasSubstr("the room as the sample sees it"));
+  EXPECT_THAT(lit, Not(HasSubstr("light turned")));
+
+  const Json corrections =
+      Json::array({JsonOf("view_000", ViewCorrection()), JsonOf("view_001", moved)});
+  const std::string turned =
+      make({{"views", views}, {"corrections", corrections}}, {{"taken", true}});
+  EXPECT_THAT(turned, HasSubstr("light turned"));
+  EXPECT_THAT(turned, HasSubstr("data.corrections[1].exposure\">1.25<"));
+  EXPECT_THAT(turned, Not(HasSubstr("the room as the sample sees it")));
 }
 
 TEST_F(ReportTest, ADamagedResultIsRefused) {
