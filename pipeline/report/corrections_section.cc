@@ -28,8 +28,8 @@ Image RoomPicture(const RoomLight& room) {
       const Vec3d rgb = room.RadianceFrom({x * across, y * across, std::cos(polar)});
       for (size_t c = 0; c < 3; ++c) {
         const float value = static_cast<float>(std::max(0.0, rgb[c]));
-        image.channel(static_cast<int>(c))[static_cast<size_t>(row) * kRoom_px +
-                                           static_cast<size_t>(column)] = value;
+        image.channel(static_cast<int>(
+            c))[static_cast<size_t>(row) * kRoom_px + static_cast<size_t>(column)] = value;
         brightest = std::max(brightest, value);
       }
     }
@@ -39,7 +39,8 @@ Image RoomPicture(const RoomLight& room) {
 
 std::string RoomFigure(const RoomLight& room) {
   const std::string caption =
-      "the room as the sample sees it: straight up in the middle, the horizon at the edge, x right, "
+      "the room as the sample sees it: straight up in the middle, the horizon at the edge, x "
+      "right, "
       "y up; brightest as white, gamma 2.2";
   return "<div class=\"pictures\"><figure>" + ImageHtml(PngUri(RoomPicture(room)), caption) +
          "<figcaption>" + HtmlText(caption) + "</figcaption></figure></div>\n";
