@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "fitting/refine/refine_prior.h"
 #include "pipeline/contract/svbrdf_file.h"
@@ -99,9 +100,12 @@ CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& sta
     const PhotographSet corrected = Corrected(small, found.corrections, threads);
     const SvbrdfMaps maps = Refine(ProblemOf(corrected), small_start, refine, threads).maps;
     report(2 * round);
-    found = CorrectViews(small, maps, finding.options, threads, found.corrections);
-    const bool settled = found.cost_after > (1 - options.least_gain) * result.cost_after;
-    result.cost_after = found.cost_after;
+    ViewCorrectionResult next =
+        CorrectViews(small, maps, finding.options, threads, found.corrections);
+    if (!(next.cost_after < result.cost_after)) break;  // maps that went astray
+    const bool settled = next.cost_after > (1 - options.least_gain) * result.cost_after;
+    result.cost_after = next.cost_after;
+    found = std::move(next);
     if (settled) break;
   }
   report(steps);
