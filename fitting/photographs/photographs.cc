@@ -88,6 +88,7 @@ PhotographSet Downsampled(const PhotographSet& set, int width, int height, int t
   small.plane.height = height;
   small.convention = set.convention;
   small.light_power_known = set.light_power_known;
+  small.room = set.room;
   for (const Photograph& p : set.photographs) {
     small.photographs.push_back(Downsample(p, set.plane, width, height, threads));
   }

@@ -21,7 +21,7 @@ struct PhotographSet {
   SamplePlane plane;
   ReflectanceConvention convention;
   bool light_power_known = true;  // false: light_rgb is a first guess up to one common factor
-  RoomLight room;                 // beside what each view has as ambient light
+  RoomLight room;                 // beside what each view has as ambient light; refine finds it
   std::vector<Photograph> photographs;
 
   // Empty: all is well; otherwise what is wrong (sizes, no photograph, no usable texel).

@@ -39,6 +39,12 @@ CornerShifts::Shift CornerShifts::At(int at_column, int at_row, int width, int h
   return shift;
 }
 
+double CornerShifts::rms() const {
+  double squares = 0;
+  for (int k = 0; k < 4; ++k) squares += column[k] * column[k] + row[k] * row[k];
+  return std::sqrt(squares / 4);
+}
+
 bool CornerShifts::any() const {
   const auto moved = [](double shift) { return shift != 0; };
   return std::any_of(column, column + 4, moved) || std::any_of(row, row + 4, moved);

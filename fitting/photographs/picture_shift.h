@@ -16,6 +16,7 @@ struct CornerShifts {
   };
   Shift At(int column, int row, int width, int height) const;
   bool any() const;
+  double rms() const;  // of the four corners' lengths
 };
 
 // The weights of the four corners at (u, v) in [0, 1]² from the top left.

@@ -75,14 +75,6 @@ Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& vie
           {"views", losses}};
 }
 
-double MeanShift(const CornerShifts& shifts) {
-  double squares = 0;
-  for (int i = 0; i < 4; ++i) {
-    squares += shifts.column[i] * shifts.column[i] + shifts.row[i] * shifts.row[i];
-  }
-  return std::sqrt(squares / 4);
-}
-
 // What was found and taken: data.corrections, by view, and its sizes among the metrics.
 // `light_scale_rgb`: of the views' power, as the fit found it.
 void AddCorrections(const CorrectionResult& found, const RectifiedSet& set,
@@ -97,7 +89,7 @@ void AddCorrections(const CorrectionResult& found, const RectifiedSet& set,
   for (size_t i = 0; i < views.size(); ++i) {
     const ViewCorrection& c = found.corrections.views[i];
     turned_deg += LightTurnedDeg(views[i].view, c) / static_cast<double>(views.size());
-    shifted += MeanShift(c.shifts) / static_cast<double>(views.size());
+    shifted += c.shifts.rms() / static_cast<double>(views.size());
     moved = moved || !c.none();
     entries.push_back(JsonOf(views[i].name, c));
   }

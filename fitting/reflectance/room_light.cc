@@ -34,7 +34,7 @@ std::array<double, kRoomTerms> Scales() {
   return scales;
 }
 
-// `d`: unit. By P_l^m(z) / sin^m, with sin^m·cos(m·azimuth) and sin^m·sin(m·azimuth) as
+// (x, y, z): unit. By P_l^m(z) / sin^m, with sin^m·cos(m·azimuth) and sin^m·sin(m·azimuth) as
 // polynomials of x and y: nothing divides where the azimuth is undefined.
 RoomHarmonics HarmonicsAt(double x, double y, double z, int degree) {
   static const std::array<double, kRoomTerms> kScales = Scales();
@@ -130,6 +130,11 @@ ByDegree SpecularFilter(double roughness) {
 }
 
 }  // namespace
+
+bool AreRoomTerms(size_t terms) {
+  const auto degrees = static_cast<size_t>(std::lround(std::sqrt(static_cast<double>(terms))));
+  return terms <= kRoomTerms && degrees * degrees == terms;
+}
 
 int RoomLight::degree() const {
   return static_cast<int>(std::lround(std::sqrt(static_cast<double>(terms())))) - 1;

@@ -24,6 +24,9 @@ namespace glint {
 inline constexpr int kRoomDegree = 8;  // the highest
 inline constexpr int kRoomTerms = (kRoomDegree + 1) * (kRoomDegree + 1);
 
+// Whether so many terms are all of some degrees, or none.
+bool AreRoomTerms(size_t terms);
+
 struct RoomLight {
   std::vector<Vec3d> radiance_rgb;  // (degree + 1)² terms, at most kRoomTerms; empty: dark
 

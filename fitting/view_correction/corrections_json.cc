@@ -1,7 +1,6 @@
 #include "fitting/view_correction/corrections_json.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "pipeline/contract/errors.h"
 
@@ -51,11 +50,7 @@ RoomLight ReadRoomLight(const std::filesystem::path& manifest_file, const Json& 
   if (!data.contains("room_light")) return room;
   const Json& terms =
       RequireField(manifest_file, data["room_light"], "data.room_light", "radiance_rgb");
-  const auto is_square = [](size_t n) {
-    const auto root = static_cast<size_t>(std::lround(std::sqrt(static_cast<double>(n))));
-    return root * root == n;
-  };
-  if (!terms.is_array() || terms.size() > kRoomTerms || !is_square(terms.size())) {
+  if (!terms.is_array() || !AreRoomTerms(terms.size())) {
     throw UserError(manifest_file, "data.room_light.radiance_rgb", terms.dump(),
                     "run glint-refine again");
   }

@@ -331,8 +331,9 @@ Eigen::Vector2d TexelLattice::MeanSlope(const Values& values) const {
 
 Eigen::MatrixXd TexelLattice::MeanSlopeByViews() const {
   Eigen::MatrixXd by = Eigen::MatrixXd::Zero(2, unknowns_.size());
-  for (const TexelFollowing& following : following_)
+  for (const TexelFollowing& following : following_) {
     by -= following.by_views.middleRows<2>(kSlopeX);
+  }
   return by / std::max(1, size());
 }
 

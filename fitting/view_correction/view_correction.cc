@@ -244,7 +244,9 @@ std::string ViewCorrectionOptions::Check() const {
   }
   if (!above_zero(expected.level)) return "the sample's expected slope must be above 0";
   if (!above_zero(expected.ambient)) return "the expected ambient light must be above 0";
-  if (room_terms < 0 || room_terms > kRoomTerms) return "there are no such terms of a room's light";
+  if (room_terms < 0 || !AreRoomTerms(static_cast<size_t>(room_terms))) {
+    return "the terms of a room's light must be all of some degrees";
+  }
   if (!above_zero(expected.exposure)) return "the exposures' expected deviation must be above 0";
   if (!above_zero(expected.registration_texel)) {
     return "the expected displacement must be above 0";

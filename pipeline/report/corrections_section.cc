@@ -12,7 +12,7 @@ namespace glint {
 namespace {
 
 constexpr int kRoom_px = 192;
-const char kLink[] = "../refine/manifest.json";
+constexpr char kLink[] = "../refine/manifest.json";
 
 // The hemisphere above the sample, the zenith in the middle, angles from it along the radius.
 Image RoomPicture(const RoomLight& room) {
@@ -23,13 +23,13 @@ Image RoomPicture(const RoomLight& room) {
       const double x = 2 * (column + 0.5) / kRoom_px - 1, y = 1 - 2 * (row + 0.5) / kRoom_px;
       const double radius = std::hypot(x, y);
       if (radius > 1) continue;
+      const size_t pixel = static_cast<size_t>(row) * kRoom_px + static_cast<size_t>(column);
       const double polar = 0.5 * std::numbers::pi * radius;
       const double across = radius > 0 ? std::sin(polar) / radius : 0;
       const Vec3d rgb = room.RadianceFrom({x * across, y * across, std::cos(polar)});
       for (size_t c = 0; c < 3; ++c) {
         const float value = static_cast<float>(std::max(0.0, rgb[c]));
-        image.channel(static_cast<int>(
-            c))[static_cast<size_t>(row) * kRoom_px + static_cast<size_t>(column)] = value;
+        image.channel(static_cast<int>(c))[pixel] = value;
         brightest = std::max(brightest, value);
       }
     }
@@ -39,19 +39,10 @@ Image RoomPicture(const RoomLight& room) {
 
 std::string RoomFigure(const RoomLight& room) {
   const std::string caption =
-      "the room as the sample sees it: straight up in the middle, the horizon at the edge, x "
-      "right, "
-      "y up; brightest as white, gamma 2.2";
+      "the room as the sample sees it: straight up in the middle, the horizon at the edge, "
+      "x right, y up; brightest as white, gamma 2.2";
   return "<div class=\"pictures\"><figure>" + ImageHtml(PngUri(RoomPicture(room)), caption) +
          "<figcaption>" + HtmlText(caption) + "</figcaption></figure></div>\n";
-}
-
-double MeanShift_texel(const CornerShifts& shifts) {
-  double squares = 0;
-  for (int k = 0; k < 4; ++k) {
-    squares += shifts.column[k] * shifts.column[k] + shifts.row[k] * shifts.row[k];
-  }
-  return std::sqrt(squares / 4);
 }
 
 std::string ViewsTable(const ReportInput& input) {
@@ -70,7 +61,7 @@ std::string ViewsTable(const ReportInput& input) {
     rows += "<tr><td>" + HtmlText(name) + "</td>" +
             cell(LightTurnedDeg(view->view, correction), "light_offset_mm") +
             cell(correction.exposure, "exposure") +
-            cell(MeanShift_texel(correction.shifts), "corner_columns_texel") + "</tr>\n";
+            cell(correction.shifts.rms(), "corner_columns_texel") + "</tr>\n";
   }
   return "<div class=\"scroll\"><table><tr><th>view</th><th class=\"number\">light turned °</th>"
          "<th class=\"number\">exposure ×</th><th class=\"number\">picture moved, texels</th></tr>"
@@ -84,7 +75,7 @@ std::string CorrectionsSection(const ReportInput& input) {
   const bool any = input.fit.room.any() || !input.fit.corrections.empty();
   if (!input.Has("refine") || !any) return "";
   const Trace metrics{kLink, "metrics.correction"};
-  const auto& correction = input.manifests.at("refine").metrics["correction"];
+  const Json correction = input.manifests.at("refine").metrics.value("correction", Json::object());
   std::string body = "<p>Nobody had said so; the photographs themselves do. ";
   if (input.fit.room.any()) {
     body += "The room's light on the sample is " +

@@ -18,6 +18,11 @@ CornerShifts Uniform(double column, double row) {
   return shifts;
 }
 
+TEST(CornerShifts, HaveTheLengthThatAllCornersShare) {
+  EXPECT_DOUBLE_EQ(Uniform(0.3, -0.4).rms(), 0.5);
+  EXPECT_EQ(CornerShifts().rms(), 0);
+}
+
 TEST(ShiftPicture, MovesARampByTheShift) {
   std::vector<float> ramp(3 * kSize * kSize);
   for (size_t i = 0; i < ramp.size(); ++i) {

@@ -230,6 +230,9 @@ TEST(CorrectViews, RefusesMapsOfAnotherSize) {
   ViewCorrectionOptions wrong = Few();
   wrong.expected.light = 0;
   EXPECT_THROW(Correct(disturbed, wrong), std::invalid_argument);
+  wrong = Few();
+  wrong.room_terms = 5;
+  EXPECT_THROW(Correct(disturbed, wrong), std::invalid_argument);
 }
 
 TEST(Corrected, UndoesTheDisturbanceForAnyNumberOfThreads) {
