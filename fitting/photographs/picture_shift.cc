@@ -72,6 +72,24 @@ LookedUp LookUp(const float* plane, int width, int height, double column, double
   return sum;
 }
 
+double NoiseLeft(const CornerShifts& shifts) {
+  constexpr int kPlaces = 5;  // along a side
+  const auto left = [](double at) {
+    double weights[4], slopes[4], squares = 0;
+    CubicWeights(at - std::floor(at), weights, slopes);
+    for (const double weight : weights) squares += weight * weight;
+    return squares;
+  };
+  double sum = 0;
+  for (int y = 0; y < kPlaces; ++y) {
+    for (int x = 0; x < kPlaces; ++x) {
+      const CornerShifts::Shift shift = shifts.At(x, y, kPlaces, kPlaces);
+      sum += left(shift.column) * left(shift.row);
+    }
+  }
+  return sum / (kPlaces * kPlaces);
+}
+
 void ShiftPicture(const CornerShifts& shifts, int width, int height,
                   std::vector<float>* rgb_planar) {
   const std::vector<float> source = *rgb_planar;

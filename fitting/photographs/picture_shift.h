@@ -28,6 +28,10 @@ struct LookedUp {
 };
 LookedUp LookUp(const float* plane, int width, int height, double column, double row);
 
+// Share of the variance of white noise that looking up there leaves, mean over the picture: between
+// texels the lookup averages, by up to .41.
+double NoiseLeft(const CornerShifts& shifts);
+
 // `rgb_planar` looked up where the shifts say; not below 0.
 void ShiftPicture(const CornerShifts& shifts, int width, int height,
                   std::vector<float>* rgb_planar);

@@ -13,7 +13,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 9;
+inline constexpr int kRefineVersion = 10;
 
 struct RefineStageOptions {
   RefineOptions refine;

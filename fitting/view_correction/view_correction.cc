@@ -186,6 +186,13 @@ void Adjustment::Descend(double tolerance) {
   }
 }
 
+// Mean over the views.
+double NoiseLeft(const ViewCorrections& corrections) {
+  double sum = 0;
+  for (const ViewCorrection& view : corrections.views) sum += NoiseLeft(view.shifts);
+  return sum / static_cast<double>(corrections.views.size());
+}
+
 // The last descent: on more texels, with displacements only where they tell, and with more trust
 // where all but noise is explained.
 ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
@@ -203,7 +210,8 @@ ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
   if (options.registration) {
     std::unique_ptr<Adjustment> unmoved = make(false);
     unmoved->MoveTo(coarse.x().head(unmoved->x().size()));
-    if (fine->cost() > (1 - options.registration_gain) * unmoved->cost()) fine = std::move(unmoved);
+    const double as_noise = NoiseLeft(fine->Corrections()) * unmoved->cost();
+    if (fine->cost() > (1 - options.registration_gain) * as_noise) fine = std::move(unmoved);
   }
   fine->Learn();
   const bool noise = fine->SharedNoise() < kLooksLikeNoise;
@@ -215,6 +223,7 @@ ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
   result.cost_after = fine->cost();
   result.rounding_cost = fine->RoundingCost();
   result.corrections = fine->Corrections();
+  result.noise_left = NoiseLeft(result.corrections);
   return result;
 }
 

@@ -71,8 +71,8 @@ struct ViewCorrectionOptions {
   int last_texels = 2304;     // … and of the one that the last descent is made with
   int iterations = 25;        // Levenberg–Marquardt steps of one descent, at most
   double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
-  // Displacements that lower the squared residuals by a smaller share are not taken: looking
-  // pictures up anew costs sharpness.
+  // Displacements that lower the squared residuals by a smaller share, beside what looking up
+  // between texels takes off their noise, are not taken: it costs sharpness.
   double registration_gain = 0.1;
 
   // Empty: all is well; otherwise what is wrong.
@@ -85,10 +85,14 @@ struct ViewCorrectionResult {
   // were and as they are now.
   double cost_before = 0, cost_after = 0;
   double rounding_cost = 0;  // what rounding to 8 bits would add
+  // Share of noise that the displacements leave in the pictures: less noise is no better explained.
+  double noise_left = 1;
 
-  // Relative fall of a cost of the same lattice to this one, rounding included: where photographs
-  // are explained better than that, nothing is gained.
-  double GainOver(double cost) const { return (cost - cost_after) / (cost + rounding_cost); }
+  // Relative fall of a cost of the same lattice, its pictures where they were, to this one;
+  // rounding included: where photographs are explained better than that, nothing is gained.
+  double GainOver(double cost) const {
+    return (cost - cost_after / noise_left) / (cost + rounding_cost);
+  }
 };
 
 // `maps`: what the texels start from and are held to, as weakly as one more observation; of the

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -36,6 +38,28 @@ TEST(ShiftPicture, MovesARampByTheShift) {
       const auto i = static_cast<size_t>(y * kSize + x);
       EXPECT_NEAR(ramp[i] - before[i], 10 * 0.3 - 0.2, 1e-4);
     }
+  }
+}
+
+TEST(NoiseLeft, IsTheShareOfItsVarianceThatAMovedPictureKeeps) {
+  constexpr int kNoiseSize = 256;
+  EXPECT_EQ(NoiseLeft(Uniform(1, -2)), 1);
+  std::mt19937 random(5);
+  std::vector<float> noise(3 * kNoiseSize * kNoiseSize);
+  for (float& x : noise) x = static_cast<float>(1 + 1e-9 * random());
+  const auto variance = [](const std::vector<float>& values) {
+    double sum = 0, squares = 0;
+    for (const double x : values) {
+      sum += x;
+      squares += x * x;
+    }
+    const double count = static_cast<double>(values.size());
+    return squares / count - sum * sum / (count * count);
+  };
+  for (const CornerShifts& shifts : {Uniform(0.3, -0.2), Uniform(0.5, 0.5), Uniform(0, 0.1)}) {
+    std::vector<float> moved = noise;
+    ShiftPicture(shifts, kNoiseSize, kNoiseSize, &moved);
+    EXPECT_NEAR(variance(moved) / variance(noise), NoiseLeft(shifts), 0.02);
   }
 }
 
