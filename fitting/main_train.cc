@@ -38,6 +38,8 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
       ->capture_default_str();
   app->add_option("--accumulate", o->accumulate, "batches whose gradients make one step")
       ->capture_default_str();
+  app->add_option("--from", o->from, "weights to begin with, of any training (default: new ones)")
+      ->check(CLI::ExistingFile);
   app->add_option("--map-weight", o->map_weight, "weight of the map term")->capture_default_str();
   app->add_option("--render-weight", o->render_weight, "weight of the rendering term")
       ->capture_default_str();
@@ -102,10 +104,15 @@ void Report(const TrainProgress& p) {
 struct MaterialOptions {
   std::string pack;
   double pack_share = 0.5;
+  double glazed_share = 0.25;
 
   void AddTo(CLI::App* app) {
     app->add_option("--materials", pack, "pack of real materials to mix in (glint-synth pack)");
     app->add_option("--materials-share", pack_share, "of all materials that come from the pack")
+        ->capture_default_str();
+    app->add_option("--glazed-share", glazed_share,
+                    "of all materials that are made dark, smooth and glossy, wholly or in part")
+        ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
   }
 };
@@ -122,7 +129,9 @@ struct Sources {
       name += ", " + std::to_string(pack.size()) + " packed materials in " +
               std::to_string(options.pack_share);
     }
-    const glint::TrainingMaterialOptions chosen{seed, size, options.pack_share, 0.3};
+    if (options.glazed_share > 0) name += ", " + std::to_string(options.glazed_share) + " glazed";
+    const glint::TrainingMaterialOptions chosen{seed, size, options.pack_share, 0.3,
+                                                options.glazed_share};
     training = [this, chosen](std::uint64_t k) { return TrainingMaterial(chosen, &pack, k); };
     validation = [size](std::uint64_t k) {
       return glint::MakeMaterial(glint::kReservedSeedBase + kValidationOffset + k, size, size);

@@ -29,6 +29,7 @@ void MeasureStatistics(const Tensor& samples, AutoencoderNetwork* network) {
 
 AutoencoderNetwork FirstWeights(const AutoencoderTrainOptions& options, std::int64_t first_batch,
                                 MapBatches* pool) {
+  if (!options.from.empty()) return LoadNetwork(options.from);
   const Normalisation normalisation = ParseNormalisation(options.normalisation);
   const bool principal = options.principal_start && normalisation != Normalisation::kAll;
   if (first_batch == 0 && principal) {

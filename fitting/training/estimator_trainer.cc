@@ -30,7 +30,8 @@ class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOpt
   EstimatorTraining(const EstimatorTrainOptions& options, std::int64_t first_batch,
                     const MaterialSource& materials, const MaterialSource& validation)
       : MapTraining(options, first_batch, materials, validation, [&](MapBatches*) {
-          return EstimatorNetwork::Random(ChannelsOf(options), options.seed);
+          return options.from.empty() ? EstimatorNetwork::Random(ChannelsOf(options), options.seed)
+                                      : LoadEstimator(options.from);
         }) {}
 
   size_t learned() const override { return EstimatorNetwork(network_).State().size(); }

@@ -205,13 +205,14 @@ class Loop {
 
   void Save(double validation) {
     SaveCheckpoint(files_.CheckpointPath(), state_, trainable_->Description());
-    trainable_->SaveWeights(
-        files_.weights,
-        {{"data", options_.data_name},
-         {"seed", std::to_string(options_.seed)},
-         {"steps", std::to_string(state_.step)},
-         {"samples", std::to_string(state_.step * options_.accumulate * options_.batch)},
-         {"validation_map_l1", std::to_string(validation)}});
+    std::map<std::string, std::string> metadata{
+        {"data", options_.data_name},
+        {"seed", std::to_string(options_.seed)},
+        {"steps", std::to_string(state_.step)},
+        {"samples", std::to_string(state_.step * options_.accumulate * options_.batch)},
+        {"validation_map_l1", std::to_string(validation)}};
+    if (!options_.from.empty()) metadata["from"] = options_.from.filename().string();
+    trainable_->SaveWeights(files_.weights, std::move(metadata));
   }
 
   const TrainOptions& options_;

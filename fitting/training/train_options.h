@@ -28,6 +28,7 @@ struct TrainOptions {
   bool bf16 = true;              // where the CPU multiplies it natively
   int threads = 1;
   std::uint64_t seed = 1;
+  std::filesystem::path from;     // weights to begin with; empty: new ones
   double checkpoint_minutes = 3;  // also how often validation runs
   PoolOptions pool;
   std::string data_name;  // written into the weights' metadata

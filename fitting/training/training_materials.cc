@@ -49,6 +49,47 @@ void ChangeRoughness(Stream* random, SvbrdfMaps* maps) {
   }
 }
 
+void FlattenNormal(float share_left, size_t texel, SvbrdfMaps* maps) {
+  float& x = maps->plane(kNormalX)[texel];
+  float& y = maps->plane(kNormalY)[texel];
+  float& z = maps->plane(kNormalZ)[texel];
+  x *= share_left;
+  y *= share_left;
+  const float inverse = 1 / std::sqrt(x * x + y * y + z * z);
+  x *= inverse;
+  y *= inverse;
+  z *= inverse;
+}
+
+// A dark, smooth, glossy finish of the same pattern: glass, lacquer, ink, polish. The generator's
+// dark and glossy texels are metals by 70 %, and a photograph does not tell a black mirror of
+// F0 = .04 from one of .8; things that people photograph are mostly not metal.
+SvbrdfMaps Glazed(SvbrdfMaps maps, Stream* random) {
+  const auto f0 = static_cast<float>(DrawF0(random));
+  const auto dark = static_cast<float>(std::exp(random->Uniform(std::log(0.01), std::log(0.7))));
+  const auto gloss = static_cast<float>(random->Uniform(0.15, 0.7));
+  const auto relief = static_cast<float>(random->Uniform(0.1, 1.0));
+  for (size_t i = 0; i < maps.texels(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      maps.plane(kDiffuseR + c)[i] *= dark;
+      maps.plane(kSpecularR + c)[i] = f0;
+    }
+    float& roughness = maps.plane(kRoughness)[i];
+    roughness = std::clamp(gloss * roughness, 0.05f, 1.0f);
+    FlattenNormal(relief, i, &maps);
+  }
+  return maps;
+}
+
+// Now and then glazed, as a whole or in places.
+SvbrdfMaps GlazedAtTimes(SvbrdfMaps maps, double share, std::uint64_t seed, Stream* random) {
+  if (random->Uniform() >= share) return maps;
+  SvbrdfMaps glazed = Glazed(maps, random);
+  if (random->Uniform() < 0.4) return glazed;
+  const procedural::Plane mask = procedural::DrawBlendMask(seed, maps);
+  return procedural::BlendMaterials(std::move(maps), glazed, mask);
+}
+
 SvbrdfMaps PackedWindow(const PackedMaterial& material, int size, Stream* random) {
   const int window = size + random->Below(material.size - size + 1);
   const int column = random->Below(material.size - window + 1);
@@ -59,21 +100,28 @@ SvbrdfMaps PackedWindow(const PackedMaterial& material, int size, Stream* random
   return maps;
 }
 
+// As found, procedural or packed or both.
+SvbrdfMaps PlainMaterial(const TrainingMaterialOptions& options, const MaterialPack* pack,
+                         std::uint64_t seed, Stream* random) {
+  const bool packed = pack != nullptr && !pack->empty() && random->Uniform() < options.pack_share;
+  if (!packed) return MakeMaterial(seed, options.size, options.size);
+  const PackedMaterial& material =
+      (*pack)[static_cast<size_t>(random->Below(static_cast<int>(pack->size())))];
+  const SvbrdfMaps maps = PackedWindow(material, options.size, random);
+  if (random->Uniform() >= options.mixture_share) return maps;
+  const SvbrdfMaps other = MakeMaterial(seed, options.size, options.size);
+  return procedural::BlendMaterials(maps, other,
+                                    procedural::DrawBlendMask(seed, options.size, options.size));
+}
+
 }  // namespace
 
 SvbrdfMaps TrainingMaterial(const TrainingMaterialOptions& options, const MaterialPack* pack,
                             std::uint64_t k) {
   Stream random(StreamSeed(options.seed ^ kChoiceStream, k));
   const std::uint64_t seed = ProceduralSeed(options.seed, k);
-  const bool packed = pack != nullptr && !pack->empty() && random.Uniform() < options.pack_share;
-  if (!packed) return MakeMaterial(seed, options.size, options.size);
-  const PackedMaterial& material =
-      (*pack)[static_cast<size_t>(random.Below(static_cast<int>(pack->size())))];
-  const SvbrdfMaps maps = PackedWindow(material, options.size, &random);
-  if (random.Uniform() >= options.mixture_share) return maps;
-  const SvbrdfMaps other = MakeMaterial(seed, options.size, options.size);
-  return procedural::BlendMaterials(maps, other,
-                                    procedural::DrawBlendMask(seed, options.size, options.size));
+  SvbrdfMaps maps = PlainMaterial(options, pack, seed, &random);
+  return GlazedAtTimes(std::move(maps), options.glazed_share, seed, &random);
 }
 
 }  // namespace glint

@@ -187,5 +187,19 @@ TEST(Trainer, OptionsThatCannotBeAreRefused) {
   EXPECT_THROW(TrainAutoencoder(endless, files, Toy, Unseen, {}), std::runtime_error);
 }
 
+TEST(Trainer, ATrainingFromWeightsBeginsWhereTheyWere) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "a.safetensors";
+  const TrainProgress trained = TrainAutoencoder(Tiny(60), {path, {}, {}, false}, Toy, Unseen, {});
+  AutoencoderTrainOptions options = Tiny(1);
+  options.from = path;
+  double first = 0;
+  TrainAutoencoder(options, {folder.path() / "on.safetensors", {}, {}, false}, Toy, Unseen,
+                   [&](const TrainProgress& p) {
+                     if (p.step == 0) first = *p.validation_map_loss;
+                   });
+  EXPECT_NEAR(first, *trained.validation_map_loss, 0.01 * first);  // weights are kept in bf16
+}
+
 }  // namespace
 }  // namespace glint

@@ -50,6 +50,21 @@ TEST(EstimatorTrainer, AResumedTrainingEndsWithTheSameBits) {
             test::ReadAll(folder.path() / "parts.safetensors"));
 }
 
+TEST(EstimatorTrainer, ATrainingFromWeightsBeginsWhereTheyWere) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "e.safetensors";
+  const TrainProgress trained = TrainEstimator(Tiny(100), {path, {}, {}, false}, Toy, Unseen, {});
+  EstimatorTrainOptions options = Tiny(1);
+  options.from = path;
+  options.channels.back() += 8;  // the file's count
+  double first = 0;
+  TrainEstimator(options, {folder.path() / "on.safetensors", {}, {}, false}, Toy, Unseen,
+                 [&](const TrainProgress& p) {
+                   if (p.step == 0) first = *p.validation_map_loss;
+                 });
+  EXPECT_NEAR(first, *trained.validation_map_loss, 0.01 * first);  // weights are kept in bf16
+}
+
 TEST(EstimatorTrainer, ACheckpointOfOtherChannelsIsRefused) {
   const test::TemporaryFolder folder;
   const TrainFiles files{folder.path() / "e.safetensors", {}, {}, true};
