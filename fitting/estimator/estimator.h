@@ -38,5 +38,7 @@ class Estimator {
 size_t BestStartingPhotograph(const PhotographSet& set);
 
 inline constexpr char kEstimatorModel[] = "estimator.safetensors";
+// Trained on fewer metals: what is dark and glossy is taken for glass, lacquer or print.
+inline constexpr char kRareMetalsEstimatorModel[] = "estimator_metals_rare.safetensors";
 
 }  // namespace glint

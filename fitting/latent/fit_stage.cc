@@ -70,10 +70,15 @@ PhotographSet Load(const RectifiedSet& set, const std::vector<RectifiedView>& vi
   return photographs;
 }
 
+fs::path EstimatorWeights(const FitStageOptions& options) {
+  const char* model = options.metals == "rare" ? kRareMetalsEstimatorModel : kEstimatorModel;
+  return AsUserError([&] { return FindModel(model, options.estimator); });
+}
+
 SvbrdfMaps EstimatedStart(const FitStageOptions& options, const PhotographSet& photographs,
                           int threads) {
-  const Estimator estimator =
-      AsUserError([&] { return Estimator::Load(FindModel(kEstimatorModel, options.estimator)); });
+  const fs::path weights = EstimatorWeights(options);
+  const Estimator estimator = AsUserError([&] { return Estimator::Load(weights); });
   SvbrdfMaps maps = estimator.Estimate(photographs.photographs[BestStartingPhotograph(photographs)],
                                        photographs.plane, photographs.convention, threads);
   if (photographs.convention.diffuse_weight == DiffuseWeight::kOne) return maps;
@@ -134,6 +139,9 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
       "bootstrap", &options->bootstrap, {"estimator", "heuristic"},
       "what the start is estimated by: a trained network from the photograph nearest the "
       "top, or lobes fitted to the whole sample");
+  set->AddChoice("metals", &options->metals, {"possible", "rare"},
+                 "what the estimator takes dark and glossy places for; rare: glass, lacquer, print "
+                 "and the like, for samples without bare metal");
   set->AddRange("iterations", &options->iterations, 0, 1e6,
                 "most steps at the first, coarse level; 0: the method's own");
   set->AddRange("fine-iterations", &options->fine_iterations, 0, 1e6,
@@ -165,7 +173,7 @@ std::vector<fs::path> FitInputs(const FitStageOptions& options) {
   if (!options.start.empty()) {
     inputs.push_back(options.start);
   } else if (options.bootstrap == "estimator") {
-    inputs.push_back(AsUserError([&] { return FindModel(kEstimatorModel, options.estimator); }));
+    inputs.push_back(EstimatorWeights(options));
   }
   return inputs;
 }

@@ -17,6 +17,9 @@ struct FitStageOptions {
   // latent: in the learned space; classic: texel by texel; start: no fitting, the start as it is
   std::string method = "latent";
   std::string bootstrap = "estimator";  // estimator: the trained network; heuristic: bootstrap.h
+  // possible or rare: which of the shipped estimators. One photograph does not tell a black mirror
+  // of metal from one of glass; its person does.
+  std::string metals = "possible";
   FitOptions latent = FitOptions::Latent();
   FitOptions classic = FitOptions::Classic();
   int iterations = 0;                // at the first level; 0: the method's own (few from one photo)

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::uint64_t kChoiceStream = 0x5EED0003;
 constexpr float kDielectricF0 = 0.04f;
-constexpr float kMetalF0 = 0.12f;  // above it, specular is a metal's colour and stays
+constexpr double kMatteShare = 0.35;  // of glazed ones: felt, rubber, asphalt are dark and rough
+constexpr float kMetalF0 = 0.12f;     // above it, specular is a metal's colour and stays
 
 // Each training draws its materials from a stretch of its own below the reserved seeds.
 std::uint64_t ProceduralSeed(std::uint64_t seed, std::uint64_t k) {
@@ -61,14 +62,16 @@ void FlattenNormal(float share_left, size_t texel, SvbrdfMaps* maps) {
   z *= inverse;
 }
 
-// A dark, smooth, glossy finish of the same pattern: glass, lacquer, ink, polish. The generator's
-// dark and glossy texels are metals by 70 %, and a photograph does not tell a black mirror of
-// F0 = .04 from one of .8; things that people photograph are mostly not metal.
+// A dark finish of the same pattern, mostly smooth and glossy: glass, lacquer, ink, polish. The
+// generator's dark and glossy texels are metals by 70 %, and a photograph does not tell a black
+// mirror of F0 = .04 from one of .8; things that people photograph are mostly not metal.
 SvbrdfMaps Glazed(SvbrdfMaps maps, Stream* random) {
   const auto f0 = static_cast<float>(DrawF0(random));
   const auto dark = static_cast<float>(std::exp(random->Uniform(std::log(0.01), std::log(0.7))));
-  const auto gloss = static_cast<float>(random->Uniform(0.15, 0.7));
-  const auto relief = static_cast<float>(random->Uniform(0.1, 1.0));
+  const bool matte = random->Uniform() < kMatteShare;
+  const auto gloss =
+      static_cast<float>(matte ? random->Uniform(0.8, 1.5) : random->Uniform(0.15, 0.7));
+  const auto relief = static_cast<float>(matte ? 1.0 : random->Uniform(0.1, 1.0));
   for (size_t i = 0; i < maps.texels(); ++i) {
     for (int c = 0; c < 3; ++c) {
       maps.plane(kDiffuseR + c)[i] *= dark;

