@@ -81,15 +81,15 @@ TEST(TrainingMaterials, DependOnTheirNumberAloneAndTakeTheirShareOfThePack) {
             TrainingMaterial(options, nullptr, 3).planes);
 }
 
-TEST(TrainingMaterials, GlazedOnesAreDarkGlossyDielectricsOfTheSamePattern) {
+TEST(TrainingMaterials, GlazedOnesAreDarkDielectricsAndMostlyGlossy) {
   const auto mean = [](const SvbrdfMaps& maps, int plane) {
     double sum = 0;
     for (const float value : maps.plane(plane)) sum += value;
     return sum / static_cast<double>(maps.texels());
   };
   TrainingMaterialOptions options{7, 32, 0.0, 0.0};
-  int changed = 0;
-  double brighter = 0, rougher = 0;
+  int changed = 0, smoother = 0;
+  double brighter = 0;
   for (std::uint64_t k = 0; k < 30; ++k) {
     options.glazed_share = 0;
     const SvbrdfMaps plain = TrainingMaterial(options, nullptr, k);
@@ -97,7 +97,8 @@ TEST(TrainingMaterials, GlazedOnesAreDarkGlossyDielectricsOfTheSamePattern) {
     const SvbrdfMaps glazed = TrainingMaterial(options, nullptr, k);
     changed += glazed.planes != plain.planes;
     brighter = std::max(brighter, mean(glazed, kDiffuseG) - mean(plain, kDiffuseG));
-    rougher = std::max(rougher, mean(glazed, kRoughness) - mean(plain, kRoughness));
+    smoother += mean(glazed, kRoughness) < 0.9 * mean(plain, kRoughness);
+    EXPECT_LE(mean(glazed, kRoughness), 1.5 * mean(plain, kRoughness) + 1e-4);
     EXPECT_LE(mean(glazed, kSpecularG), std::max(0.23, mean(plain, kSpecularG)));
     for (size_t i = 0; i < glazed.texels(); ++i) {
       const float x = glazed.plane(kNormalX)[i], y = glazed.plane(kNormalY)[i],
@@ -108,7 +109,7 @@ TEST(TrainingMaterials, GlazedOnesAreDarkGlossyDielectricsOfTheSamePattern) {
   }
   EXPECT_GT(changed, 25);
   EXPECT_LT(brighter, 1e-3);
-  EXPECT_LT(rougher, 0.35);  // some are matte
+  EXPECT_GT(smoother, 12);  // two thirds, of which some in small places only
 }
 
 }  // namespace
