@@ -104,14 +104,15 @@ void Report(const TrainProgress& p) {
 struct MaterialOptions {
   std::string pack;
   double pack_share = 0.5;
-  double glazed_share = 0.25;
+  double glazed_share = 0;
 
   void AddTo(CLI::App* app) {
     app->add_option("--materials", pack, "pack of real materials to mix in (glint-synth pack)");
     app->add_option("--materials-share", pack_share, "of all materials that come from the pack")
         ->capture_default_str();
-    app->add_option("--glazed-share", glazed_share,
-                    "of all materials that are made dark, smooth and glossy, wholly or in part")
+    app->add_option(
+           "--glazed-share", glazed_share,
+           "of all materials that are made dark dielectrics, mostly glossy, wholly or in part")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
   }

@@ -18,7 +18,8 @@ struct FitStageOptions {
   std::string method = "latent";
   std::string bootstrap = "estimator";  // estimator: the trained network; heuristic: bootstrap.h
   // possible or rare: which of the shipped estimators. One photograph does not tell a black mirror
-  // of metal from one of glass; its person does.
+  // of metal from one of glass; its person does. Without effect where `estimator` or `start` is
+  // given, and on heuristics.
   std::string metals = "possible";
   FitOptions latent = FitOptions::Latent();
   FitOptions classic = FitOptions::Classic();

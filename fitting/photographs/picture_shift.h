@@ -28,8 +28,8 @@ struct LookedUp {
 };
 LookedUp LookUp(const float* plane, int width, int height, double column, double row);
 
-// Share of the variance of white noise that looking up there leaves, mean over the picture: between
-// texels the lookup averages, by up to .41.
+// Share of the variance of white noise that looking up there leaves, mean over the picture: 1 at
+// whole texels, .41 in the middle between four.
 double NoiseLeft(const CornerShifts& shifts);
 
 // `rgb_planar` looked up where the shifts say; not below 0.

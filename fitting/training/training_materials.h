@@ -14,14 +14,14 @@ struct TrainingMaterialOptions {
   int size = 256;              // texels along a material's side
   double pack_share = 0.5;     // of the materials that come from the pack, wholly or in part
   double mixture_share = 0.3;  // of those, that are mixed with a procedural material
-  double glazed_share = 0;     // of all, that are made dark, smooth and glossy, wholly or in part
+  double glazed_share = 0;     // of all, that are made dark dielectrics, wholly or in part
 };
 
 // Material k. `pack` may be null or empty: procedural materials alone. Packed materials get a
 // window of random place and scale; F0 of their dielectrics, which collections leave at 0.04, is
 // drawn from [0.02, 0.08] with a tail, and half of them get another gain on their roughness. The
-// pack's sides must be at least `size`. Glazed ones are dielectrics: the same pattern, up to a
-// hundred times darker, with less relief and roughness.
+// pack's sides must be at least `size`. Glazed ones have the same pattern, up to a hundred
+// times darker, no metal, and two thirds of them less relief and roughness.
 SvbrdfMaps TrainingMaterial(const TrainingMaterialOptions& options, const MaterialPack* pack,
                             std::uint64_t k);
 
