@@ -88,6 +88,11 @@ void AddEstimatorOptions(CLI::App* app, EstimatorTrainOptions* o) {
                   "channels of the five levels, of the full resolution, of the global track")
       ->delimiter(',')
       ->capture_default_str();
+  app->add_option("--spread-weight", o->spread_weight, "of the predicted errors' likelihood")
+      ->capture_default_str();
+  app->add_option("--batch-photographs", o->batch_photographs,
+                  "photographs per step, at most; samples with many make smaller batches")
+      ->capture_default_str();
 }
 
 void Report(const TrainProgress& p) {
@@ -105,6 +110,7 @@ struct MaterialOptions {
   std::string pack;
   double pack_share = 0.5;
   double glazed_share = 0;
+  double one_substance_share = 0;
 
   void AddTo(CLI::App* app) {
     app->add_option("--materials", pack, "pack of real materials to mix in (glint-synth pack)");
@@ -113,6 +119,10 @@ struct MaterialOptions {
     app->add_option(
            "--glazed-share", glazed_share,
            "of all materials that are made dark dielectrics, mostly glossy, wholly or in part")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    app->add_option("--one-substance-share", one_substance_share,
+                    "of all materials whose roughness and specular albedo hardly vary")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
   }
@@ -131,8 +141,11 @@ struct Sources {
               std::to_string(options.pack_share);
     }
     if (options.glazed_share > 0) name += ", " + std::to_string(options.glazed_share) + " glazed";
-    const glint::TrainingMaterialOptions chosen{seed, size, options.pack_share, 0.3,
-                                                options.glazed_share};
+    if (options.one_substance_share > 0) {
+      name += ", " + std::to_string(options.one_substance_share) + " of one substance";
+    }
+    const glint::TrainingMaterialOptions chosen{
+        seed, size, options.pack_share, 0.3, options.glazed_share, options.one_substance_share};
     training = [this, chosen](std::uint64_t k) { return TrainingMaterial(chosen, &pack, k); };
     validation = [size](std::uint64_t k) {
       return glint::MakeMaterial(glint::kReservedSeedBase + kValidationOffset + k, size, size);
@@ -169,8 +182,9 @@ int main(int argc, char** argv) {
   AddCommonOptions(autoencoder, &autoencoder_options, &files);
   AddAutoencoderOptions(autoencoder, &autoencoder_options);
   materials.AddTo(autoencoder);
-  CLI::App* bootstrap =
-      app.add_subcommand("bootstrap", "the single-photo estimator, where `glint-fit` starts");
+  CLI::App* bootstrap = app.add_subcommand(
+      "bootstrap",
+      "the estimator of maps from any number of photographs, the initialisation of `glint-fit`");
   AddCommonOptions(bootstrap, &estimator_options, &files);
   AddEstimatorOptions(bootstrap, &estimator_options);
   materials.AddTo(bootstrap);

@@ -15,11 +15,9 @@ int Padded(int n) {
   return (n + kEstimatorDownsampling - 1) / kEstimatorDownsampling * kEstimatorDownsampling;
 }
 
-Tensor PaddedTensor(const PhotographFeatures& features) {
-  const int height = Padded(features.height), width = Padded(features.width);
+// `to`: [11, height, width].
+void CopyPadded(const PhotographFeatures& features, int height, int width, float* to) {
   const size_t texels = static_cast<size_t>(features.width) * features.height;
-  Tensor padded = torch::empty({1, kFeaturePlanes, height, width});
-  float* to = padded.data_ptr<float>();
   for (int p = 0; p < kFeaturePlanes; ++p) {
     for (int row = 0; row < height; ++row) {
       const float* from = features.planes.data() + p * texels +
@@ -29,13 +27,12 @@ Tensor PaddedTensor(const PhotographFeatures& features) {
       }
     }
   }
-  return padded;
 }
 
 }  // namespace
 
 struct Estimator::Impl {
-  EstimatorNetwork network;
+  LoadedEstimator loaded;
 };
 
 Estimator::Estimator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -47,16 +44,26 @@ Estimator Estimator::Load(const std::filesystem::path& weights) {
   return Estimator(std::make_unique<Impl>(Impl{LoadEstimator(weights)}));
 }
 
-SvbrdfMaps Estimator::Estimate(const Photograph& photograph, const SamplePlane& plane,
-                               const ReflectanceConvention& convention, int threads) const {
+bool Estimator::single_photograph() const { return impl_->loaded.single_photograph; }
+
+SvbrdfEstimate Estimator::Estimate(std::span<const Photograph> photographs,
+                                   const SamplePlane& plane,
+                                   const ReflectanceConvention& convention, int threads) const {
   torch::NoGradGuard no_gradient;
   if (threads > 0) torch::set_num_threads(threads);
-  const PhotographFeatures features = FeaturesOf(photograph, plane, convention);
-  Tensor profile = torch::empty({1, kProfileValues});
-  std::copy(features.profile.begin(), features.profile.end(), profile.data_ptr<float>());
-  const Tensor encoded =
-      impl_->network.Forward(PaddedTensor(features), profile, torch::kFloat32).contiguous();
-  return DecodeMaps(CroppedMaps(encoded, plane.width, plane.height));
+  const auto count = static_cast<int64_t>(photographs.size());
+  const int height = Padded(plane.height), width = Padded(plane.width);
+  const Tensor features = torch::empty({1, count, kFeaturePlanes, height, width});
+  const Tensor profiles = torch::empty({1, count, kProfileValues});
+  for (int64_t i = 0; i < count; ++i) {
+    const PhotographFeatures one =
+        FeaturesOf(photographs[static_cast<size_t>(i)], plane, convention);
+    CopyPadded(one, height, width, features[0][i].data_ptr<float>());
+    std::copy(one.profile.begin(), one.profile.end(), profiles[0][i].data_ptr<float>());
+  }
+  const EstimatorOutput out = impl_->loaded.network.Forward(features, profiles, torch::kFloat32);
+  return {DecodeMaps(CroppedMaps(out.maps.contiguous(), plane.width, plane.height)),
+          CroppedMaps(out.log_scale.exp().contiguous(), plane.width, plane.height)};
 }
 
 }  // namespace glint

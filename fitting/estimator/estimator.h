@@ -1,31 +1,44 @@
-// Maps from one flash photograph by a trained network: where fitting starts, and what there is when
-// there is one photograph only. No torch in this header.
+// Maps from flash photographs of a sample by a trained network, with their uncertainty: the
+// initialisation of fitting. No torch in this header.
 //
 // Source of the role: Gao et al. 2019, section 4.3, who take Deschaintre et al. 2018's or Li et al.
-// 2018's; the network is ours (estimator_network.h).
+// 2018's, of one photograph; the network, for any number, is ours (estimator_network.h).
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <vector>
 
+#include "fitting/encoding/encoding.h"
 #include "fitting/photographs/photographs.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
 
+struct SvbrdfEstimate {
+  SvbrdfMaps maps;
+  // Mean absolute error expected of the encoded maps (encoding.h), by plane and texel.
+  EncodedMaps error;
+};
+
 class Estimator {
  public:
-  // Reads weights written by glint-train. Throws std::runtime_error "FILE: PART: found …; MEND".
+  // Reads weights written by glint-train. Throws std::runtime_error "FILE: PART: found …; …".
   static Estimator Load(const std::filesystem::path& weights);
 
   ~Estimator();
   Estimator(Estimator&&) noexcept;
   Estimator& operator=(Estimator&&) noexcept;
 
-  // Maps of the photograph's size, from 1×1; sizes that are not multiples of 32 are continued by
-  // their last texel. Maps for diffuse weight 1. float32; the same bits for any `threads`.
-  SvbrdfMaps Estimate(const Photograph& photograph, const SamplePlane& plane,
-                      const ReflectanceConvention& convention, int threads) const;
+  // Maps of the photographs' size, from 1×1; sizes that are not multiples of 32 are continued by
+  // their last texel. Maps for diffuse weight 1. float32; the same bits for any `threads`, and for
+  // any order of the photographs up to the rounding of their mean.
+  SvbrdfEstimate Estimate(std::span<const Photograph> photographs, const SamplePlane& plane,
+                          const ReflectanceConvention& convention, int threads) const;
+
+  // Whether the weights were trained on one photograph per sample; give it one.
+  bool single_photograph() const;
 
  private:
   struct Impl;

@@ -9,7 +9,9 @@
 
 namespace glint {
 
-inline constexpr char kEstimatorArchitecture[] = "glint-estimator v1";
+inline constexpr char kEstimatorArchitecture[] = "glint-estimator v2";
+// One photograph's estimator; its files are still read.
+inline constexpr char kSinglePhotographArchitecture[] = "glint-estimator v1";
 
 // What a file of this network says of itself: architecture, encoding, channels (levels, full,
 // global).
@@ -19,7 +21,12 @@ std::map<std::string, std::string> EstimatorMetadata(const EstimatorNetwork& net
 void SaveEstimator(const std::filesystem::path& path, EstimatorNetwork* network,
                    std::map<std::string, std::string> metadata);
 
-// Throws std::runtime_error "FILE: PART: found …; MEND".
-EstimatorNetwork LoadEstimator(const std::filesystem::path& path);
+struct LoadedEstimator {
+  EstimatorNetwork network;
+  bool single_photograph = false;  // trained on one photograph a sample
+};
+
+// Throws std::runtime_error "FILE: PART: found …; what to do".
+LoadedEstimator LoadEstimator(const std::filesystem::path& path);
 
 }  // namespace glint

@@ -14,9 +14,16 @@ using torch::Tensor;
 // Means and spreads that bring the features near the range −1 … 1.
 constexpr float kFeatureMean[kFeaturePlanes] = {0.5f, 0.5f, 0.5f, 0, 1, 0, 0, 0, 0, 0.35f, 0};
 constexpr float kFeatureScale[kFeaturePlanes] = {2, 2, 2, 1, 1, 1.5f, 1.5f, 1.5f, 1.5f, 2.5f, 0.7f};
+constexpr int kMaskPlane = 4, kPlanesOfMask = 5;  // planes 0–4 are 0 where the mask is
 constexpr double kProfileScale = 0.4;
 constexpr double kFirstRoughness = 0.1;  // of the tanh's argument: r about 0.55
 constexpr double kFirstSpecular = -0.6;  // F0 about 0.05
+constexpr double kFirstLogScale = -2.5;  // mean absolute error .08 of a range of 2
+// ln b is kept between an 8-bit rounding of the encoded value and the whole range.
+constexpr double kLeastLogScale = -6, kMostLogScale = 0.7;
+
+constexpr int kOutputs = 2 * kEncodedChannels;
+constexpr int kPooledInputs = 3 * kFeaturePlanes;  // mean, maximum, minimum over photographs
 
 Tensor Normalised(const Tensor& features) {
   const auto row = [](const float* values) {
@@ -25,18 +32,51 @@ Tensor Normalised(const Tensor& features) {
   return (features - row(kFeatureMean)) * row(kFeatureScale);
 }
 
-// What level i's up-convolution reads: the level's own features, and for all but the deepest what
-// came up from below.
+// What level i's up-convolution reads: mean and maximum of the level's features over the
+// photographs and, for all but the deepest, what came up from below.
 int UpInput(const EstimatorChannels& c, int level) {
-  return level == kEstimatorLevels - 1 ? c.levels[level] : 2 * c.levels[level];
+  return (level == kEstimatorLevels - 1 ? 2 : 3) * c.levels[level];
 }
 
 int UpOutput(const EstimatorChannels& c, int level) {
   return level == 0 ? c.full : c.levels[level - 1];
 }
 
+int FullInput(const EstimatorChannels& c, int k) {
+  return c.full + kPooledInputs + (k == 0 ? 2 * c.full : 0);
+}
+
 Tensor Spread(const Tensor& global, const Tensor& weight) {
   return torch::matmul(global, weight.t()).unsqueeze(2).unsqueeze(3);
+}
+
+// [B·N, …] → mean and maximum over N, side by side: [B, 2·…].
+Tensor Pooled(const Tensor& x, int64_t photographs) {
+  if (photographs == 1) return torch::cat({x, x}, 1);
+  std::vector<int64_t> shape = x.sizes().vec();
+  shape[0] = photographs;
+  shape.insert(shape.begin(), x.size(0) / photographs);
+  const Tensor y = x.contiguous().view(shape);
+  return torch::cat({y.mean(1), y.amax(1)}, 1);
+}
+
+// Mean, maximum and minimum over the photographs in which the texel is usable; elsewhere those of
+// the values as they are. features [B, N, 11, H, W] → normalised [B, 33, H, W].
+Tensor PooledInputs(const Tensor& features) {
+  const Tensor mask = features.slice(2, kMaskPlane, kMaskPlane + 1);
+  const Tensor seen = features.slice(2, 0, kPlanesOfMask);
+  const Tensor rest = features.slice(2, kPlanesOfMask);
+  const Tensor any = mask.amax(1);
+  constexpr double kFar = 1e3;  // beyond all features
+  const Tensor mean = (seen * mask).sum(1) / mask.sum(1).clamp_min(1);
+  const Tensor most = (seen - kFar * (1 - mask)).amax(1) * any;
+  const Tensor least = (seen + kFar * (1 - mask)).amin(1) * any;
+  const Tensor all =
+      torch::stack({torch::cat({mean, rest.mean(1)}, 1), torch::cat({most, rest.amax(1)}, 1),
+                    torch::cat({least, rest.amin(1)}, 1)},
+                   1);
+  const int64_t b = features.size(0), h = features.size(3), w = features.size(4);
+  return Normalised(all.view({b * 3, kFeaturePlanes, h, w})).view({b, kPooledInputs, h, w});
 }
 
 }  // namespace
@@ -60,18 +100,38 @@ EstimatorNetwork EstimatorNetwork::Random(const EstimatorChannels& channels, std
     net.up_weights.push_back(PhaseKernels(draw({up_out, up_in, 3, 3}, up_in * 9.0, 0.75)));
     net.up_biases.push_back(torch::zeros({4 * up_out}));
   }
-  const int in = channels.full + kFeaturePlanes;
-  net.full_weights = {draw({channels.full, in, 3, 3}, in * 9.0, 1),
-                      draw({kEncodedChannels, in, 3, 3}, in * 9.0, 0.1)};
-  Tensor bias = torch::zeros({kEncodedChannels});
+  net.photograph_weight = draw({channels.full, kFeaturePlanes, 3, 3}, kFeaturePlanes * 9.0, 1);
+  net.photograph_bias = torch::zeros({channels.full});
+  net.full_weights = {
+      draw({channels.full, FullInput(channels, 0), 3, 3}, FullInput(channels, 0) * 9.0, 1),
+      draw({kOutputs, FullInput(channels, 1), 3, 3}, FullInput(channels, 1) * 9.0, 0.1)};
+  Tensor bias = torch::zeros({kOutputs});
   bias.slice(0, kEncodedSpecular, kEncodedRoughness).fill_(kFirstSpecular);
   bias.slice(0, kEncodedRoughness, kEncodedNormal).fill_(kFirstRoughness);
+  bias.slice(0, kEncodedChannels).fill_(kFirstLogScale);
   net.full_biases = {torch::zeros({channels.full}), bias};
-  for (int c = 0; c < 3; ++c) {  // t = 2·√albedo − 1, which is the normalised feature
+  for (int c = 0; c < 3; ++c) {  // t = 2·√albedo − 1, which is the normalised mean feature
     net.full_weights[1].select(0, kEncodedDiffuse + c).select(0, channels.full + c)[1][1] += 1.0;
   }
-  net.final_feed = torch::zeros({kEncodedChannels, channels.global});
+  net.final_feed = torch::zeros({kOutputs, 2 * channels.global});
   return net;
+}
+
+void EstimatorNetwork::AdoptSinglePhotograph(const std::map<std::string, Tensor>& v1) {
+  torch::NoGradGuard no_gradient;
+  // A v1 tensor becomes this network's weights of the first inputs (the mean features) for the
+  // first outputs (the maps). The weights of new inputs begin at 0.
+  for (auto& [name, to] : State()) {
+    const auto from = v1.find(name);
+    if (from == v1.end()) continue;  // per photograph at full resolution: new
+    Tensor outputs = to->slice(0, 0, from->second.size(0));
+    if (to->dim() == 1) {
+      outputs.copy_(from->second);
+    } else {
+      to->zero_();
+      outputs.slice(1, 0, from->second.size(1)).copy_(from->second);
+    }
+  }
 }
 
 NamedTensors EstimatorNetwork::State() {
@@ -91,35 +151,47 @@ NamedTensors EstimatorNetwork::State() {
   add("feed.weight", &feed_weights, kEstimatorLevels);
   add("full.weight", &full_weights, 2);
   add("full.bias", &full_biases, 2);
+  list.emplace_back("photograph.weight", &photograph_weight);
+  list.emplace_back("photograph.bias", &photograph_bias);
   list.emplace_back("final.feed", &final_feed);
   return list;
 }
 
-Tensor EstimatorNetwork::Forward(const Tensor& features, const Tensor& profile,
-                                 torch::Dtype compute) const {
-  const Tensor input = AsType(Normalised(features), compute);
-  Tensor global = profile * kProfileScale, x = input;
+EstimatorOutput EstimatorNetwork::Forward(const Tensor& features, const Tensor& profiles,
+                                          torch::Dtype compute) const {
+  const int64_t photographs = features.size(1);
+  const Tensor input = AsType(Normalised(features.flatten(0, 1)), compute);
+  Tensor global = profiles.flatten(0, 1) * kProfileScale, x = input;
   std::vector<Tensor> skips;
   for (int i = 0; i < kEstimatorLevels; ++i) {
     x = DownConvolve(x, down_weights[i], down_biases[i], compute);
     const Tensor seen = torch::cat({x.to(torch::kFloat32).mean({2, 3}), global}, 1);
     global = at::leaky_relu(torch::addmm(global_biases[i], seen, global_weights[i].t()), kLeak);
     x = at::leaky_relu(x + Spread(global, feed_weights[i]).to(compute), kLeak);
-    skips.push_back(x);
+    skips.push_back(Pooled(x, photographs));
   }
+  const auto channels_last = [](const Tensor& t) {
+    return t.contiguous(torch::MemoryFormat::ChannelsLast);
+  };
+  x = skips.back();
   for (int i = kEstimatorLevels - 1; i >= 0; --i) {
     if (i < kEstimatorLevels - 1) x = torch::cat({x, skips[i]}, 1);
-    x = at::leaky_relu(UpConvolve(x.contiguous(torch::MemoryFormat::ChannelsLast), up_weights[i],
-                                  up_biases[i], compute),
-                       kLeak);
+    x = at::leaky_relu(UpConvolve(channels_last(x), up_weights[i], up_biases[i], compute), kLeak);
   }
-  const auto full = [&](const Tensor& y, int k) {
-    const Tensor both = torch::cat({y, input}, 1).contiguous(torch::MemoryFormat::ChannelsLast);
-    return at::conv2d(both, AsType(full_weights[k], compute), full_biases[k].to(compute), 1, 1);
+  const auto convolve = [&](const Tensor& y, const Tensor& weight, const Tensor& bias) {
+    return at::conv2d(channels_last(y), AsType(weight, compute), bias.to(compute), 1, 1);
   };
-  x = at::leaky_relu(full(x, 0), kLeak);
-  const Tensor out = full(x, 1).to(torch::kFloat32) + Spread(global, final_feed);
-  return at::tanh(out.contiguous());
+  const Tensor pooled = AsType(PooledInputs(features), compute);
+  const Tensor detail = Pooled(
+      at::leaky_relu(convolve(input, photograph_weight, photograph_bias), kLeak), photographs);
+  x = at::leaky_relu(convolve(torch::cat({x, pooled, detail}, 1), full_weights[0], full_biases[0]),
+                     kLeak);
+  const Tensor out =
+      (convolve(torch::cat({x, pooled}, 1), full_weights[1], full_biases[1]).to(torch::kFloat32) +
+       Spread(Pooled(global, photographs), final_feed))
+          .contiguous();
+  return {at::tanh(out.slice(1, 0, kEncodedChannels).contiguous()),
+          out.slice(1, kEncodedChannels).clamp(kLeastLogScale, kMostLogScale)};
 }
 
 EstimatorNetwork Clone(EstimatorNetwork* network) {

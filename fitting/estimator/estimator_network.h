@@ -1,15 +1,19 @@
-// The single-photo estimator as torch modules. Include from .cc files only: this header pulls in
-// torch.
+// The SVBRDF estimator as torch modules: any number of photographs of one sample → maps and their
+// uncertainty. Include from .cc files only: this header pulls in torch.
 //
-// Role and shape after Deschaintre et al. 2018 (a U-Net with a track of global features beside it,
-// fed back at every level, so that a texel far from the highlight knows of it). Its global track
-// starts from the photograph's profile (photograph_features.h), which already says where and how
-// high the highlight is. Fully convolutional: any size, multiples of 32 inside.
+// A U-Net with a track of global features beside it, fed back at every level (Deschaintre et al.
+// 2018), whose encoder runs once per photograph. What the decoder reads are mean and maximum over
+// the photographs of each level's features (Deschaintre et al. 2019, "Flexible SVBRDF capture with
+// a multi-image deep network"), so neither order nor number of photographs matters. The global
+// track starts from each photograph's highlight profile (photograph_features.h). Fully
+// convolutional: any size, multiples of 32 inside.
 #pragma once
 
 #include <torch/torch.h>
 
 #include <array>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "fitting/weights/tensor_records.h"
@@ -21,8 +25,13 @@ inline constexpr int kEstimatorDownsampling = 32;
 
 struct EstimatorChannels {
   std::array<int, kEstimatorLevels> levels{24, 48, 96, 160, 256};
-  int full = 16;     // at the photograph's own resolution
+  int full = 16;     // at the photographs' own resolution
   int global = 128;  // of the global track
+};
+
+struct EstimatorOutput {
+  torch::Tensor maps;       // [B, 9, H, W] encoded, in [−1, 1], float32
+  torch::Tensor log_scale;  // [B, 9, H, W]: ln b, b the mean absolute error expected of `maps`
 };
 
 struct EstimatorNetwork {
@@ -31,17 +40,24 @@ struct EstimatorNetwork {
   std::vector<torch::Tensor> up_weights, up_biases;          // [4·out, in, 2, 2]
   std::vector<torch::Tensor> global_weights, global_biases;  // [global, in]
   std::vector<torch::Tensor> feed_weights;                   // [level's channels, global]
-  std::vector<torch::Tensor> full_weights, full_biases;      // two 3×3 convolutions
-  torch::Tensor final_feed;                                  // [9, global]
+  // 3×3 convolutions at full resolution: per photograph, and the decoder's last two.
+  torch::Tensor photograph_weight, photograph_bias;
+  std::vector<torch::Tensor> full_weights, full_biases;
+  torch::Tensor final_feed;  // [18, 2·global]
 
   // Weights drawn for `seed`; diffuse starts as what a matte, flat texel's would be.
   static EstimatorNetwork Random(const EstimatorChannels& channels, std::uint64_t seed);
 
+  // The network that a file of one photograph's estimator ("glint-estimator v1") describes: for one
+  // photograph the same function, for several the decoder of their mean features. `v1` holds that
+  // file's tensors by name.
+  void AdoptSinglePhotograph(const std::map<std::string, torch::Tensor>& v1);
+
   NamedTensors State();  // all learned
 
-  // features [B, 11, H, W] and profile [B, 72] → encoded maps [B, 9, H, W] in [−1, 1], float32.
-  torch::Tensor Forward(const torch::Tensor& features, const torch::Tensor& profile,
-                        torch::Dtype compute) const;
+  // features [B, N, 11, H, W] and profiles [B, N, 72] of the N photographs of B samples.
+  EstimatorOutput Forward(const torch::Tensor& features, const torch::Tensor& profiles,
+                          torch::Dtype compute) const;
 };
 
 EstimatorNetwork Clone(EstimatorNetwork* network);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "fitting/bootstrap/bootstrap.h"
@@ -79,8 +80,10 @@ SvbrdfMaps EstimatedStart(const FitStageOptions& options, const PhotographSet& p
                           int threads) {
   const fs::path weights = EstimatorWeights(options);
   const Estimator estimator = AsUserError([&] { return Estimator::Load(weights); });
-  SvbrdfMaps maps = estimator.Estimate(photographs.photographs[BestStartingPhotograph(photographs)],
-                                       photographs.plane, photographs.convention, threads);
+  std::span<const Photograph> seen = photographs.photographs;
+  if (estimator.single_photograph()) seen = seen.subspan(BestStartingPhotograph(photographs), 1);
+  SvbrdfMaps maps =
+      estimator.Estimate(seen, photographs.plane, photographs.convention, threads).maps;
   if (photographs.convention.diffuse_weight == DiffuseWeight::kOne) return maps;
   for (int c = 0; c < 3; ++c) {  // the same look with diffuse weight 1 − k_s
     for (size_t i = 0; i < maps.texels(); ++i) {

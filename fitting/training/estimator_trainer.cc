@@ -1,5 +1,6 @@
 #include "fitting/training/estimator_trainer.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "fitting/estimator/estimator_file.h"
@@ -31,7 +32,7 @@ class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOpt
                     const MaterialSource& materials, const MaterialSource& validation)
       : MapTraining(options, first_batch, materials, validation, [&](MapBatches*) {
           return options.from.empty() ? EstimatorNetwork::Random(ChannelsOf(options), options.seed)
-                                      : LoadEstimator(options.from);
+                                      : LoadEstimator(options.from).network;
         }) {}
 
   size_t learned() const override { return EstimatorNetwork(network_).State().size(); }
@@ -43,22 +44,39 @@ class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOpt
     SaveEstimator(path, &average_, std::move(metadata));
   }
 
+  double samples_per_batch() const override {
+    double sum = 0;
+    for (const int photographs : kPhotographCounts) sum += SamplesOf(photographs);
+    return sum / kPhotographCounts.size();
+  }
+
   StepLosses Forward(std::int64_t step) override {
-    const Tensor truth = pool_.Sample(step);
     Stream random(StreamSeed(options_.seed ^ kShotStream, static_cast<std::uint64_t>(step)));
-    const PhotographBatch shown = PhotographMaps(truth, &random, false);
-    const Tensor maps = network_.Forward(shown.features, shown.profiles, compute_);
+    const int photographs =
+        kPhotographCounts[random.Below(static_cast<int>(kPhotographCounts.size()))];
+    const int samples = SamplesOf(photographs);
+    const Tensor truth = pool_.Sample(step).slice(0, 0, samples).contiguous();
+    const CaptureBatch seen = PhotographMaps(truth, photographs, CaptureQuality::kDrawn, &random);
+    const EstimatorOutput out = network_.Forward(seen.features, seen.profiles, compute_);
     StepLosses losses;
-    AddMapLoss(maps, truth, &losses);
-    AddRenderLoss(maps, truth, step, &losses);
+    AddMapLoss(out.maps, truth, &losses);
+    AddRenderLoss(out.maps, truth, step, &losses);
+    const Tensor error = (out.maps - truth).abs().detach();
+    Add(options_.spread_weight * (error * (-out.log_scale).exp() + out.log_scale).mean(), &losses);
     return losses;
   }
 
  private:
+  int SamplesOf(int photographs) const {
+    return std::clamp(options_.batch_photographs / photographs, 1, options_.batch);
+  }
+
+  // Half of the validation materials are seen once, the others five times.
   Tensor AveragedMaps(const Tensor& truth, std::int64_t number) override {
     Stream random(static_cast<std::uint64_t>(number));
-    const PhotographBatch shown = PhotographMaps(truth, &random, true);
-    return average_.Forward(shown.features, shown.profiles, compute_);
+    const CaptureBatch seen =
+        PhotographMaps(truth, number % 2 == 0 ? 1 : 5, CaptureQuality::kClean, &random);
+    return average_.Forward(seen.features, seen.profiles, compute_).maps;
   }
 };
 

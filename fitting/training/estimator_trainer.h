@@ -1,11 +1,13 @@
-// Trains the single-photo estimator.
+// Trains the estimator of maps from any number of photographs (fitting/estimator).
 //
-// Each sample is a crop of a material, taken as the whole sample of [−1, 1]² or a part or multiple
-// of it, photographed once with a flash at or near the camera: from the top mostly, up to 45°
-// beside it else; too bright and too dark, 8 bits (gamma 2.2) mostly, float now and then; the
-// light's power known more or less. Loss: L1 of the encoded maps + render_weight · log-L1 of
-// renderings under other views and lights (Deschaintre et al. 2018; the views are those of the
-// auto-encoder's loss).
+// Each sample is a crop of a material with 1 to 9 photographs of it, drawn as real captures are
+// (training_photographs.h): with a flash beside the lens, errors of exposure, light, registration
+// and tone curve, ambient illumination, and shading that the model does not know. Loss:
+//   L1 of the encoded maps  +  render_weight · log-L1 of renderings under other views and lights
+//   +  spread_weight · Σ ( |error| / b + ln b ),   the Laplace likelihood of the predicted spread
+//   b,
+// of which the errors are not pulled by the last term, so that the maps do not pay for it (Kendall
+// and Gal 2017 for the likelihood; Deschaintre et al. 2019 for the many photographs).
 #pragma once
 
 #include "fitting/training/train_options.h"
@@ -14,6 +16,9 @@ namespace glint {
 
 struct EstimatorTrainOptions : TrainOptions {
   std::vector<int> channels{24, 48, 96, 160, 256, 16, 128};  // five levels, full resolution, global
+  double spread_weight = 0.05;
+  // Photographs in a batch, at most (one sample has them all at least): time and memory.
+  int batch_photographs = 16;
 };
 
 // As TrainAutoencoder().

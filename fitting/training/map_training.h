@@ -15,6 +15,7 @@ class MapTraining : public Trainable {
  public:
   NamedTensors State() override { return network_.State(); }
   NamedTensors AverageState() override { return average_.State(); }
+  double samples_per_batch() const override { return options_.batch; }
 
   double Validate() override {
     torch::NoGradGuard no_gradient;

@@ -197,7 +197,8 @@ class Loop {
     TrainProgress progress = window_.Take();
     progress.step = state_.step;
     progress.seconds = state_.seconds;
-    progress.samples_per_second = batches * options_.batch / std::max(window_seconds, 1e-9);
+    progress.samples_per_second =
+        batches * trainable_->samples_per_batch() / std::max(window_seconds, 1e-9);
     progress.learning_rate = LearningRate();
     progress.eta_seconds = state_.seconds * (1.0 / std::max(Done(), 1e-9) - 1.0);
     return progress;
@@ -209,7 +210,9 @@ class Loop {
         {"data", options_.data_name},
         {"seed", std::to_string(options_.seed)},
         {"steps", std::to_string(state_.step)},
-        {"samples", std::to_string(state_.step * options_.accumulate * options_.batch)},
+        {"samples",
+         std::to_string(std::llround(static_cast<double>(state_.step) * options_.accumulate *
+                                     trainable_->samples_per_batch()))},
         {"validation_map_l1", std::to_string(validation)}};
     if (!options_.from.empty()) metadata["from"] = options_.from.filename().string();
     trainable_->SaveWeights(files_.weights, std::move(metadata));

@@ -30,6 +30,8 @@ class Trainable {
   virtual size_t learned() const = 0;
   // Losses of batch number `batch`, which depends on the options and `batch` alone. Numbers rise.
   virtual StepLosses Forward(std::int64_t batch) = 0;
+  // Crops in a batch, in the mean.
+  virtual double samples_per_batch() const = 0;
   // L1 of encoded maps on materials that are never trained on, by the averaged weights.
   virtual double Validate() = 0;
   // What kind of network this is; a checkpoint of another is refused.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "datasets/procedural/blend.h"
 #include "datasets/procedural/material.h"
@@ -93,6 +94,24 @@ SvbrdfMaps GlazedAtTimes(SvbrdfMaps maps, double share, std::uint64_t seed, Stre
   return procedural::BlendMaterials(std::move(maps), glazed, mask);
 }
 
+// The plane's values drawn toward their mean.
+void DrawTogether(float share_left, std::span<float> plane) {
+  double mean = 0;
+  for (const float x : plane) mean += x;
+  mean /= static_cast<double>(plane.size());
+  for (float& x : plane) {
+    x = static_cast<float>(mean) + share_left * (x - static_cast<float>(mean));
+  }
+}
+
+SvbrdfMaps OneSubstanceAtTimes(SvbrdfMaps maps, double share, Stream* random) {
+  if (random->Uniform() >= share) return maps;
+  const auto left = static_cast<float>(random->Uniform(0, 0.2));
+  for (int c = 0; c < 3; ++c) DrawTogether(left, maps.plane(kSpecularR + c));
+  DrawTogether(left, maps.plane(kRoughness));
+  return maps;
+}
+
 SvbrdfMaps PackedWindow(const PackedMaterial& material, int size, Stream* random) {
   const int window = size + random->Below(material.size - size + 1);
   const int column = random->Below(material.size - window + 1);
@@ -124,7 +143,10 @@ SvbrdfMaps TrainingMaterial(const TrainingMaterialOptions& options, const Materi
   Stream random(StreamSeed(options.seed ^ kChoiceStream, k));
   const std::uint64_t seed = ProceduralSeed(options.seed, k);
   SvbrdfMaps maps = PlainMaterial(options, pack, seed, &random);
-  return GlazedAtTimes(std::move(maps), options.glazed_share, seed, &random);
+  maps = GlazedAtTimes(std::move(maps), options.glazed_share, seed, &random);
+  // Drawn only when asked for, so that trainings of before repeat.
+  if (options.one_substance_share <= 0) return maps;
+  return OneSubstanceAtTimes(std::move(maps), options.one_substance_share, &random);
 }
 
 }  // namespace glint

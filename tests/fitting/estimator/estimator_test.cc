@@ -27,7 +27,9 @@ class EstimatorFile : public testing::Test {
     SaveEstimator(path_, &network, {});
   }
   SvbrdfMaps Estimate(const PhotographSet& set, int threads = 1) const {
-    return Estimator::Load(path_).Estimate(set.photographs[0], set.plane, set.convention, threads);
+    return Estimator::Load(path_)
+        .Estimate(set.photographs, set.plane, set.convention, threads)
+        .maps;
   }
   const test::TemporaryFolder folder_;
   const std::filesystem::path path_ = folder_.path() / "e.safetensors";
@@ -53,6 +55,35 @@ TEST_F(EstimatorFile, BeforeTrainingDiffuseIsAboutWhatAMatteTexelShows) {
   const PhotographSet set = PhotographMaps(UniformMaps(64, 0.3f, 0.0f, 1.0f), 1);
   const SvbrdfMaps maps = Estimate(set);
   EXPECT_NEAR(maps.at(kDiffuseR, 20, 20), 0.3f, 0.15f);
+}
+
+TEST_F(EstimatorFile, TheOrderOfPhotographsDoesNotMatter) {
+  PhotographSet set = PhotographMaps(ToyMaterial(2, 64, 64), 4);
+  const SvbrdfMaps before = Estimate(set);
+  std::reverse(set.photographs.begin(), set.photographs.end());
+  const SvbrdfMaps after = Estimate(set);
+  for (size_t i = 0; i < before.planes.size(); ++i) {
+    ASSERT_NEAR(before.planes[i], after.planes[i], 1e-4f);
+  }
+}
+
+TEST_F(EstimatorFile, APhotographGivenTwiceSaysNoMoreThanOnce) {
+  PhotographSet set = PhotographMaps(ToyMaterial(2, 64, 64), 1);
+  const SvbrdfMaps once = Estimate(set);
+  set.photographs.push_back(set.photographs[0]);
+  const SvbrdfMaps twice = Estimate(set);
+  for (size_t i = 0; i < once.planes.size(); ++i) {
+    ASSERT_NEAR(once.planes[i], twice.planes[i], 1e-4f);
+  }
+}
+
+TEST_F(EstimatorFile, APhotographWhoseFrameEndsAtATexelDoesNotDarkenIt) {
+  PhotographSet set = PhotographMaps(UniformMaps(64, 0.3f, 0.0f, 1.0f), 2);
+  for (int i = 0; i < 64 * 32; ++i) {
+    set.photographs[1].mask[i] = 0;
+    for (int c = 0; c < 3; ++c) set.photographs[1].rgb[c * 4096 + i] = 0;
+  }
+  EXPECT_NEAR(Estimate(set).at(kDiffuseR, 10, 20), 0.3f, 0.15f);
 }
 
 TEST_F(EstimatorFile, DamagedFilesAreRefusedWithTheirName) {

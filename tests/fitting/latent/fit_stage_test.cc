@@ -39,7 +39,9 @@ TEST(FitInputs, OfAnEstimatorThatIsGivenAreThatOne) {
 // Mean F0 that the shipped network takes the photograph's sample for.
 double EstimatedSpecular(const char* model, const PhotographSet& set) {
   const SvbrdfMaps maps =
-      Estimator::Load(FindModel(model)).Estimate(set.photographs[0], set.plane, set.convention, 1);
+      Estimator::Load(FindModel(model))
+          .Estimate(std::span(set.photographs).first(1), set.plane, set.convention, 1)
+          .maps;
   double sum = 0;
   for (const float s : maps.plane(kSpecularG)) sum += s;
   return sum / static_cast<double>(maps.texels());
