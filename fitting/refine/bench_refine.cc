@@ -10,12 +10,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <vector>
 
 #include "fitting/refine/gather.h"
 #include "fitting/refine/refine.h"
-#include "fitting/refine/refine_prior.h"
 #include "fitting/reflectance/texel_at.h"
 #include "fitting/texel/texel_parameters.h"
 #include "fitting/texel/texel_residuals.h"
@@ -210,15 +210,17 @@ struct Side {
 
 // Calls solve(texel index, its observations, prior and start) for every texel.
 template <class Solve>
-Side Measure(const Scene& scene, const PriorWeights& weights, const Solve& solve) {
+Side Measure(const Scene& scene, double scale, const Solve& solve) {
   const size_t texels = scene.start.texels();
   TexelObservations observations(kViews);
+  std::vector<int> views(kViews);
+  std::iota(views.begin(), views.end(), 0);
   double total = 0.0;
   const double began = Now();
   for (size_t t = 0; t < texels; ++t) {
-    GatherObservations(scene.problem, scene.start, t, &observations);
+    GatherObservations(scene.problem, scene.start, t, views, &observations);
     TexelValues texel = ReadTexel(scene.start, t);
-    const TexelPrior prior(weights, texel);
+    const TexelPrior prior(TexelGaussian(texel, {}), scale);
     total += solve(t, observations, prior, &texel);
   }
   const double n = static_cast<double>(texels);
@@ -257,7 +259,6 @@ int Main() {
   Scene scene;
   MakeScene(&scene);
   RefineOptions options;
-  options.pooling_passes = 0;  // one refinement against one solve
   const KernelOptions kernel{scene.problem.convention.diffuse_weight, options.robust_scale};
   // The three in turn, several times: what disturbs one round disturbs all three alike.
   std::vector<double> ratios, kernel_ratios;
@@ -268,10 +269,9 @@ int Main() {
                       refined.summary.final_cost};
     Print("refine, all of it", refine);
 
-    const PriorWeights weights = HoldToStart(options.prior, refined.summary.holding_sigma(),
-                                             refined.summary.distinct_views, {});
+    const double scale = refined.summary.residual_sigma;
     const Side plain = Measure(
-        scene, weights,
+        scene, scale,
         [&](size_t t, const TexelObservations&, const TexelPrior& prior, TexelValues* texel) {
           ceres::Problem problem;
           AddViewBlocks(scene, t, kernel, &problem, texel);
@@ -281,7 +281,7 @@ int Main() {
     Print("bounded ceres::Solve per texel, residuals by autodiff", plain);
     KernelRows rows(kViews);
     const Side shared =
-        Measure(scene, weights,
+        Measure(scene, scale,
                 [&](size_t, const TexelObservations& observations, const TexelPrior& prior,
                     TexelValues* texel) {
                   ceres::Problem problem;

@@ -28,12 +28,9 @@ void InvertFactor(const TexelGram& matrix, TexelGram* inverse) {
 }  // namespace
 
 std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
-                                                     const TexelValues& texel, int residuals,
-                                                     double residual_sigma, double shared_noise) {
-  const double squares = gram[kTexelParameters][kTexelParameters];
-  const double variance = shared_noise *
-                          (kCommonWeight * residual_sigma * residual_sigma + squares) /
-                          (kCommonWeight + residuals);
+                                                     const TexelValues& texel, double squares,
+                                                     double scale) {
+  const double variance = scale * scale;
   // What nothing is known of keeps the widest deviation: it stands in for a missing prior.
   TexelGram information = gram;
   for (int i = 0; i < kTexelParameters; ++i) information[i][i] += variance / (kWidest * kWidest);

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "fitting/refine/refine_prior.h"
+#include "fitting/refine/residual_model.h"
 #include "pipeline/contract/svbrdf_file.h"
 
 namespace glint {

@@ -8,14 +8,15 @@
 namespace glint {
 
 void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps, size_t texel,
-                        TexelObservations* observations) {
+                        std::span<const int> views, TexelObservations* observations) {
   const size_t texels = static_cast<size_t>(problem.plane.width) * problem.plane.height;
   const double x = problem.plane.x_mm(static_cast<int>(texel % problem.plane.width));
   const double y = problem.plane.y_mm(static_cast<int>(texel / problem.plane.width));
   std::optional<RoomReflection> reflection;
   if (problem.room.any()) reflection.emplace(TexelAt(maps, texel));
   observations->Clear();
-  for (const RefineView& view : problem.views) {
+  for (const int v : views) {
+    const RefineView& view = problem.views[static_cast<size_t>(v)];
     if (!(view.mask[texel] >= 0.5f)) continue;
     double radiance[3];
     bool clipped[3];

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <tuple>
@@ -13,9 +14,7 @@
 #include "base/parallel/parallel.h"
 #include "fitting/refine/confidence.h"
 #include "fitting/refine/gather.h"
-#include "fitting/refine/highlight_pool.h"
-#include "fitting/refine/refine_prior.h"
-#include "fitting/texel/residual_noise.h"
+#include "fitting/refine/sample_model.h"
 #include "fitting/texel/texel_parameters.h"
 #include "fitting/texel/texel_search.h"
 
@@ -23,7 +22,6 @@ namespace glint {
 namespace {
 
 constexpr int kTexelsPerPiece = 256;
-constexpr double kTypicalSigma = 0.02;  // of residuals, where too few views leave it open
 
 void CheckProblem(const RefineProblem& problem, const SvbrdfMaps& start) {
   const SamplePlane& plane = problem.plane;
@@ -56,6 +54,12 @@ std::vector<int> CanonicalOrder(const std::vector<RefineView>& views) {
   return order;
 }
 
+RefineProblem InOrder(RefineProblem problem, const std::vector<int>& order) {
+  const std::vector<RefineView> views = problem.views;
+  for (size_t i = 0; i < order.size(); ++i) problem.views[i] = views[order[i]];
+  return problem;
+}
+
 // What one thread owns.
 struct Worker {
   Worker(const KernelOptions& options, const RefineOptions& refine, int views)
@@ -75,7 +79,7 @@ class Refiner {
   RefineResult Run();
 
  private:
-  void EstimateNoise();
+  void EstimateModel();
   void SolveFromStarts();
   void SolveFromNeighbours(int half_pass);
   void Conclude();
@@ -83,12 +87,13 @@ class Refiner {
   size_t SumColumns() const { return 1 + 2 * problem_.views.size(); }
 
   void ForEachTexel(const std::function<void(size_t texel, Worker* worker)>& visit);
-  PriorWeights WeightsAt(size_t texel) const;
+  TexelPrior PriorOf(size_t texel) const { return model_.PriorOf(texel, result_.maps); }
   TexelSolution Current(size_t texel, const TexelPrior& prior, Worker* worker);
   void Keep(size_t texel, const TexelSolution& solution);
 
-  RefineProblem problem_;  // views in canonical order
   std::vector<int> order_;
+  std::vector<int> all_views_;
+  RefineProblem problem_;  // views in canonical order
   const SvbrdfMaps& start_;
   const RefineOptions& options_;
   const int threads_;
@@ -98,11 +103,10 @@ class Refiner {
 
   KernelOptions kernel_;
   std::vector<std::unique_ptr<Worker>> workers_;
-  PriorWeights weights_;
+  SampleModel model_;
   RefineResult result_;
-  enum Origin : unsigned char { kConverged = 1, kOtherStart = 2, kNeighbour = 4, kConcluded = 8 };
+  enum Origin : unsigned char { kConverged = 1, kOtherStart = 2, kNeighbour = 4, kUnseen = 8 };
   std::vector<unsigned char> origin_;
-  std::vector<int> changed_;  // half pass in which a texel last changed; 0: its own start
   // Sums by piece, added up in the pieces' order.
   std::vector<double> start_costs_;
   std::vector<double> sums_;  // cost, then log differences and their number by view
@@ -111,13 +115,15 @@ class Refiner {
 Refiner::Refiner(const RefineProblem& problem, const SvbrdfMaps& start,
                  const RefineOptions& options, int threads,
                  const std::function<void(std::int64_t, std::int64_t)>& progress)
-    : problem_(problem),
-      order_(CanonicalOrder(problem.views)),
+    : order_(CanonicalOrder(problem.views)),
+      all_views_(problem.views.size()),
+      problem_(InOrder(problem, order_)),
       start_(start),
       options_(options),
       threads_(std::max(threads, 1)),
-      progress_(progress) {
-  for (size_t i = 0; i < order_.size(); ++i) problem_.views[i] = problem.views[order_[i]];
+      progress_(progress),
+      model_(problem_, start, options) {
+  std::iota(all_views_.begin(), all_views_.end(), 0);
   kernel_.diffuse_weight = problem.convention.diffuse_weight;
   kernel_.robust_scale = options.robust_scale;
   for (int i = 0; i < threads_; ++i) {
@@ -127,7 +133,6 @@ Refiner::Refiner(const RefineProblem& problem, const SvbrdfMaps& start,
   result_.maps = start;
   result_.confidence.assign(start.texels() * kConfidencePlanes, 0.0f);
   origin_.assign(start.texels(), 0);
-  changed_.assign(start.texels(), 0);
   const size_t pieces = (start.texels() + kTexelsPerPiece - 1) / kTexelsPerPiece;
   start_costs_.assign(pieces, 0.0);
   sums_.assign(pieces * SumColumns(), 0.0);
@@ -148,50 +153,38 @@ void Refiner::ForEachTexel(const std::function<void(size_t, Worker*)>& visit) {
   });
 }
 
-void Refiner::EstimateNoise() {
-  RefineSummary& summary = result_.summary;
-  summary.distinct_views = DistinctViews(problem_);
-  constexpr size_t kSampled = 512;
-  const size_t texels = start_.texels();
-  const size_t sampled = std::min(kSampled, texels);
-  const PriorWeights weak = HoldToStart(1.0, 0.005, summary.distinct_views, {});
-  std::vector<double> variances(sampled, -1.0);
-  std::vector<ResidualNoise> noise(sampled);
-  ForEachPieceByWorker(static_cast<int>(sampled), threads_, [&](int i, int worker) {
-    Worker& w = *workers_[worker];
-    const size_t texel = texels * i / sampled;
-    GatherObservations(problem_, start_, texel, &w.observations);
-    const int freedom = 3 * w.observations.views() - kTexelParameters;
-    if (freedom < 6) return;
-    const TexelValues start = ReadTexel(start_, texel);
-    const TexelPrior prior(weak, start);
-    const TexelSolution solution = w.search.FromStart(w.observations, prior, start).solution;
-    variances[i] = (2.0 * solution.cost - prior.SquaredNorm(solution.values)) / freedom;
-    w.search.solver().Cost(w.observations, prior, solution.values);  // for its residuals
-    noise[i].Add(w.search.solver().rows(), w.observations.views(), variances[i]);
-  });
-  ResidualNoise all;
-  for (const ResidualNoise& one : noise) all.Add(one);
-  summary.shared_noise = all.Shared();
-  std::erase_if(variances, [](double v) { return v < 0.0; });
-  summary.residual_sigma = kTypicalSigma;
-  if (variances.size() >= sampled / 4 && !variances.empty()) {
-    const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
-    std::nth_element(variances.begin(), middle, variances.end());
-    summary.residual_sigma = std::sqrt(std::max(*middle, 1e-8));
-  }
-  for (auto& worker : workers_) worker->search.SetNoise(summary.residual_sigma);
-  weights_ = HoldToStart(options_.prior, summary.holding_sigma(), summary.distinct_views, {});
-}
-
-PriorWeights Refiner::WeightsAt(size_t texel) const {
-  PriorWeights weights = weights_;
-  if (!problem_.roughness_error.empty()) {
-    weights.errors.roughness = problem_.roughness_error[texel];
-    weights.errors.specular = problem_.specular_error[texel];
-    weights.errors.specular_relative = 0;
-  }
-  return weights;
+void Refiner::EstimateModel() {
+  SampleSolver solver;
+  solver.solve = [&](size_t texel, const TexelPrior& prior, const TexelValues& from,
+                     std::span<const int> views, int worker) {
+    Worker& w = *workers_[static_cast<size_t>(worker)];
+    GatherObservations(problem_, start_, texel, views, &w.observations);
+    SampledTexel sampled;
+    sampled.values = from;
+    sampled.views = w.observations.views();
+    if (sampled.views == 0) return sampled;
+    sampled.values = w.search.FromStart(w.observations, prior, from).solution.values;
+    TexelGram& gram = sampled.gram;
+    w.search.solver().Gram(w.observations, TexelPrior(), sampled.values, &gram);
+    sampled.squares = gram[kTexelParameters][kTexelParameters];
+    sampled.noise.Add(w.search.solver().rows(), sampled.views,
+                      sampled.squares / (3 * sampled.views));
+    for (int i = 0; i < kTexelParameters; ++i) sampled.prior_diagonal[i] = -gram[i][i];
+    prior.AddTo(sampled.values, &gram);
+    for (int i = 0; i < kTexelParameters; ++i) sampled.prior_diagonal[i] += gram[i][i];
+    return sampled;
+  };
+  solver.predict = [&](size_t texel, const TexelValues& values, std::span<const int> views,
+                       int worker) {
+    Worker& w = *workers_[static_cast<size_t>(worker)];
+    GatherObservations(problem_, start_, texel, views, &w.observations);
+    if (w.observations.views() == 0) return Prediction{};
+    return Prediction{2 * w.search.solver().Cost(w.observations, TexelPrior(), values),
+                      3 * w.observations.views()};
+  };
+  model_.Estimate(solver, threads_);
+  for (auto& worker : workers_) worker->search.SetNoise(model_.residuals().scale());
+  model_.Describe(&result_.summary);
 }
 
 TexelSolution Refiner::Current(size_t texel, const TexelPrior& prior, Worker* worker) {
@@ -210,80 +203,65 @@ void Refiner::Keep(size_t texel, const TexelSolution& solution) {
 
 void Refiner::SolveFromStarts() {
   ForEachTexel([&](size_t texel, Worker* worker) {
-    GatherObservations(problem_, start_, texel, &worker->observations);
+    GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
     if (worker->observations.views() == 0) {
-      origin_[texel] = kConverged;  // nothing to learn: the start stays
-      ConcludeTexel(texel, worker);
+      origin_[texel] = kConverged | kUnseen;  // the initial values stay
       return;
     }
     const TexelValues start = ReadTexel(start_, texel);
-    const TexelPrior prior(WeightsAt(texel), start);
+    const TexelPrior prior = model_.PriorOf(texel);
     const TexelSearch::Found found = worker->search.FromStart(worker->observations, prior, start);
     start_costs_[texel / kTexelsPerPiece] += found.start_cost;
     if (found.other_start) origin_[texel] |= kOtherStart;
     Keep(texel, found.solution);
-    // Neighbours are not asked where noise explains all: such texels are done.
-    if (!worker->search.Unexplained(worker->observations.views(), found.solution.cost)) {
-      ConcludeTexel(texel, worker);
-    }
   });
 }
 
 // One colour of the checkerboard: the neighbours of a texel all have the other, and stand still.
-// Half passes count from 1; later ones pass over texels round which nothing changed since.
+// Half passes count from 1.
 void Refiner::SolveFromNeighbours(int half_pass) {
   const int width = start_.width, height = start_.height;
-  const auto changed_since = [&](size_t texel) { return changed_[texel] >= half_pass - 2; };
   ForEachTexel([&](size_t texel, Worker* worker) {
     const int column = static_cast<int>(texel % width);
     const int row = static_cast<int>(texel / width);
-    if ((row + column + half_pass) % 2 != 0 || (origin_[texel] & kConcluded)) return;
+    if ((row + column + half_pass) % 2 != 0 || (origin_[texel] & kUnseen)) return;
     std::array<TexelValues, 4> neighbours;
     size_t count = 0;
-    bool any_change = changed_since(texel);
     const auto add = [&](int r, int c) {
       if (r < 0 || r >= height || c < 0 || c >= width) return;
-      const size_t neighbour = static_cast<size_t>(r) * width + c;
-      any_change = any_change || changed_since(neighbour);
-      neighbours[count++] = ReadTexel(result_.maps, neighbour);
+      neighbours[count++] = ReadTexel(result_.maps, static_cast<size_t>(r) * width + c);
     };
     add(row - 1, column);
     add(row, column - 1);
     add(row, column + 1);
     add(row + 1, column);
-    if (!any_change) return;
-    GatherObservations(problem_, start_, texel, &worker->observations);
-    const TexelPrior prior(WeightsAt(texel), ReadTexel(start_, texel));
-    const TexelSolution current = Current(texel, prior, worker);
+    GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
+    const TexelPrior prior = PriorOf(texel);
+    // The prior is no longer the one it was solved with.
+    const TexelSolution current =
+        worker->search.Improved(worker->observations, prior, Current(texel, prior, worker));
     const TexelSearch::Found found = worker->search.FromNeighbours(
         worker->observations, prior, current, std::span(neighbours).first(count));
-    if (!found.other_start) return;
-    origin_[texel] |= kNeighbour;
-    changed_[texel] = half_pass;
+    if (found.other_start) origin_[texel] |= kNeighbour;
     Keep(texel, found.solution);
   });
 }
 
 // Confidence and the texel's share of the summary, from the observations that `worker` holds.
 void Refiner::ConcludeTexel(size_t texel, Worker* worker) {
-  origin_[texel] |= kConcluded;
   const size_t texels = start_.texels();
   const size_t views = problem_.views.size();
   const TexelValues values = ReadTexel(result_.maps, texel);
-  const TexelValues start = ReadTexel(start_, texel);
-  // The start is believed as far as its expected errors say: not held harder, as the fit does.
-  const PriorWeights believed =
-      options_.prior > 0.0 ? BelieveStart(result_.summary.telling_sigma(), {}) : PriorWeights{};
+  const TexelPrior prior = PriorOf(texel);
   TexelGram gram;
-  worker->search.solver().Gram(worker->observations, TexelPrior({}, start), values, &gram);
+  worker->search.solver().Gram(worker->observations, TexelPrior(), values, &gram);
   const double squares = gram[kTexelParameters][kTexelParameters];
-  TexelPrior(believed, values).AddTo(values, &gram);
-  const auto planes = TexelConfidence(gram, values, 3 * worker->observations.views(),
-                                      result_.summary.residual_sigma, result_.summary.shared_noise);
+  prior.AddTo(values, &gram);
+  const auto planes = TexelConfidence(gram, values, squares, model_.residuals().scale());
   for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];
 
   double* sum = &sums_[texel / kTexelsPerPiece * SumColumns()];
-  sum[0] += 0.5 * (squares + TexelPrior(WeightsAt(texel), start).SquaredNorm(values));
+  sum[0] += 0.5 * gram[kTexelParameters][kTexelParameters];
   const KernelRows& rows = worker->search.solver().rows();
   const int usable = worker->observations.views();
   std::vector<double>& differences = worker->differences;
@@ -304,8 +282,7 @@ void Refiner::Conclude() {
   const size_t texels = start_.texels();
   const size_t views = problem_.views.size();
   ForEachTexel([&](size_t texel, Worker* worker) {
-    if (origin_[texel] & kConcluded) return;
-    GatherObservations(problem_, start_, texel, &worker->observations);
+    GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
     ConcludeTexel(texel, worker);
   });
   const size_t columns = SumColumns();
@@ -330,7 +307,7 @@ void Refiner::Conclude() {
 }
 
 RefineResult Refiner::Run() {
-  EstimateNoise();
+  EstimateModel();
   SolveFromStarts();
   for (int half = 1; half <= 2 * options_.neighbour_passes; ++half) SolveFromNeighbours(half);
   Conclude();
@@ -342,7 +319,8 @@ RefineResult Refiner::Run() {
 std::string RefineOptions::Check() const {
   if (iterations < 1) return "iterations must be at least 1";
   if (starts < 1) return "starts must be at least 1";
-  if (pooling_passes < 0) return "pooling passes must be at least 0";
+  if (substances < 1 || substances > kMostSubstances) return "substances must be from 1 to 8";
+  if (estimation_rounds < 0) return "estimation rounds must be at least 0";
   if (neighbour_passes < 0) return "neighbour passes must be at least 0";
   if (!(prior >= 0.0)) return "the prior's weight must be at least 0";
   if (!(robust_scale > 0.0)) return "the robust scale must be above 0";
@@ -351,11 +329,12 @@ std::string RefineOptions::Check() const {
 
 std::string RefineSummary::BriefReport() const {
   std::ostringstream text;
-  text.precision(4);
-  text << "cost " << start_cost << " -> " << final_cost << " per texel, " << 100.0 * converged
-       << " % converged, residual sigma " << residual_sigma << " (shared " << shared_noise << "), "
-       << distinct_views << " distinct views, " << 100.0 * other_start << " % from another start, "
-       << 100.0 * neighbour << " % from a neighbour";
+  text.precision(3);
+  text << "cost " << start_cost << " -> " << final_cost << " per texel, residuals "
+       << 100 * residual_sigma << " % (model discrepancy " << 100 * discrepancy << " %), "
+       << effective_views << " effective views, " << substances << " substances (roughness spread "
+       << roughness_spread << "), normals scatter " << normal_spread * 180 / M_PI << " deg, "
+       << 100.0 * converged << " % converged";
   return text.str();
 }
 
@@ -365,24 +344,7 @@ RefineResult Refine(const RefineProblem& problem, const SvbrdfMaps& start,
   const std::string wrong = options.Check();
   if (!wrong.empty()) throw std::invalid_argument("refine: " + wrong);
   CheckProblem(problem, start);
-  // Progress of all passes as of one long one.
-  const bool pools = static_cast<int>(problem.views.size()) >= kPoolingViews;
-  const int passes = pools ? options.pooling_passes : 0;
-  int pass = 0;
-  const auto report = [&](std::int64_t done, std::int64_t total) {
-    if (progress) progress(pass * total + done, (passes + 1) * total);
-  };
-  RefineResult result = Refiner(problem, start, options, threads, report).Run();
-  const double start_cost = result.summary.start_cost;
-  for (pass = 1; pass <= passes; ++pass) {
-    const HighlightPool pool = PoolHighlights(result, {}, threads);
-    RefineProblem pooled = problem;
-    pooled.roughness_error = pool.roughness_error;
-    pooled.specular_error = pool.specular_error;
-    result = Refiner(pooled, pool.start, options, threads, report).Run();
-  }
-  result.summary.start_cost = start_cost;
-  return result;
+  return Refiner(problem, start, options, threads, progress).Run();
 }
 
 }  // namespace glint

@@ -44,19 +44,15 @@ struct RefineProblem {
   ReflectanceConvention convention;
   std::vector<RefineView> views;
   RoomLight room;  // beside what each view has as ambient light
-  // H·W each: errors expected of the start's roughness and specular albedo, texel by texel; empty:
-  // those of texel_prior.h.
-  std::span<const float> roughness_error, specular_error;
 };
-
-inline constexpr int kPoolingViews = 3;
 
 struct RefineOptions {
   int iterations = 40;        // most Levenberg–Marquardt steps of one solve
   int starts = 2;             // solves per texel: 1: the start alone; more: so many roughnesses
   int neighbour_passes = 2;   // how often a texel tries its neighbours' solutions
-  int pooling_passes = 2;     // refinements again from a start pooled over neighbours
-  double prior = 1.0;         // factor on the prior's weight; 0: none
+  int substances = 8;         // at most, that share their roughness and specular albedo
+  int estimation_rounds = 8;  // of variances and substances, on sampled texels
+  double prior = 1.0;         // factor on the priors' weight; 0: none
   double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
 
   // Empty: all is well; otherwise what is wrong.
@@ -81,19 +77,18 @@ enum ConfidencePlane : int {
 struct RefineSummary {
   double start_cost = 0;  // means over texels
   double final_cost = 0;
-  double residual_sigma = 0;      // noise found in the photographs, log units
-  double shared_noise = 1;        // 1 to 3: how much of it the channels share (residual_noise.h)
-  double distinct_views = 0;      // how many views tell something of their own (refine_prior.h)
+  double residual_sigma = 0;      // standard deviation of residuals, log units
+  double discrepancy = 0;         // of it, what the reflectance model does not express
+  double effective_views = 0;     // how many views say something of their own
+  int substances = 0;             // that are told apart
+  double roughness_spread = 0;    // of texels about their substance's mean …
+  double specular_spread = 0;     // … relative
+  double normal_spread = 0;       // of n_x, n_y about 0, and between neighbours
   double converged = 0;           // share of texels
   double other_start = 0;         // share of texels whose solution came from another start …
   double neighbour = 0;           // … or from a neighbour
   std::vector<double> view_loss;  // per view: mean |log(I + 0.01) − log(R + 0.01)|, NaN: masked
 
-  // What residuals are worth as evidence.
-  double telling_sigma() const { return residual_sigma * std::sqrt(shared_noise); }
-  // The same, as far as it is a reason to hold to the start: residuals of more than 8 % are errors
-  // of the model (glitter, layers) more than of the photographs, and the start is as wrong by them.
-  double holding_sigma() const { return std::fmin(telling_sigma(), 0.08); }
   std::string BriefReport() const;
 };
 

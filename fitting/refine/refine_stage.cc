@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "fitting/refine/substances.h"
 #include "fitting/reflectance/brdf.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/errors.h"
@@ -69,8 +70,12 @@ Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& vie
           {"from_other_start", summary.other_start},
           {"from_neighbour", summary.neighbour},
           {"residual_sigma", summary.residual_sigma},
-          {"shared_noise", summary.shared_noise},
-          {"distinct_views", summary.distinct_views},
+          {"model_discrepancy", summary.discrepancy},
+          {"effective_views", summary.effective_views},
+          {"substances", summary.substances},
+          {"roughness_spread", summary.roughness_spread},
+          {"specular_spread", summary.specular_spread},
+          {"normal_spread", summary.normal_spread},
           {"log_l1", usable > 0 ? sum / usable : 0.0},
           {"views", losses}};
 }
@@ -135,10 +140,11 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "solves per texel: the start, and so many less one of other roughness");
   set->AddRange("neighbour-passes", &refine->neighbour_passes, 0, 16,
                 "how often a texel tries its neighbours' solutions");
-  set->AddRange("pooling-passes", &refine->pooling_passes, 0, 16,
-                "refinements again from highlights pooled over neighbours of like colour");
-  set->AddRange("prior", &refine->prior, 0, 1e6,
-                "factor on the weight that holds texels to their start; 0: none");
+  set->AddRange("substances", &refine->substances, 1, kMostSubstances,
+                "most substances whose texels share roughness and specular albedo");
+  set->AddRange("estimation-rounds", &refine->estimation_rounds, 0, 100,
+                "steps that estimate variances and substances, on sampled texels");
+  set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the priors' weight; 0: none");
   set->AddRange("robust-scale", &refine->robust_scale, 1e-3, 100,
                 "residuals (logarithms) beyond it count linearly");
   set->AddChoice("correct-views", &options->correction.when, {"auto", "always", "never"},

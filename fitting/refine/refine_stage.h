@@ -13,7 +13,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 10;
+inline constexpr int kRefineVersion = 11;
 
 struct RefineStageOptions {
   RefineOptions refine;

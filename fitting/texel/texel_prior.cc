@@ -1,6 +1,9 @@
 #include "fitting/texel/texel_prior.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "fitting/texel/texel_parameters.h"
 
 namespace glint {
 namespace {
@@ -14,18 +17,42 @@ void NormalOf(const TexelValues& texel, double normal[2], double* length) {
 
 }  // namespace
 
-TexelPrior::TexelPrior(const PriorWeights& weights, const TexelValues& start) : start_(start) {
-  const StartErrors& errors = weights.errors;
-  const double strength = weights.strength;
-  weight_[kSlopeX] = weight_[kSlopeY] = strength / errors.normal;
-  weight_[kRough] = strength / errors.roughness;
-  for (int c = 0; c < 3; ++c) {
-    const int d = DiffuseParameter(c), s = SpecularParameter(c);
-    weight_[d] = strength / (errors.diffuse + errors.diffuse_relative * start[d]);
-    weight_[s] = strength / (errors.specular + errors.specular_relative * start[s]);
+TexelGaussian::TexelGaussian(const TexelValues& initial, const InitialisationErrors& errors) {
+  for (int i = 0; i <= kRough; ++i) {
+    const bool specular = i % 2 == 1;
+    const double error = i == kRough ? errors.roughness
+                         : specular  ? errors.specular + errors.specular_relative * initial[i]
+                                     : errors.diffuse + errors.diffuse_relative * initial[i];
+    mean_[i] = initial[i];
+    precision_[i] = 1 / (error * error);
   }
-  double length;
-  NormalOf(start, start_normal_, &length);
+  NormalOfSlopes(initial[kSlopeX], initial[kSlopeY], &mean_[kSlopeX]);
+  precision_[kSlopeX] = precision_[kSlopeY] = 1 / (errors.normal * errors.normal);
+}
+
+void TexelGaussian::Multiply(int parameter, double mean, double precision) {
+  const double sum = precision_[parameter] + precision;
+  if (!(sum > 0)) return;
+  mean_[parameter] += precision / sum * (mean - mean_[parameter]);
+  precision_[parameter] = sum;
+}
+
+void NormalOfSlopes(double slope_x, double slope_y, double normal[2]) {
+  const double length = 1.0 / std::sqrt(1.0 + slope_x * slope_x + slope_y * slope_y);
+  normal[0] = slope_x * length;
+  normal[1] = slope_y * length;
+}
+
+TexelPrior::TexelPrior(const TexelGaussian& gaussian, double scale) {
+  for (int i = 0; i < kTexelParameters; ++i) {
+    mean_[i] = gaussian.mean(i);
+    weight_[i] = scale * std::sqrt(gaussian.precision(i));
+  }
+  const double x = mean_normal_[0] = gaussian.mean(kSlopeX);
+  const double y = mean_normal_[1] = gaussian.mean(kSlopeY);
+  const double z = std::sqrt(std::max(1.0 - x * x - y * y, 1.0 / (1.0 + kMostSlope * kMostSlope)));
+  mean_[kSlopeX] = x / z;
+  mean_[kSlopeY] = y / z;
 }
 
 void TexelPrior::Evaluate(const TexelValues& texel, double residuals[kTexelParameters],
@@ -35,12 +62,12 @@ void TexelPrior::Evaluate(const TexelValues& texel, double residuals[kTexelParam
   for (int i = 0; i < kTexelParameters; ++i) {
     for (int j = 0; j < kTexelParameters; ++j) jacobian[i][j] = 0.0;
     if (i <= kRough) {
-      residuals[i] = weight_[i] * (texel[i] - start_[i]);
+      residuals[i] = weight_[i] * (texel[i] - mean_[i]);
       jacobian[i][i] = weight_[i];
       continue;
     }
     const int axis = i - kSlopeX;
-    residuals[i] = weight_[i] * (normal[axis] - start_normal_[axis]);
+    residuals[i] = weight_[i] * (normal[axis] - mean_normal_[axis]);
     for (int j = kSlopeX; j <= kSlopeY; ++j) {
       jacobian[i][j] =
           weight_[i] * length * ((i == j ? 1.0 : 0.0) - normal[axis] * normal[j - kSlopeX]);

@@ -1,14 +1,21 @@
-// The hold on a texel's start: residuals strength·(value − start)/error, in physical units.
-// Quadratic: with a loss that flattens, texels whose photographs are explained in many ways
-// wandered off (map error at five views one half higher).
+// What is known of a texel beforehand: a Gaussian of each of its values.
+//
+// Several sources of knowledge (the initialisation, the texel's substance, its neighbours)
+// multiply: precisions add, means are weighted by them. Normals are judged by n_x and n_y, all else
+// by the values themselves (logarithms of specular albedo let what no highlight reaches turn
+// glossy: docs/experiments.md). As residuals: scale · √precision · (value − mean), with `scale` the
+// standard deviation of the photographs' residuals, so that both kinds of squares add up to twice
+// the negative log posterior in units of scale².
 #pragma once
+
+#include <array>
 
 #include "fitting/texel/texel_kernel.h"
 
 namespace glint {
 
-// Standard deviations expected of a start's error. Albedos: error + relative·value.
-struct StartErrors {
+// Standard deviations expected of an initialisation's error. Albedos: error + relative·value.
+struct InitialisationErrors {
   double normal = 0.10;  // of n_x, n_y
   double roughness = 0.10;
   double diffuse = 0.03;
@@ -17,30 +24,48 @@ struct StartErrors {
   double specular_relative = 0.2;
 };
 
-struct PriorWeights {
-  double strength = 0.0;  // of one expected error, in units of the residuals; 0: no hold
-  StartErrors errors;
+// In the parameters' order; n_x and n_y in the slopes' places.
+class TexelGaussian {
+ public:
+  // Knows nothing.
+  TexelGaussian() = default;
+  // Values with the errors of an initialisation.
+  TexelGaussian(const TexelValues& initial, const InitialisationErrors& errors);
+
+  // Multiplies with a Gaussian of one value. precision ≥ 0.
+  void Multiply(int parameter, double mean, double precision);
+
+  double mean(int i) const { return mean_[i]; }
+  double precision(int i) const { return precision_[i]; }
+
+ private:
+  std::array<double, kTexelParameters> mean_{}, precision_{};
 };
+
+// n_x, n_y of slopes and back.
+void NormalOfSlopes(double slope_x, double slope_y, double normal[2]);
 
 class TexelPrior {
  public:
-  TexelPrior(const PriorWeights& weights, const TexelValues& start);
+  TexelPrior() = default;  // none
+  TexelPrior(const TexelGaussian& gaussian, double scale);
 
   // Its kTexelParameters residuals and their derivatives by the physical values, row-major.
   void Evaluate(const TexelValues& texel, double residuals[kTexelParameters],
                 double jacobian[kTexelParameters][kTexelParameters]) const;
   // Adds its residuals' products to a Gram matrix by the physical values (upper triangle).
   void AddTo(const TexelValues& texel, TexelGram* gram) const;
-  const TexelValues& start() const { return start_; }
+  // The most probable texel.
+  const TexelValues& mean() const { return mean_; }
   // Weight of a squared departure of parameter `i`.
-  double hold(int i) const { return weight_[i] * weight_[i]; }
+  double weight(int i) const { return weight_[i] * weight_[i]; }
   // Sum of its squared residuals.
   double SquaredNorm(const TexelValues& texel) const;
 
  private:
-  double weight_[kTexelParameters];  // of the slopes: of n_x and n_y
-  TexelValues start_;
-  double start_normal_[2];
+  double weight_[kTexelParameters] = {};  // of the slopes: of n_x and n_y
+  double mean_normal_[2] = {0, 0};
+  TexelValues mean_{};
 };
 
 }  // namespace glint

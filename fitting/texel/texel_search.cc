@@ -47,12 +47,12 @@ TexelSearch::Candidate TexelSearch::WithFittedAlbedos(const TexelObservations& o
                                                       const TexelValues& values) {
   Candidate candidate{values, {}};
   double holds[kRough];
-  for (int i = 0; i < kRough; ++i) holds[i] = prior.hold(i);
+  for (int i = 0; i < kRough; ++i) holds[i] = prior.weight(i);
   candidate.fit =
-      FitAlbedos(options_, observations, holds, prior.start(), &candidate.values, &rows_);
+      FitAlbedos(options_, observations, holds, prior.mean(), &candidate.values, &rows_);
   // What the hold on normal and roughness costs; that on albedos is in the fit.
   TexelValues rest = values;
-  std::copy_n(prior.start().begin() + kAlbedos, static_cast<int>(kRough), rest.begin() + kAlbedos);
+  std::copy_n(prior.mean().begin() + kAlbedos, static_cast<int>(kRough), rest.begin() + kAlbedos);
   const double held = prior.SquaredNorm(rest);
   candidate.fit.before += held;
   candidate.fit.after += held;
@@ -112,6 +112,13 @@ TexelSearch::Found TexelSearch::FromStart(const TexelObservations& observations,
   if (starts_ > 1 && Unexplained(observations.views(), best.solution.cost)) {
     TryRoughnesses(observations, prior, &best);
   }
+  return best;
+}
+
+TexelSolution TexelSearch::Improved(const TexelObservations& observations, const TexelPrior& prior,
+                                    const TexelSolution& current) {
+  TexelSolution best = current;
+  TrySolve(observations, prior, current.values, &best);
   return best;
 }
 

@@ -31,6 +31,10 @@ class TexelSearch {
   Found FromStart(const TexelObservations& observations, const TexelPrior& prior,
                   const TexelValues& start);
 
+  // The local minimum near `current`, if it is less costly.
+  TexelSolution Improved(const TexelObservations& observations, const TexelPrior& prior,
+                         const TexelSolution& current);
+
   // The best of `current` and the minimum near the neighbour that promises least: its normal and
   // roughness, or its roughness alone, with albedos fitted to this texel.
   Found FromNeighbours(const TexelObservations& observations, const TexelPrior& prior,

@@ -25,8 +25,8 @@ constexpr double kMostStep = 0.3;  // of roughness and slopes together, as a tex
 using Jet = ceres::Jet<double, 3>;  // by the light's offset
 
 // Normals that were fitted under wrong lights are tilted alike and must be free to tilt back.
-StartErrors ErrorsOfStart() {
-  StartErrors errors;
+InitialisationErrors ErrorsOfStart() {
+  InitialisationErrors errors;
   errors.normal = 1;
   return errors;
 }
@@ -160,7 +160,7 @@ TexelLattice::Values TexelLattice::Starts() const {
 }
 
 TexelPrior TexelLattice::PriorOf(const Texel& texel) const {
-  return TexelPrior({hold_, ErrorsOfStart()}, texel.start);
+  return TexelPrior(TexelGaussian(texel.start, ErrorsOfStart()), hold_);
 }
 
 void TexelLattice::Gather(const Texel& texel, const Eigen::VectorXd& x, Worker* worker) const {

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
+#include <random>
 
-#include "fitting/refine/refine_prior.h"
+#include "fitting/texel/texel_prior.h"
 #include "tests/fitting/refine/synthetic_scene.h"
 
 namespace glint {
@@ -30,13 +32,16 @@ double ShareWithin(const SvbrdfMaps& maps, const SvbrdfMaps& truth, int plane, d
 TEST(Refine, RecoversKnownMapsFromNoiseFreePhotographs) {
   const SyntheticScene scene = Photograph(QuarteredMaps(24, 1), 16);
   const SvbrdfMaps start = DisturbedMaps(scene.truth, 1.0f, 2);
-  const RefineResult result = Refine(scene.Problem(), start, {}, 1);
+  RefineOptions photographs_alone;  // these texels have nothing in common
+  photographs_alone.prior = 0;
+  const RefineResult result = Refine(scene.Problem(), start, photographs_alone, 1);
   EXPECT_LT(MeanSquare(result.maps, scene.truth, kNormalX, kNormalZ), 1e-6);
   EXPECT_LT(MeanSquare(result.maps, scene.truth, kDiffuseR, kDiffuseB), 1e-6);
-  // A narrow highlight that no view shows leaves specular and roughness open in a few texels.
-  EXPECT_GT(ShareWithin(result.maps, scene.truth, kSpecularG, 1e-3), 0.95);
-  EXPECT_GT(ShareWithin(result.maps, scene.truth, kRoughness, 1e-3), 0.95);
-  EXPECT_LT(ShareWithin(start, scene.truth, kRoughness, 1e-3), 0.05);
+  // A narrow highlight that no view shows leaves specular and roughness open in a few texels. The
+  // search ends where what is left is below what residuals are believed to be, half a percent.
+  EXPECT_GT(ShareWithin(result.maps, scene.truth, kSpecularG, 1e-2), 0.9);
+  EXPECT_GT(ShareWithin(result.maps, scene.truth, kRoughness, 1e-2), 0.9);
+  EXPECT_LT(ShareWithin(start, scene.truth, kRoughness, 1e-2), 0.2);
 }
 
 // Fig. 16 of the paper: too rough with too little specular holds a single descent.
@@ -120,23 +125,20 @@ TEST(Refine, KeepsTheStartWhereNothingIsSeen) {
   SyntheticScene scene = Photograph(QuarteredMaps(8, 12), 2, 8);
   for (auto& mask : scene.masks) mask[5] = 0.0f;
   const SvbrdfMaps start = DisturbedMaps(scene.truth, 1.0f, 13);
-  RefineOptions alone;
-  alone.pooling_passes = 0;
-  const RefineResult result = Refine(scene.Problem(), start, alone, 1);
+  const RefineResult result = Refine(scene.Problem(), start, {}, 1);
   for (int p = 0; p < kSvbrdfPlanes; ++p) EXPECT_EQ(result.maps.plane(p)[5], start.plane(p)[5]);
-  // What it learns from its neighbours is its highlight alone.
-  const RefineResult pooled = Refine(scene.Problem(), start, {}, 1);
-  for (int p = kNormalX; p <= kDiffuseB; ++p) {
-    EXPECT_EQ(pooled.maps.plane(p)[5], start.plane(p)[5]);
-  }
-  const StartErrors errors;
-  EXPECT_NEAR(result.confidence[kSigmaRoughness * start.texels() + 5], errors.roughness, 0.01);
-  EXPECT_LT(result.confidence[kSigmaDiffuseR * start.texels() + 6], 0.9 * errors.diffuse);
+  // What is known of it is what is known beforehand: more than nothing, less than of one that is
+  // seen.
+  const auto sigma = [&](int plane, size_t texel) {
+    return result.confidence[plane * start.texels() + texel];
+  };
+  EXPECT_GT(sigma(kSigmaDiffuseR, 5), 3 * sigma(kSigmaDiffuseR, 6));
+  EXPECT_LT(sigma(kSigmaRoughness, 5), 0.2);
 }
 
 TEST(Refine, OnePhotographDoesNotMakeMapsWorse) {
   const SyntheticScene scene = Photograph(QuarteredMaps(32, 14), 1, 8);
-  const SvbrdfMaps start = DisturbedMaps(scene.truth, 0.6f, 15);
+  const SvbrdfMaps start = DisturbedMaps(scene.truth, 2.0f, 15);  // as wrong as is expected
   const RefineResult held = Refine(scene.Problem(), start, {}, 1);
   RefineOptions free_options;
   free_options.prior = 1e-6;
@@ -168,24 +170,13 @@ TEST(Refine, StopsLookingAtTheStartAsViewsGrow) {
   }
 }
 
-TEST(RefineSummary, ErrorsOfTheModelAreNoReasonToHoldToTheStart) {
-  RefineSummary noise;
-  noise.residual_sigma = 0.01;
-  noise.shared_noise = 2.25;
-  EXPECT_DOUBLE_EQ(noise.holding_sigma(), noise.telling_sigma());
-  RefineSummary glitter = noise, more_glitter = noise;
-  glitter.residual_sigma = 0.1;
-  more_glitter.residual_sigma = 0.3;
-  EXPECT_LT(glitter.holding_sigma(), glitter.telling_sigma());
-  EXPECT_EQ(glitter.holding_sigma(), more_glitter.holding_sigma());
-}
-
 TEST(Refine, ConfidenceGrowsWithViews) {
   const SvbrdfMaps truth = QuarteredMaps(16, 18);
   const SvbrdfMaps start = DisturbedMaps(truth, 0.5f, 19);
   double last[kTexelCost];
   std::fill(std::begin(last), std::end(last), 1e9);
-  for (const int views : {1, 4, 20}) {
+  // From one photograph substances are believed in; from three on photographs say how far.
+  for (const int views : {4, 10, 20}) {
     const SyntheticScene scene = Photograph(truth, views, 8);
     const RefineResult result = Refine(scene.Problem(), start, {}, 1);
     for (int p = 0; p < kTexelCost; ++p) {
@@ -230,9 +221,9 @@ TEST(Refine, TakesClippedPhotographsAsLowerBounds) {
     }
   }
   ASSERT_GT(clipped, all / 10);
-  RefineOptions alone;
-  alone.pooling_passes = 0;
-  const RefineResult at_truth = Refine(scene.Problem(), scene.truth, alone, 1);
+  RefineOptions without_prior;
+  without_prior.prior = 0;
+  const RefineResult at_truth = Refine(scene.Problem(), scene.truth, without_prior, 1);
   EXPECT_LT(at_truth.summary.start_cost, 1e-8);
   // Its cost at the truth is nothing, so nothing draws the truth away from itself.
   EXPECT_LT(MeanSquare(at_truth.maps, scene.truth, kNormalX, kRoughness), 1e-8);
@@ -256,16 +247,51 @@ TEST(Refine, RefusesProblemsThatDoNotFit) {
   EXPECT_THROW(Refine(scene.Problem(), scene.truth, options, 1), std::invalid_argument);
 }
 
-TEST(RefinePrior, ViewsFromOnePlaceCountAsOneAndSpreadOnesMore) {
-  const SyntheticScene scene = Photograph(QuarteredMaps(4, 25), 1);
-  RefineProblem problem = scene.Problem();
-  for (int i = 0; i < 4; ++i) problem.views.push_back(problem.views[0]);
-  EXPECT_NEAR(DistinctViews(problem), 1.0, 1e-9);
-  const SyntheticScene spread = Photograph(QuarteredMaps(4, 25), 5);
-  const double distinct = DistinctViews(spread.Problem());
-  EXPECT_GT(distinct, 2.0);
-  EXPECT_LT(distinct, 5.0);
-  EXPECT_LT(HoldToStart(1, 0.01, distinct, {}).strength, HoldToStart(1, 0.01, 1, {}).strength);
+// One substance under a smooth disturbance of its initial maps: where no photograph shows its
+// highlight it is what it is elsewhere.
+TEST(Refine, OneSubstanceBecomesNearlyHomogeneous) {
+  SvbrdfMaps truth(32, 32);
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    truth.plane(kNormalZ)[t] = 1;
+    truth.plane(kRoughness)[t] = 0.3f;
+    for (int c = 0; c < 3; ++c) {
+      truth.plane(kDiffuseR + c)[t] = 0.15f + 0.05f * static_cast<float>(t % 7) / 7;
+      truth.plane(kSpecularR + c)[t] = 0.05f;
+    }
+  }
+  const SyntheticScene scene = Photograph(truth, 5, 8);
+  SvbrdfMaps start = truth;
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    const auto wave = static_cast<float>(std::sin(0.2 * static_cast<double>(t % 32)));
+    start.plane(kRoughness)[t] += 0.12f * wave;
+    for (int c = 0; c < 3; ++c) start.plane(kSpecularR + c)[t] *= 1 + 0.6f * wave;
+  }
+  const RefineResult result = Refine(scene.Problem(), start, {}, 1);
+  EXPECT_LT(MeanSquare(result.maps, truth, kRoughness, kRoughness),
+            0.02 * MeanSquare(start, truth, kRoughness, kRoughness));
+  EXPECT_LT(MeanSquare(result.maps, truth, kSpecularR, kSpecularB),
+            0.05 * MeanSquare(start, truth, kSpecularR, kSpecularB));
+}
+
+// What photographs do not support is not there: exposures that differ from photograph to photograph
+// raise the discrepancy that is found.
+TEST(Refine, FindsTheModelsDiscrepancy) {
+  SyntheticScene scene = Photograph(QuarteredMaps(24, 26), 12);
+  const SvbrdfMaps start = DisturbedMaps(scene.truth, 0.5f, 27);
+  const double clean = Refine(scene.Problem(), start, {}, 1).summary.discrepancy;
+  std::mt19937 random(28);
+  std::normal_distribution<float> normal(0.0f, 0.1f);
+  for (auto& photograph : scene.photographs) {
+    const size_t texels = scene.truth.texels();
+    for (size_t t = 0; t < texels; ++t) {  // common to the channels, each texel's own
+      const float factor = std::exp(normal(random));
+      for (size_t c = 0; c < 3; ++c) photograph[c * texels + t] *= factor;
+    }
+  }
+  const double disturbed = Refine(scene.Problem(), start, {}, 1).summary.discrepancy;
+  EXPECT_LT(clean, 0.03);
+  EXPECT_GT(disturbed, 0.06);
+  EXPECT_LT(disturbed, 0.15);
 }
 
 }  // namespace

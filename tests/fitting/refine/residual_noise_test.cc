@@ -56,15 +56,6 @@ double ErrorOverSigma(const RefineResult& result) {
   return std::sqrt(sum / static_cast<double>(squares.size()));
 }
 
-TEST(ResidualNoise, WhatChannelsShareIsToldFromWhatIsTheirOwn) {
-  EXPECT_NEAR(Refined(false, 16).summary.shared_noise, 1.0, 0.15);
-  EXPECT_NEAR(Refined(true, 16).summary.shared_noise, 3.0, 0.15);
-}
-
-TEST(ResidualNoise, FewViewsTellNothingOfIt) {
-  EXPECT_EQ(Refined(true, 5).summary.shared_noise, 1.0);
-}
-
 TEST(ResidualNoise, TheSizeOfNoiseIsTheSameEitherWay) {
   for (const bool shared : {false, true}) {
     EXPECT_NEAR(Refined(shared, 16).summary.residual_sigma, kSigma, 0.4 * kSigma) << shared;

@@ -22,7 +22,7 @@ struct Point {
   std::vector<std::array<double, 3>> radiance;
   std::vector<std::array<bool, 3>> clipped;
   KernelOptions options;
-  TexelPrior prior{{}, {}};
+  TexelPrior prior;
 };
 
 double Draw(std::mt19937* random, double low, double high) {
@@ -47,9 +47,8 @@ Point RandomPoint(std::mt19937* random, int views) {
   point.options.robust_scale = Draw(random, 0.05, 1.0);
   point.options.diffuse_weight =
       Draw(random, 0, 1) < 0.5 ? DiffuseWeight::kOne : DiffuseWeight::kOneMinusSpecular;
-  PriorWeights weights;
-  weights.strength = Draw(random, 0.0, 0.1);
-  point.prior = TexelPrior(weights, RandomTexel(random));
+  const double scale = Draw(random, 0.0, 0.1);
+  point.prior = TexelPrior(TexelGaussian(RandomTexel(random), {}), scale);
   for (int v = 0; v < views; ++v) {
     View view;
     for (int i = 0; i < 2; ++i) {

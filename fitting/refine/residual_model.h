@@ -1,0 +1,79 @@
+// How far apart photographs and renderings of the right maps are, and how much that is worth:
+// docs/model.md, "The photographs".
+//
+// A residual log(R + 0.01) − log(I + 0.01) is measurement noise q, each channel's own, plus model
+// discrepancy d (Kennedy and O'Hagan, "Bayesian calibration of computer models", JRSS B 2001): what
+// the reflectance model cannot express of this sample. Discrepancy is common to the three channels,
+// and alike in views whose half vectors are close. Correlated residuals say less than independent
+// ones; all are weighted alike, so that together they count as many as they are worth (a composite
+// likelihood, its magnitude adjusted: Pauli, Racugno and Ventura, Statistica Sinica 2011).
+#pragma once
+
+#include <vector>
+
+#include "fitting/refine/refine.h"
+
+namespace glint {
+
+struct ResidualModelOptions {
+  // Inter-channel correlation of discrepancy where too few views tell it (residual_noise.h);
+  // fourteen real samples: .75 to .99.
+  double channel_correlation = 0.9;
+  // Length scale, in degrees between half vectors, over which discrepancy stays alike.
+  double half_vector_deg = 8;
+  // Share of its variance that is a smooth function of the half vector; the rest is each view's
+  // own (registration, exposure).
+  double smooth_share = 0.8;
+  // What residuals are expected to be before any is seen, and how many per texel that belief is
+  // worth.
+  double expected_sigma = 0.05;
+  double expected_residuals = 0.5;
+};
+
+class ResidualModel {
+ public:
+  ResidualModel(const RefineProblem& problem, const ResidualModelOptions& options);
+
+  // For residuals of variance σ² in all, at least that of measurement.
+  void SetVariance(double variance);
+  // By how much the variance of a mean of a view's channels exceeds that of independent ones, 1 to
+  // 3, as residuals show it.
+  void SetChannelFactor(double factor) { seen_channel_factor_ = factor; }
+
+  double variance() const { return variance_; }
+  // Standard deviation of discrepancy, and its share of the variance.
+  double discrepancy() const;
+  double discrepancy_share() const { return 1 - measurement_ / variance_; }
+  // Number of views that say something of their own: the sum of the inverse correlation matrix.
+  double effective_views() const { return effective_views_; }
+  // Standard deviation by which residuals of weight 1 are to be judged against priors:
+  // σ·√(channel factor)·√(views / effective views); the factor is 1 + 2ρ, ρ the inter-channel
+  // correlation.
+  double scale() const;
+
+  const ResidualModelOptions& options() const { return options_; }
+
+ private:
+  ResidualModelOptions options_;
+  double measurement_;
+  double variance_ = 0;
+  double seen_channel_factor_ = 0;  // 0: not seen
+  double effective_views_ = 1;
+  std::vector<std::vector<double>> likeness_;  // of discrepancy, by pairs of views
+};
+
+// Variance of log(I + 0.01) by rounding to 8 bits of gamma 2.2, mean over usable samples of LDR
+// photographs, and what sensors add. For float photographs the latter alone.
+double MeasurementVariance(const RefineProblem& problem);
+
+// The scale σ² of residuals whose negative log likelihood is Charbonnier's loss / σ²
+// (texel_kernel.h): they have the symmetric hyperbolic distribution (Barndorff-Nielsen, Proc. R.
+// Soc. A 1977), whose mean squared g² is more than σ² where its tails are long. ζ = δ²/σ² solves
+// K₀(ζ)/K₁(ζ) + 1/ζ − 1 = mean g² / 2δ²: the likelihood's maximum.
+double HyperbolicVariance(double mean_square, double robust_scale);
+
+// Effective views where all of a residual is discrepancy that is smooth in the half vector:
+// n² / Σ_ij exp(−θ_ij²/2τ²), θ_ij the angle between half vectors at the sample's centre, τ = 8°.
+double DistinctViews(const RefineProblem& problem);
+
+}  // namespace glint

@@ -1,0 +1,352 @@
+#include "fitting/refine/sample_model.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel/parallel.h"
+#include "fitting/texel/texel_parameters.h"
+
+namespace glint {
+namespace {
+
+constexpr size_t kSampled = 2048, kCrossValidated = 512;
+constexpr int kMostFolds = 7, kFoldRounds = 2;
+constexpr int kLeastValidatedViews = 3;  // of two, one would have to predict the other
+// Errors of the initialisation, in those of one photograph's estimate (texel_prior.h): fitting has
+// shown it the same photographs already, and what it took from them is not to count twice.
+constexpr double kInitialErrors = 3;
+// Bounds on the scatter of normals: of a polished plane, of no surface at all.
+constexpr double kLeastNormalSpread = 0.0125, kMostNormalSpread = 0.5;
+constexpr double kPi = 3.14159265358979;
+
+using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
+
+// (JᵀJ + prior)⁻¹ by the physical values.
+Matrix9 InverseInformation(const SampledTexel& sampled) {
+  Matrix9 information;
+  for (int i = 0; i < kTexelParameters; ++i) {
+    for (int j = i; j < kTexelParameters; ++j) {
+      information(i, j) = information(j, i) = sampled.gram[i][j];
+    }
+    information(i, i) += 1e-9;  // what nothing is known of, without a prior
+  }
+  return information.ldlt().solve(Matrix9::Identity());
+}
+
+// Median over the views of π·I/(E·NoL), the albedo of a matte texel: highlights are rare among
+// them.
+std::vector<float> MedianColour(const RefineProblem& problem) {
+  const SamplePlane& plane = problem.plane;
+  const size_t texels = static_cast<size_t>(plane.width) * static_cast<size_t>(plane.height);
+  std::vector<float> colour(3 * texels);
+  std::vector<float> seen[3];
+  for (size_t i = 0; i < texels; ++i) {
+    const int row = static_cast<int>(i) / plane.width, column = static_cast<int>(i) % plane.width;
+    for (auto& values : seen) values.clear();
+    for (const RefineView& view : problem.views) {
+      if (!(view.mask[i] >= 0.5f)) continue;
+      const TexelGeometry<double> g = TexelGeometryInView<double>(
+          view.view, problem.convention.falloff, plane.x_mm(column), plane.y_mm(row));
+      for (size_t c = 0; c < 3; ++c) {
+        const double received = g.irradiance[c] * std::max(0.05, g.light[2]);
+        seen[c].push_back(static_cast<float>(kPi * view.rgb[c * texels + i] / received));
+      }
+    }
+    for (size_t c = 0; c < 3; ++c) {
+      if (seen[c].empty()) continue;
+      const auto middle = seen[c].begin() + static_cast<std::ptrdiff_t>((seen[c].size() - 1) / 2);
+      std::nth_element(seen[c].begin(), middle, seen[c].end());
+      colour[c * texels + i] = *middle;
+    }
+  }
+  return colour;
+}
+
+SharedValues SharedOf(const TexelValues& values) {
+  SharedValues shared;
+  for (size_t p = 0; p < 4; ++p) shared[p] = values[static_cast<size_t>(kSharedParameters[p])];
+  return shared;
+}
+
+InitialisationErrors ErrorsOfInitialisation() {
+  InitialisationErrors errors;
+  for (double* error : {&errors.normal, &errors.roughness, &errors.diffuse,
+                        &errors.diffuse_relative, &errors.specular, &errors.specular_relative}) {
+    *error *= kInitialErrors;
+  }
+  return errors;
+}
+
+// What each substance is in the mean of the initial maps.
+std::vector<SharedValues> InitialMeans(const SvbrdfMaps& initial, const Substances& substances) {
+  std::vector<SharedValues> means(static_cast<size_t>(substances.count()), SharedValues{});
+  std::vector<double> weights(means.size(), 1e-9);
+  for (size_t t = 0; t < initial.texels(); ++t) {
+    const SharedValues shared = SharedOf(ReadTexel(initial, t));
+    for (size_t k = 0; k < means.size(); ++k) {
+      const double share = substances.shares(t)[k];
+      weights[k] += share;
+      for (size_t p = 0; p < 4; ++p) means[k][p] += share * shared[p];
+    }
+  }
+  for (size_t k = 0; k < means.size(); ++k) {
+    for (double& value : means[k]) value /= weights[k];
+  }
+  return means;
+}
+
+// Root mean square of n_x, n_y.
+double NormalScatter(const SvbrdfMaps& maps) {
+  double squares = 0;
+  for (const int plane : {kNormalX, kNormalY}) {
+    for (const float n : maps.plane(plane)) squares += static_cast<double>(n) * n;
+  }
+  return std::clamp(std::sqrt(squares / (2.0 * static_cast<double>(maps.texels()))),
+                    kLeastNormalSpread, kMostNormalSpread);
+}
+
+}  // namespace
+
+struct SampleModel::Sampling {
+  std::vector<size_t> texels;
+  std::vector<SampledTexel> solved;
+  const SampleSolver* solver;
+  int threads;
+};
+
+SampleModel::SampleModel(const RefineProblem& problem, const SvbrdfMaps& initial,
+                         const RefineOptions& options)
+    : problem_(problem),
+      initial_(initial),
+      options_(options),
+      all_views_(problem.views.size()),
+      residuals_(problem, {}),
+      substances_(MedianColour(problem), options.substances),
+      normal_spread_(NormalScatter(initial)) {
+  std::iota(all_views_.begin(), all_views_.end(), 0);
+  means_.mean = InitialMeans(initial, substances_);
+}
+
+TexelGaussian SampleModel::Knowledge(size_t texel) const {
+  static const InitialisationErrors kErrors = ErrorsOfInitialisation();
+  TexelGaussian gaussian(ReadTexel(initial_, texel), kErrors);
+  const SharedValues mean = means_.Of(substances_.shares(texel));
+  const SharedValues variances = means_.Variances(mean);
+  for (size_t p = 0; p < 4; ++p) {
+    gaussian.Multiply(kSharedParameters[p], mean[p], 1 / variances[p]);
+  }
+  const double precision = 1 / (normal_spread_ * normal_spread_);
+  gaussian.Multiply(kSlopeX, 0, precision);
+  gaussian.Multiply(kSlopeY, 0, precision);
+  return gaussian;
+}
+
+// Neighbours are expected to differ by as much as texels from their substance, or from level.
+void SampleModel::MultiplyNeighbours(size_t texel, const SvbrdfMaps& maps,
+                                     TexelGaussian* gaussian) const {
+  const int width = maps.width, height = maps.height;
+  const int row = static_cast<int>(texel / static_cast<size_t>(width));
+  const int column = static_cast<int>(texel % static_cast<size_t>(width));
+  double normal[2] = {0, 0};
+  SharedValues departure{};  // of the neighbours from their own substances
+  int count = 0;
+  const auto add = [&](int r, int c) {
+    if (r < 0 || r >= height || c < 0 || c >= width) return;
+    const size_t i = static_cast<size_t>(r) * static_cast<size_t>(width) + static_cast<size_t>(c);
+    normal[0] += maps.plane(kNormalX)[i];
+    normal[1] += maps.plane(kNormalY)[i];
+    const SharedValues shared = SharedOf(ReadTexel(maps, i));
+    const SharedValues mean = means_.Of(substances_.shares(i));
+    for (size_t p = 0; p < 4; ++p) departure[p] += shared[p] - mean[p];
+    ++count;
+  };
+  add(row - 1, column);
+  add(row, column - 1);
+  add(row, column + 1);
+  add(row + 1, column);
+  if (count == 0) return;
+  for (int i = 0; i < 2; ++i) {
+    gaussian->Multiply(kSlopeX + i, normal[i] / count, count / (normal_spread_ * normal_spread_));
+  }
+  const SharedValues mean = means_.Of(substances_.shares(texel));
+  const SharedValues variances = means_.Variances(mean);
+  for (size_t p = 0; p < 4; ++p) {
+    gaussian->Multiply(kSharedParameters[p], mean[p] + departure[p] / count, count / variances[p]);
+  }
+}
+
+TexelPrior SampleModel::Scaled(const TexelGaussian& gaussian) const {
+  return TexelPrior(gaussian, residuals_.scale() * std::sqrt(options_.prior));
+}
+
+TexelPrior SampleModel::PriorOf(size_t texel) const { return Scaled(Knowledge(texel)); }
+
+TexelPrior SampleModel::PriorOf(size_t texel, const SvbrdfMaps& maps) const {
+  TexelGaussian gaussian = Knowledge(texel);
+  MultiplyNeighbours(texel, maps, &gaussian);
+  return Scaled(gaussian);
+}
+
+SampleModel::Sampling SampleModel::Sample(size_t most, const SampleSolver& solver,
+                                          int threads) const {
+  Sampling sampling{{}, {}, &solver, threads};
+  const size_t texels = initial_.texels(), count = std::min(most, texels);
+  for (size_t i = 0; i < count; ++i) {
+    sampling.texels.push_back((2 * i + 1) * texels / (2 * count));
+    sampling.solved.emplace_back().values = ReadTexel(initial_, sampling.texels.back());
+  }
+  return sampling;
+}
+
+void SampleModel::Fit(std::span<const int> views, int rounds, bool update_residuals,
+                      Sampling* sampling) {
+  const int count = static_cast<int>(sampling->texels.size());
+  for (int round = 0; round < rounds; ++round) {
+    ForEachPieceByWorker(count, sampling->threads, [&](int i, int worker) {
+      const size_t k = static_cast<size_t>(i), texel = sampling->texels[k];
+      sampling->solved[k] =
+          sampling->solver->solve(texel, PriorOf(texel), sampling->solved[k].values, views, worker);
+    });
+    UpdateSubstances(*sampling);
+    if (update_residuals) UpdateResiduals(*sampling);
+  }
+}
+
+void SampleModel::UpdateSubstances(const Sampling& sampling) {
+  std::vector<SubstanceSample> samples;
+  const double variance = residuals_.scale() * residuals_.scale();
+  for (size_t i = 0; i < sampling.solved.size(); ++i) {
+    const SampledTexel& solved = sampling.solved[i];
+    if (solved.views == 0) continue;
+    const Matrix9 inverse = InverseInformation(solved);
+    SubstanceSample sample;
+    sample.shares = substances_.shares(sampling.texels[i]);
+    sample.value = SharedOf(solved.values);
+    for (size_t p = 0; p < 4; ++p) {
+      for (size_t q = 0; q < 4; ++q) {
+        sample.covariance[4 * p + q] =
+            variance * inverse(kSharedParameters[p], kSharedParameters[q]);
+      }
+    }
+    samples.push_back(sample);
+  }
+  UpdateMeans(samples, SampleWorth(sampling.texels), &means_);
+}
+
+// Discrepancy is a function of the half vector, common to a substance: a mean over n texels and
+// views has variance q²/n + d²/cells, with as many cells as half vectors differ by half the length
+// scale of its likeness.
+double SampleModel::SampleWorth(const std::vector<size_t>& texels) const {
+  const double cell = 0.5 * residuals_.options().half_vector_deg * kPi / 180;
+  std::vector<std::pair<int, int>> cells;
+  for (const size_t t : texels) {
+    const int row = static_cast<int>(t) / initial_.width;
+    const int column = static_cast<int>(t) % initial_.width;
+    for (const RefineView& view : problem_.views) {
+      const TexelGeometry<double> g =
+          TexelGeometryInView<double>(view.view, problem_.convention.falloff,
+                                      problem_.plane.x_mm(column), problem_.plane.y_mm(row));
+      cells.emplace_back(static_cast<int>(std::floor(g.half[0] / cell)),
+                         static_cast<int>(std::floor(g.half[1] / cell)));
+    }
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  const double n = static_cast<double>(texels.size()) * residuals_.effective_views();
+  const double d = residuals_.discrepancy_share();
+  return 1 / ((1 - d) + d * std::max(1.0, n / static_cast<double>(cells.size())));
+}
+
+// MacKay's fixed point ("Bayesian interpolation", Neural Computation 1992): squares over residuals
+// less the values that they determine.
+void SampleModel::UpdateResiduals(const Sampling& sampling) {
+  const ResidualModelOptions& model = residuals_.options();
+  double squares = 0, free = 0;
+  ResidualNoise noise;
+  for (const SampledTexel& solved : sampling.solved) {
+    if (solved.views == 0) continue;
+    noise.Add(solved.noise);
+    const Matrix9 inverse = InverseInformation(solved);
+    double determined = kTexelParameters;  // tr (JᵀJ + prior)⁻¹ JᵀJ
+    for (int i = 0; i < kTexelParameters; ++i) {
+      determined -= inverse(i, i) * solved.prior_diagonal[static_cast<size_t>(i)];
+    }
+    determined = std::clamp(determined, 0.0, static_cast<double>(kTexelParameters));
+    squares +=
+        solved.squares + model.expected_residuals * model.expected_sigma * model.expected_sigma;
+    free += std::max(3.0 * solved.views - determined, 0.0) + model.expected_residuals;
+  }
+  if (noise.known()) residuals_.SetChannelFactor(noise.Shared());
+  if (free > 0) {
+    residuals_.SetVariance(HyperbolicVariance(squares / free, options_.robust_scale));
+  }
+}
+
+double SampleModel::CrossValidate(const Sampling& sampling) const {
+  const int views = static_cast<int>(all_views_.size()), folds = std::min(views, kMostFolds);
+  Prediction sum;
+  for (int fold = 0; fold < folds; ++fold) {
+    std::vector<int> fitted, held_out;
+    for (int v = 0; v < views; ++v) (v % folds == fold ? held_out : fitted).push_back(v);
+    SampleModel model(*this);
+    Sampling part = sampling;
+    // From what all texels share: solutions of all views remember those held out.
+    for (size_t k = 0; k < part.texels.size(); ++k) {
+      part.solved[k].values = PriorOf(part.texels[k]).mean();
+    }
+    model.Fit(fitted, kFoldRounds, false, &part);
+    std::vector<Prediction> predictions(part.texels.size());
+    ForEachPieceByWorker(
+        static_cast<int>(predictions.size()), part.threads, [&](int i, int worker) {
+          const size_t k = static_cast<size_t>(i);
+          predictions[k] =
+              part.solver->predict(part.texels[k], part.solved[k].values, held_out, worker);
+        });
+    for (const Prediction& p : predictions) {
+      sum.squares += p.squares;
+      sum.residuals += p.residuals;
+    }
+  }
+  return sum.squares / std::max(sum.residuals, 1);
+}
+
+void SampleModel::ChooseSpreads(const Sampling& sampling) {
+  const auto choose = [&](std::initializer_list<double> factors, const auto& scale) {
+    double best = 1, least = CrossValidate(sampling);
+    for (const double factor : factors) {
+      SampleModel tried(*this);
+      scale(factor, &tried);
+      const double error = tried.CrossValidate(sampling);
+      if (error < least) least = error, best = factor;
+    }
+    scale(best, this);
+  };
+  // Initial maps have all the relief that photographs ask for, and more.
+  choose({0.25, 0.5}, [](double factor, SampleModel* model) { model->normal_spread_ *= factor; });
+  choose({0.25, 0.5, 2.0}, [](double factor, SampleModel* model) {
+    model->means_.roughness_spread *= factor;
+    model->means_.specular_spread *= factor;
+  });
+}
+
+void SampleModel::Estimate(const SampleSolver& solver, int threads) {
+  Sampling sampling = Sample(kSampled, solver, threads);
+  Fit(all_views_, options_.estimation_rounds, true, &sampling);
+  if (static_cast<int>(all_views_.size()) < kLeastValidatedViews) return;
+  ChooseSpreads(Sample(kCrossValidated, solver, threads));
+  Fit(all_views_, options_.estimation_rounds, true, &sampling);
+}
+
+void SampleModel::Describe(RefineSummary* summary) const {
+  summary->residual_sigma = std::sqrt(residuals_.variance());
+  summary->discrepancy = residuals_.discrepancy();
+  summary->effective_views = residuals_.effective_views();
+  summary->substances = substances_.count();
+  summary->roughness_spread = means_.roughness_spread;
+  summary->specular_spread = means_.specular_spread;
+  summary->normal_spread = normal_spread_;
+}
+
+}  // namespace glint

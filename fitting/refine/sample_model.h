@@ -1,0 +1,91 @@
+// What is estimated of a sample as a whole before its texels are solved, and the priors that follow
+// for each of them: docs/model.md.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "fitting/refine/refine.h"
+#include "fitting/refine/residual_model.h"
+#include "fitting/refine/substances.h"
+#include "fitting/texel/residual_noise.h"
+#include "fitting/texel/texel_prior.h"
+
+namespace glint {
+
+// A texel at its most probable values under the model as it is.
+struct SampledTexel {
+  int views = 0;  // 0: nothing is seen of it
+  TexelValues values{};
+  double squares = 0;  // squared residuals g² of the photographs alone
+  ResidualNoise noise;
+  TexelGram gram{};  // by the physical values, prior included, in units of the residuals' scale²
+  std::array<double, kTexelParameters> prior_diagonal{};  // what the prior added to its diagonal
+};
+
+// How well values predict views that they were not solved with.
+struct Prediction {
+  double squares = 0;  // of residuals, g²
+  int residuals = 0;
+};
+
+// What SampleModel asks of the texels' solver; called from several threads, `worker` below their
+// number. `views`: those to take.
+struct SampleSolver {
+  std::function<SampledTexel(size_t texel, const TexelPrior& prior, const TexelValues& from,
+                             std::span<const int> views, int worker)>
+      solve;
+  std::function<Prediction(size_t texel, const TexelValues& values, std::span<const int> views,
+                           int worker)>
+      predict;
+};
+
+class SampleModel {
+ public:
+  // `problem`, `initial` and `options` must outlive this.
+  SampleModel(const RefineProblem& problem, const SvbrdfMaps& initial,
+              const RefineOptions& options);
+
+  // From sampled texels: substances' means and the residuals' variance by type-II maximum
+  // likelihood; spreads by cross-validation over the photographs, from three on. The same for any
+  // number of threads.
+  void Estimate(const SampleSolver& solver, int threads);
+
+  const ResidualModel& residuals() const { return residuals_; }
+
+  // The texel's prior: without what its neighbours know, and with their values in `maps`.
+  TexelPrior PriorOf(size_t texel) const;
+  TexelPrior PriorOf(size_t texel, const SvbrdfMaps& maps) const;
+
+  void Describe(RefineSummary* summary) const;
+
+ private:
+  struct Sampling;  // sampled texels and what solves them
+  Sampling Sample(size_t most, const SampleSolver& solver, int threads) const;
+  // Rounds of solving the sampled texels by `views` and updating the substances and, where asked
+  // for, the residuals' variance.
+  void Fit(std::span<const int> views, int rounds, bool update_residuals, Sampling* sampling);
+  void UpdateSubstances(const Sampling& sampling);
+  void UpdateResiduals(const Sampling& sampling);
+  double SampleWorth(const std::vector<size_t>& texels) const;
+  // Mean squared residual of held-out views.
+  double CrossValidate(const Sampling& sampling) const;
+  void ChooseSpreads(const Sampling& sampling);
+
+  TexelGaussian Knowledge(size_t texel) const;
+  void MultiplyNeighbours(size_t texel, const SvbrdfMaps& maps, TexelGaussian* gaussian) const;
+  TexelPrior Scaled(const TexelGaussian& gaussian) const;
+
+  const RefineProblem& problem_;
+  const SvbrdfMaps& initial_;
+  const RefineOptions& options_;
+  std::vector<int> all_views_;
+  ResidualModel residuals_;
+  Substances substances_;
+  SubstanceMeans means_;
+  double normal_spread_;  // of n_x, n_y about 0, and about their neighbours' mean
+};
+
+}  // namespace glint

@@ -1,0 +1,198 @@
+#include "fitting/refine/substances.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fitting/texel/texel_parameters.h"
+
+namespace glint {
+namespace {
+
+// Chroma tells substances apart better than brightness, which shading changes too.
+constexpr float kBrightnessWeight = 0.5f, kChromaWeight = 2.0f;
+constexpr float kAlbedoOffset = 0.01f;
+constexpr float kMembershipWidth = 0.2f;  // of the features, for soft shares
+constexpr int kIterations = 40;
+constexpr size_t kSampled = 8192;
+
+// Expected of a substance's difference from the others' mean; of specular albedo relative …
+constexpr double kMeansRoughness = 0.2, kMeansSpecular = 1.5;
+// … and of its channels from each other: metals are coloured.
+constexpr double kChroma = 0.6;
+constexpr double kMostStep = 0.5;  // of a mean, in one round, relative
+
+using Feature = std::array<float, 3>;
+
+Feature FeatureOf(const std::vector<float>& colour, size_t texel) {
+  Feature logs;
+  float mean = 0;
+  for (size_t c = 0; c < 3; ++c) {
+    const float d = colour[c * colour.size() / 3 + texel];
+    logs[c] = std::log(std::max(0.0f, d) + kAlbedoOffset);
+    mean += logs[c] / 3;
+  }
+  return {kBrightnessWeight * mean, kChromaWeight * (logs[0] - mean),
+          kChromaWeight * (logs[2] - mean)};
+}
+
+float Distance2(const Feature& a, const Feature& b) {
+  float sum = 0;
+  for (size_t i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+size_t Nearest(const std::vector<Feature>& centres, const Feature& x) {
+  size_t best = 0;
+  float least = std::numeric_limits<float>::max();
+  for (size_t k = 0; k < centres.size(); ++k) {
+    const float d = Distance2(centres[k], x);
+    if (d < least) least = d, best = k;
+  }
+  return best;
+}
+
+// Farthest-point initialisation from the feature nearest the mean, then Lloyd's iterations.
+std::vector<Feature> Centres(const std::vector<Feature>& features, int count) {
+  Feature mean{0, 0, 0};
+  for (const Feature& x : features) {
+    for (size_t i = 0; i < 3; ++i) mean[i] += x[i] / static_cast<float>(features.size());
+  }
+  std::vector<Feature> centres = {features[Nearest(features, mean)]};
+  while (static_cast<int>(centres.size()) < count) {
+    size_t farthest = 0;
+    float most = -1;
+    for (size_t i = 0; i < features.size(); ++i) {
+      const float d = Distance2(centres[Nearest(centres, features[i])], features[i]);
+      if (d > most) most = d, farthest = i;
+    }
+    if (most <= 0) break;
+    centres.push_back(features[farthest]);
+  }
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    std::vector<std::array<double, 4>> sums(centres.size(), {0, 0, 0, 0});
+    for (const Feature& x : features) {
+      auto& sum = sums[Nearest(centres, x)];
+      for (size_t i = 0; i < 3; ++i) sum[i] += x[i];
+      sum[3] += 1;
+    }
+    for (size_t k = 0; k < centres.size(); ++k) {
+      if (sums[k][3] == 0) continue;
+      for (size_t i = 0; i < 3; ++i) centres[k][i] = static_cast<float>(sums[k][i] / sums[k][3]);
+    }
+  }
+  return centres;
+}
+
+}  // namespace
+
+Substances::Substances(const std::vector<float>& colour, int substances) {
+  const size_t texels = colour.size() / 3, step = std::max<size_t>(1, texels / kSampled);
+  std::vector<Feature> sampled;
+  for (size_t i = step / 2; i < texels; i += step) sampled.push_back(FeatureOf(colour, i));
+  if (sampled.empty()) sampled.push_back(FeatureOf(colour, 0));
+  const std::vector<Feature> centres = Centres(sampled, substances);
+  count_ = static_cast<int>(centres.size());
+  shares_.resize(texels * centres.size());
+  for (size_t t = 0; t < texels; ++t) {
+    const Feature x = FeatureOf(colour, t);
+    const float least = Distance2(centres[Nearest(centres, x)], x);
+    float sum = 0;
+    float* shares = shares_.data() + t * centres.size();
+    for (size_t k = 0; k < centres.size(); ++k) {
+      const float d = Distance2(centres[k], x) - least;
+      sum += shares[k] = std::exp(-d / (2 * kMembershipWidth * kMembershipWidth));
+    }
+    for (size_t k = 0; k < centres.size(); ++k) shares[k] /= sum;
+  }
+}
+
+SharedValues SubstanceMeans::Of(const float* shares) const {
+  SharedValues value{};
+  for (size_t k = 0; k < mean.size(); ++k) {
+    for (size_t p = 0; p < 4; ++p) value[p] += shares[k] * mean[k][p];
+  }
+  return value;
+}
+
+SharedValues SubstanceMeans::Variances(const SharedValues& of) const {
+  SharedValues variances;
+  for (size_t p = 0; p < 3; ++p) {
+    const double spread = specular_spread * (of[p] + kSpecularOffset);
+    variances[p] = spread * spread;
+  }
+  variances[3] = roughness_spread * roughness_spread;
+  return variances;
+}
+
+void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, SubstanceMeans* means) {
+  using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  using Vector4 = Eigen::Vector4d;
+  const auto count = static_cast<Eigen::Index>(means->mean.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(4 * count, 4 * count);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(4 * count);
+  for (const SubstanceSample& sample : samples) {
+    const SharedValues mean = means->Of(sample.shares);
+    const SharedValues variances = means->Variances(mean);
+    const Vector4 precision(1 / variances[0], 1 / variances[1], 1 / variances[2], 1 / variances[3]);
+    const Matrix4 covariance = Eigen::Map<const Matrix4>(sample.covariance.data());
+    Vector4 departure;
+    for (int p = 0; p < 4; ++p) {
+      departure[p] = sample.value[static_cast<size_t>(p)] - mean[static_cast<size_t>(p)];
+    }
+    // The texel's own marginal information about its mean: P − P·C·P.
+    Matrix4 own = -(precision.asDiagonal() * covariance * precision.asDiagonal());
+    own.diagonal() += precision;
+    const Vector4 pull = precision.cwiseProduct(departure);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const double share = sample.shares[k];
+      if (share < 1e-3) continue;
+      gradient.segment<4>(4 * k) += share * pull;
+      for (Eigen::Index l = 0; l < count; ++l) {
+        const double other = sample.shares[l];
+        if (other >= 1e-3) information.block<4, 4>(4 * k, 4 * l) += share * other * own;
+      }
+    }
+  }
+  information *= worth;
+  gradient *= worth;
+  // Means are expected within a wide range of their common mean.
+  SharedValues common{};
+  for (const SharedValues& m : means->mean) {
+    for (size_t p = 0; p < 4; ++p) common[p] += m[p] / static_cast<double>(count);
+  }
+  for (Eigen::Index k = 0; k < count; ++k) {
+    for (Eigen::Index p = 0; p < 4; ++p) {
+      const auto q = static_cast<size_t>(p);
+      const double width =
+          p == 3 ? kMeansRoughness : kMeansSpecular * (common[q] + kSpecularOffset);
+      const double precision = 1 / (width * width);
+      information(4 * k + p, 4 * k + p) += precision;
+      gradient[4 * k + p] += precision * (common[q] - means->mean[static_cast<size_t>(k)][q]);
+    }
+  }
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const SharedValues& m = means->mean[static_cast<size_t>(k)];
+    const double grey = (m[0] + m[1] + m[2]) / 3;
+    const double width = kChroma * (grey + kSpecularOffset);
+    for (Eigen::Index p = 0; p < 3; ++p) {
+      for (Eigen::Index q = 0; q < 3; ++q) {
+        information(4 * k + p, 4 * k + q) += ((p == q ? 1.0 : 0.0) - 1.0 / 3) / (width * width);
+      }
+      gradient[4 * k + p] += (grey - m[static_cast<size_t>(p)]) / (width * width);
+    }
+  }
+  const Eigen::VectorXd step = information.ldlt().solve(gradient);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    SharedValues& mean = means->mean[static_cast<size_t>(k)];
+    for (Eigen::Index p = 0; p < 4; ++p) {
+      const auto q = static_cast<size_t>(p);
+      const double most = kMostStep * (mean[q] + kSpecularOffset);
+      mean[q] += std::clamp(step[4 * k + p], -most, most);
+      mean[q] = std::clamp(mean[q], p == 3 ? kRoughnessBounds.low : 0.0, 1.0);
+    }
+  }
+}
+
+}  // namespace glint

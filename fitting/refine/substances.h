@@ -1,0 +1,67 @@
+// Substances: places of one reflectance, wherever they lie in the sample (docs/model.md,
+// "Reflectance sharing").
+//
+// A texel belongs to a few substances, by its colour. Its roughness and specular albedo are those
+// of its substances, in the mean, and depart from them by a spread that all substances share. Means
+// and spreads are found from sampled texels by type-II maximum likelihood.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/texel/texel_prior.h"
+
+namespace glint {
+
+inline constexpr int kMostSubstances = 8;
+// Shared values, by their place among a texel's parameters.
+inline constexpr std::array<int, 4> kSharedParameters = {SpecularParameter(0), SpecularParameter(1),
+                                                         SpecularParameter(2), kRough};
+using SharedValues = std::array<double, 4>;
+
+// Which substances each texel belongs to, by its colour.
+class Substances {
+ public:
+  // `colour`: 3 planes of what each texel reflects away from its highlight. k-means on the
+  // logarithms of brightness and chroma; deterministic.
+  Substances(const std::vector<float>& colour, int substances);
+
+  int count() const { return count_; }
+  // Shares of the texel, `count()` of them, sum 1.
+  const float* shares(size_t texel) const { return shares_.data() + texel * count_; }
+
+ private:
+  int count_ = 0;
+  std::vector<float> shares_;
+};
+
+// What has been learned of them.
+struct SubstanceMeans {
+  std::vector<SharedValues> mean;
+  // Standard deviation of texels about their substance's mean: of roughness, and of specular albedo
+  // relative to mean + kSpecularOffset.
+  double roughness_spread = 0.1, specular_spread = 0.8;
+
+  SharedValues Of(const float* shares) const;
+  // Variances of a texel's values about that.
+  SharedValues Variances(const SharedValues& mean) const;
+};
+
+// Half of what dielectrics reflect at least: what is nearer to 0 is black to all photographs.
+inline constexpr double kSpecularOffset = 0.02;
+
+// A sampled texel at its most probable values, for estimating means and spreads.
+struct SubstanceSample {
+  const float* shares = nullptr;
+  SharedValues value{};
+  // Posterior covariance of the values, row-major.
+  std::array<double, 16> covariance{};
+};
+
+// One Newton step of the means and one fixed-point step of the spreads (MacKay 1992) on the
+// marginal likelihood. `worth`: of a sample, in independent ones, ≤ 1: model discrepancy is common
+// to the texels of a substance that are seen under like half vectors.
+void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, SubstanceMeans* means);
+
+}  // namespace glint

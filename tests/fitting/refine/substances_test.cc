@@ -1,0 +1,104 @@
+#include "fitting/refine/substances.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace glint {
+namespace {
+
+// Three planes of two colours, in stripes.
+std::vector<float> Stripes(size_t texels) {
+  std::vector<float> colour(3 * texels);
+  for (size_t t = 0; t < texels; ++t) {
+    const bool red = t % 10 < 5;
+    colour[t] = red ? 0.5f : 0.05f;
+    colour[texels + t] = 0.1f;
+    colour[2 * texels + t] = red ? 0.05f : 0.4f;
+  }
+  return colour;
+}
+
+TEST(Substances, TexelsOfOneColourAreOneSubstanceWhereverTheyLie) {
+  const Substances substances(Stripes(1000), 4);
+  EXPECT_EQ(substances.count(), 2);  // no more colours than there are
+  for (const size_t t : {10u, 503u, 990u}) {
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_FLOAT_EQ(substances.shares(t)[k], substances.shares(t % 10 < 5 ? 0 : 5)[k]);
+    }
+  }
+  EXPECT_GT(std::abs(substances.shares(0)[0] - substances.shares(5)[0]), 0.99f);
+}
+
+TEST(Substances, SharesSumToOneAndDoNotChangeWithBrightnessOfLight) {
+  std::vector<float> colour = Stripes(1000);
+  const Substances before(colour, 4);
+  for (float& c : colour) c *= 1.5f;
+  const Substances after(colour, 4);
+  for (size_t t = 0; t < 1000; ++t) {
+    float sum = 0;
+    float alike_before = 0, alike_after = 0;  // with the first texel
+    for (int k = 0; k < before.count(); ++k) {
+      sum += before.shares(t)[k];
+      alike_before += before.shares(t)[k] * before.shares(0)[k];
+      alike_after += after.shares(t)[k] * after.shares(0)[k];
+    }
+    EXPECT_NEAR(sum, 1, 1e-5f);
+    EXPECT_NEAR(alike_before, alike_after, 1e-3f);
+  }
+}
+
+// Texels that know their values to `noise`, of two substances.
+std::vector<SubstanceSample> Samples(const Substances& substances, double noise,
+                                     const SubstanceMeans& prior) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0, 1);
+  std::vector<SubstanceSample> samples;
+  for (size_t t = 0; t < 1000; ++t) {
+    const bool first = t % 10 < 5;
+    SubstanceSample sample;
+    sample.shares = substances.shares(t);
+    const SharedValues mean = prior.Of(sample.shares), variances = prior.Variances(mean);
+    const SharedValues truth =
+        first ? SharedValues{0.3, 0.2, 0.1, 0.3} : SharedValues{0.04, 0.04, 0.04, 0.6};
+    for (size_t p = 0; p < 4; ++p) {
+      // The posterior mean and covariance of an observation under the prior.
+      const double seen = truth[p] + noise * normal(random);
+      const double weight = variances[p] / (variances[p] + noise * noise);
+      sample.value[p] = mean[p] + weight * (seen - mean[p]);
+      sample.covariance[5 * p] = weight * noise * noise;
+    }
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+TEST(UpdateMeans, FindsEachSubstanceHoweverLittleATexelKnows) {
+  const Substances substances(Stripes(1000), 2);
+  for (const double noise : {0.02, 0.3}) {
+    SubstanceMeans means;
+    means.mean.assign(2, {0.1, 0.1, 0.1, 0.45});
+    for (int round = 0; round < 12; ++round) {
+      UpdateMeans(Samples(substances, noise, means), 1, &means);
+    }
+    const SharedValues first = means.Of(substances.shares(0));
+    const SharedValues second = means.Of(substances.shares(5));
+    EXPECT_NEAR(first[3], 0.3, 0.05) << noise;
+    EXPECT_NEAR(second[3], 0.6, 0.05) << noise;
+    EXPECT_NEAR(first[0], 0.3, 0.06) << noise;
+    EXPECT_NEAR(second[0], 0.04, 0.04) << noise;
+  }
+}
+
+TEST(UpdateMeans, SubstancesThatLittleIsKnownOfStayTogether) {
+  const Substances substances(Stripes(1000), 2);
+  SubstanceMeans means;
+  means.mean.assign(2, {0.1, 0.1, 0.1, 0.45});
+  for (int round = 0; round < 12; ++round) {
+    UpdateMeans(Samples(substances, 0.3, means), 1e-4, &means);
+  }
+  EXPECT_LT(std::abs(means.mean[0][3] - means.mean[1][3]), 0.15);
+}
+
+}  // namespace
+}  // namespace glint
