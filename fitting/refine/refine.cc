@@ -167,8 +167,6 @@ void Refiner::EstimateModel() {
     TexelGram& gram = sampled.gram;
     w.search.solver().Gram(w.observations, TexelPrior(), sampled.values, &gram);
     sampled.squares = gram[kTexelParameters][kTexelParameters];
-    sampled.noise.Add(w.search.solver().rows(), sampled.views,
-                      sampled.squares / (3 * sampled.views));
     for (int i = 0; i < kTexelParameters; ++i) sampled.prior_diagonal[i] = -gram[i][i];
     prior.AddTo(sampled.values, &gram);
     for (int i = 0; i < kTexelParameters; ++i) sampled.prior_diagonal[i] += gram[i][i];
@@ -183,7 +181,7 @@ void Refiner::EstimateModel() {
                       3 * w.observations.views()};
   };
   model_.Estimate(solver, threads_);
-  for (auto& worker : workers_) worker->search.SetNoise(model_.residuals().scale());
+  for (auto& worker : workers_) worker->search.SetNoise(std::sqrt(model_.residuals().variance()));
   model_.Describe(&result_.summary);
 }
 

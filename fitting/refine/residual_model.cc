@@ -94,9 +94,7 @@ double ResidualModel::discrepancy() const {
 }
 
 double ResidualModel::scale() const {
-  const double channels = seen_channel_factor_ > 0
-                              ? seen_channel_factor_
-                              : 1 + 2 * options_.channel_correlation * discrepancy_share();
+  const double channels = 1 + 2 * options_.channel_correlation * discrepancy_share();
   const double views = static_cast<double>(likeness_.size());
   return std::sqrt(variance_ * channels * views / effective_views_);
 }

@@ -16,8 +16,7 @@
 namespace glint {
 
 struct ResidualModelOptions {
-  // Inter-channel correlation of discrepancy where too few views tell it (residual_noise.h);
-  // fourteen real samples: .75 to .99.
+  // Inter-channel correlation of discrepancy; fourteen real samples: .75 to .99.
   double channel_correlation = 0.9;
   // Length scale, in degrees between half vectors, over which discrepancy stays alike.
   double half_vector_deg = 8;
@@ -27,7 +26,7 @@ struct ResidualModelOptions {
   // What residuals are expected to be before any is seen, and how many per texel that belief is
   // worth.
   double expected_sigma = 0.05;
-  double expected_residuals = 0.5;
+  double expected_residuals = 1;
 };
 
 class ResidualModel {
@@ -36,10 +35,6 @@ class ResidualModel {
 
   // For residuals of variance σ² in all, at least that of measurement.
   void SetVariance(double variance);
-  // By how much the variance of a mean of a view's channels exceeds that of independent ones, 1 to
-  // 3, as residuals show it.
-  void SetChannelFactor(double factor) { seen_channel_factor_ = factor; }
-
   double variance() const { return variance_; }
   // Standard deviation of discrepancy, and its share of the variance.
   double discrepancy() const;
@@ -47,8 +42,7 @@ class ResidualModel {
   // Number of views that say something of their own: the sum of the inverse correlation matrix.
   double effective_views() const { return effective_views_; }
   // Standard deviation by which residuals of weight 1 are to be judged against priors:
-  // σ·√(channel factor)·√(views / effective views); the factor is 1 + 2ρ, ρ the inter-channel
-  // correlation.
+  // σ·√(1 + 2ρ)·√(views / effective views), with ρ the inter-channel correlation.
   double scale() const;
 
   const ResidualModelOptions& options() const { return options_; }
@@ -57,7 +51,6 @@ class ResidualModel {
   ResidualModelOptions options_;
   double measurement_;
   double variance_ = 0;
-  double seen_channel_factor_ = 0;  // 0: not seen
   double effective_views_ = 1;
   std::vector<std::vector<double>> likeness_;  // of discrepancy, by pairs of views
 };

@@ -17,8 +17,9 @@ constexpr int kLeastValidatedViews = 3;  // of two, one would have to predict th
 // Errors of the initialisation, in those of one photograph's estimate (texel_prior.h): fitting has
 // shown it the same photographs already, and what it took from them is not to count twice.
 constexpr double kInitialErrors = 3;
-// Bounds on the scatter of normals: of a polished plane, of no surface at all.
-constexpr double kLeastNormalSpread = 0.0125, kMostNormalSpread = 0.5;
+// Scatter of normals to begin with; cross-validation changes it. Of what initial maps say of it a
+// part is what fitting made of its photographs.
+constexpr double kNormalSpread = 0.05;
 constexpr double kPi = 3.14159265358979;
 
 using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
@@ -97,16 +98,6 @@ std::vector<SharedValues> InitialMeans(const SvbrdfMaps& initial, const Substanc
   return means;
 }
 
-// Root mean square of n_x, n_y.
-double NormalScatter(const SvbrdfMaps& maps) {
-  double squares = 0;
-  for (const int plane : {kNormalX, kNormalY}) {
-    for (const float n : maps.plane(plane)) squares += static_cast<double>(n) * n;
-  }
-  return std::clamp(std::sqrt(squares / (2.0 * static_cast<double>(maps.texels()))),
-                    kLeastNormalSpread, kMostNormalSpread);
-}
-
 }  // namespace
 
 struct SampleModel::Sampling {
@@ -124,7 +115,7 @@ SampleModel::SampleModel(const RefineProblem& problem, const SvbrdfMaps& initial
       all_views_(problem.views.size()),
       residuals_(problem, {}),
       substances_(MedianColour(problem), options.substances),
-      normal_spread_(NormalScatter(initial)) {
+      normal_spread_(kNormalSpread) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   means_.mean = InitialMeans(initial, substances_);
 }
@@ -264,10 +255,8 @@ double SampleModel::SampleWorth(const std::vector<size_t>& texels) const {
 void SampleModel::UpdateResiduals(const Sampling& sampling) {
   const ResidualModelOptions& model = residuals_.options();
   double squares = 0, free = 0;
-  ResidualNoise noise;
   for (const SampledTexel& solved : sampling.solved) {
     if (solved.views == 0) continue;
-    noise.Add(solved.noise);
     const Matrix9 inverse = InverseInformation(solved);
     double determined = kTexelParameters;  // tr (JᵀJ + prior)⁻¹ JᵀJ
     for (int i = 0; i < kTexelParameters; ++i) {
@@ -278,7 +267,6 @@ void SampleModel::UpdateResiduals(const Sampling& sampling) {
         solved.squares + model.expected_residuals * model.expected_sigma * model.expected_sigma;
     free += std::max(3.0 * solved.views - determined, 0.0) + model.expected_residuals;
   }
-  if (noise.known()) residuals_.SetChannelFactor(noise.Shared());
   if (free > 0) {
     residuals_.SetVariance(HyperbolicVariance(squares / free, options_.robust_scale));
   }
@@ -323,12 +311,12 @@ void SampleModel::ChooseSpreads(const Sampling& sampling) {
     }
     scale(best, this);
   };
-  // Initial maps have all the relief that photographs ask for, and more.
-  choose({0.25, 0.5}, [](double factor, SampleModel* model) { model->normal_spread_ *= factor; });
   choose({0.25, 0.5, 2.0}, [](double factor, SampleModel* model) {
     model->means_.roughness_spread *= factor;
     model->means_.specular_spread *= factor;
   });
+  choose({0.25, 0.5, 2.0},
+         [](double factor, SampleModel* model) { model->normal_spread_ *= factor; });
 }
 
 void SampleModel::Estimate(const SampleSolver& solver, int threads) {

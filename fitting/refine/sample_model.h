@@ -10,7 +10,6 @@
 #include "fitting/refine/refine.h"
 #include "fitting/refine/residual_model.h"
 #include "fitting/refine/substances.h"
-#include "fitting/texel/residual_noise.h"
 #include "fitting/texel/texel_prior.h"
 
 namespace glint {
@@ -20,8 +19,7 @@ struct SampledTexel {
   int views = 0;  // 0: nothing is seen of it
   TexelValues values{};
   double squares = 0;  // squared residuals g² of the photographs alone
-  ResidualNoise noise;
-  TexelGram gram{};  // by the physical values, prior included, in units of the residuals' scale²
+  TexelGram gram{};    // by the physical values, prior included, in units of the residuals' scale²
   std::array<double, kTexelParameters> prior_diagonal{};  // what the prior added to its diagonal
 };
 

@@ -19,8 +19,6 @@ class ResidualNoise {
   // How often as large a variance is to be reckoned with as if residuals were independent, from 1
   // (they are) to 3 (the channels of a view are one). 1 where too few views tell.
   double Shared() const;
-  // Whether it has seen texels of enough views.
-  bool known() const { return common_freedom_ > 0; }
 
  private:
   double common_ = 0, common_freedom_ = 0;  // squares of the channels' common part, of the rest
