@@ -6,6 +6,7 @@
 
 #include "datasets/evaluation/calibration_error.h"
 #include "datasets/evaluation/experiment_verbs.h"
+#include "datasets/evaluation/holdout_verb.h"
 #include "datasets/evaluation/light_verb.h"
 #include "datasets/evaluation/limits_verb.h"
 #include "datasets/evaluation/map_error.h"
@@ -228,6 +229,7 @@ int main(int argc, char** argv) {
        "Examples:\n  glint-eval cameras demo/truth demo/glint/calib/manifest.json\n"
        "  glint-eval cameras board/glint/calib colmap/glint/calib --align similarity",
        RunCameras}};
+  verbs.push_back(HoldoutVerb());
   verbs.push_back(LightVerb());
   verbs.push_back(LimitsVerb());
   for (const Verb& verb : ExperimentVerbs()) verbs.push_back(verb);

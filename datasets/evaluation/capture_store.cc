@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "datasets/evaluation/link_files.h"
 #include "pipeline/contract/errors.h"
 
 namespace glint {
@@ -15,13 +16,6 @@ const fs::path kParts[] = {"photos", "truth", "capture.toml", fs::path("glint") 
 // Files that other captures may share must not be written over in place.
 void RemoveViews(const fs::path& capture) {
   for (const fs::path& part : kParts) fs::remove_all(capture / part);
-}
-
-void LinkOrCopy(const fs::path& from, const fs::path& to) {
-  fs::create_directories(to.parent_path());
-  std::error_code error;
-  fs::create_hard_link(from, to, error);
-  if (error) fs::copy_file(from, to, fs::copy_options::overwrite_existing);
 }
 
 void LinkViews(const fs::path& from, const fs::path& to) {
@@ -61,12 +55,7 @@ void CaptureStore::Provide(const fs::path& capture) {
 void CaptureStore::ShareFit(const fs::path& fitted, const fs::path& capture) const {
   const fs::path part = fs::path("glint") / "fit";
   try {
-    fs::remove_all(capture / part);
-    for (const auto& entry : fs::directory_iterator(fitted / part)) {
-      if (entry.is_regular_file()) {
-        LinkOrCopy(entry.path(), capture / part / entry.path().filename());
-      }
-    }
+    LinkFolder(fitted / part, capture / part);
   } catch (const fs::filesystem_error& error) {
     throw EnvironmentError(capture.string() + ": the fit cannot be shared: " + error.what());
   }

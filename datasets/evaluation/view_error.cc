@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "fitting/photographs/picture_shift.h"
@@ -55,6 +56,24 @@ ViewError CompareView(std::span<const float> rendered, const RectifiedImage& pho
   error.rmse = std::sqrt(error.mse);
   error.log_l1 = logs / (3.0 * static_cast<double>(error.texels));
   return error;
+}
+
+std::vector<float> LogResiduals(std::span<const float> rendered, const RectifiedImage& photograph,
+                                bool ldr) {
+  const size_t texels = photograph.mask.size();
+  if (rendered.size() != 3 * texels || photograph.rgb.size() != 3 * texels) {
+    throw std::invalid_argument("rendering and photograph must have one size");
+  }
+  const auto log = [ldr](float value) {
+    const double v = std::max(value, 0.0f);
+    return std::log((ldr ? std::min(v, 1.0) : v) + kLogOffset);
+  };
+  std::vector<float> residuals(rendered.size(), std::numeric_limits<float>::quiet_NaN());
+  for (size_t k = 0; k < residuals.size(); ++k) {
+    if (photograph.mask[k % texels] < 0.5f) continue;
+    residuals[k] = static_cast<float>(log(photograph.rgb[k]) - log(rendered[k]));
+  }
+  return residuals;
 }
 
 FittedMaps ReadFittedMaps(const fs::path& path) {

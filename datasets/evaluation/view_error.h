@@ -27,6 +27,11 @@ struct ViewError {
 // differ.
 ViewError CompareView(std::span<const float> rendered, const RectifiedImage& photograph, bool ldr);
 
+// log(I + 0.01) − log(R + 0.01) [3·H·W] of the photograph and the rendering, NaN where the mask is
+// below 0.5. Sizes and `ldr` as in CompareView.
+std::vector<float> LogResiduals(std::span<const float> rendered, const RectifiedImage& photograph,
+                                bool ldr);
+
 // The result of fit or refine: maps, and what was found about the photographs.
 struct FittedMaps {
   SvbrdfMaps maps;

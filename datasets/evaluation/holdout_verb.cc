@@ -1,0 +1,86 @@
+#include "datasets/evaluation/holdout_verb.h"
+
+#include <spdlog/spdlog.h>
+
+#include "datasets/evaluation/held_out_sheet.h"
+#include "datasets/evaluation/held_out_views.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+// NAME=FOLDER.
+ProgramFolder ParsePrograms(const std::string& text) {
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+    throw UserError("programs: found \"" + text + "\"; write NAME=FOLDER");
+  }
+  ProgramFolder programs{text.substr(0, equals), text.substr(equals + 1)};
+  for (const char* name : {"glint-fit", "glint-refine"}) {
+    if (!fs::exists(programs.folder / name)) {
+      throw UserError(programs.folder, "", std::string("no ") + name,
+                      "name a folder with built programs, such as build/bin");
+    }
+  }
+  return programs;
+}
+
+void WriteResult(const HoldoutExperiment& experiment, const HoldoutResult& result, int threads) {
+  const fs::path& work = experiment.work;
+  WriteFileAtomically(work / "holdout.csv", result.Csv());
+  WriteFileAtomically(work / "holdout.json", result.ToJson().dump(2) + "\n");
+  WriteFileAtomically(work / "holdout.md", result.Markdown());
+  const std::string& method = experiment.methods.back();
+  for (const HoldoutSplit& split : experiment.splits) {
+    WritePng(work / ("holdout_" + split.folder + ".png"),
+             DrawHeldOutSheet(result, split.name, method, threads));
+  }
+}
+
+int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
+  HoldoutExperiment experiment;
+  experiment.methods = {"start", "classic", "latent", "refined"};
+  std::vector<std::string> sets, programs;
+  std::string pairs, fitted;
+  OptionSet options;
+  options.AddPositional("sets", &sets,
+                        "folders that glint-import reads, or captures with rectified views", true);
+  options.Add("work", &experiment.work, "folder that keeps captures and results (needed)");
+  options.Add("pairs", &pairs,
+              "photographs to hold out, by number from 0 on or by name: groups apart by ';', as in "
+              "'2,6;7,8'");
+  options.Add("shown", &fitted, "photographs to fit, all others held out; likewise");
+  options.Add("methods", &experiment.methods,
+              "of start (the initialisation), classic, latent, refined");
+  options.Add("programs", &programs,
+              "NAME=FOLDER of other builds' programs to compare with, comma-separated");
+  options.Add("import-args", &experiment.import_arguments,
+              "more arguments for glint-import, comma-separated");
+  options.Add("fit-args", &experiment.fit_arguments, "likewise for glint-fit");
+  options.Add("refine-args", &experiment.refine_arguments, "likewise for glint-refine");
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
+    if (common.check) throw UserError("check: an experiment is no stage; leave the option out");
+    experiment.sets.assign(sets.begin(), sets.end());
+    experiment.splits = ParseSplits(pairs, false);
+    for (const HoldoutSplit& split : ParseSplits(fitted, true)) experiment.splits.push_back(split);
+    for (const std::string& text : programs) experiment.programs.push_back(ParsePrograms(text));
+    const HoldoutResult result = RunHoldout(
+        experiment, common, [](const std::string& text) { spdlog::info("{}", text); });
+    WriteResult(experiment, result, common.threads);
+    return ProgramResult{result.Markdown(), result.ToJson()};
+  });
+}
+
+}  // namespace
+
+Verb HoldoutVerb() {
+  return {"holdout",
+          "Fits some photographs of real captures and compares the maps with those held out.",
+          "Example: glint-eval holdout sets/cards sets/wood --pairs '2,6;7,8' --shown 0 --work h",
+          RunHoldoutVerb};
+}
+
+}  // namespace glint

@@ -1,0 +1,37 @@
+// How far a view may be expected from its photograph, by what refinement says of its maps.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "datasets/evaluation/view_error.h"
+#include "pipeline/contract/rectified_set.h"
+
+namespace glint {
+
+// Standard deviations of maps, and of the residuals that they leave.
+struct StatedDeviations {
+  int width = 0, height = 0;
+  std::vector<float> planes;  // normal x, y; diffuse; specular rgb; roughness: 9·H·W
+  double residual_sigma = 0;  // of log(I + 0.01)
+};
+
+// Of confidence.exr beside the manifest of `refine`; none: the stage writes none. Throws UserError.
+std::optional<StatedDeviations> ReadStatedDeviations(const std::filesystem::path& manifest);
+
+// Standard deviation of log(I + 0.01) [3·H·W] of the view's photograph: the residuals' own, and
+// what each map's deviation moves the rendering by, as independent contributions (central
+// differences of one standard deviation either way).
+std::vector<float> PredictedDeviation(const FittedMaps& fit, const StatedDeviations& stated,
+                                      const RectifiedSet& set, const RectifiedView& view,
+                                      int threads);
+
+// Share of a plane's values whose truth lies within `widths` standard deviations.
+struct Coverage {
+  double normal = 0, diffuse = 0, specular = 0, roughness = 0;
+};
+Coverage CoverageOf(const SvbrdfMaps& maps, const SvbrdfMaps& truth, const StatedDeviations& stated,
+                    double widths);
+
+}  // namespace glint
