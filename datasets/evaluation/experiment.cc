@@ -48,6 +48,7 @@ Json DisturbanceSettings(const ViewSetOptions& views) {
   add("environment_percent", disturbance.environment_percent);
   add("exposure_stops", views.exposure_stops);
   add("least_tilt_deg", views.least_tilt_deg);
+  add("discrepancy", views.discrepancy);
   if (disturbance.environment_percent > 0 && !disturbance.environment.empty()) {
     json["environment"] = HashFile(disturbance.environment);
   }

@@ -20,7 +20,8 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
   options->Add("work", &experiment->work, "folder that keeps views and results (needed)");
   options->AddRange("size", &experiment->size, 8, 4096, "texels a side");
   ViewSetOptions* views = &experiment->views;
-  options->AddChoice("rule", &views->rule, {"dir", "photo"}, "as in glint-synth views");
+  options->AddChoice("rule", &views->rule, {"dir", "photo", "flash"}, "as in glint-synth views");
+  options->AddRange("discrepancy", &views->discrepancy, 0, 2, "likewise");
   if (paper.name != "hdr") {
     options->AddChoice("bits", &views->bits, {"8", "float"}, "likewise");
   }

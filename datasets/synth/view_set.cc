@@ -64,6 +64,29 @@ std::vector<View> PhotoViews(const CapturePlan& plan) {
   return views;
 }
 
+// Poses of published flash captures: the first from near the top.
+std::vector<View> FlashViews(int count, std::uint64_t seed, double sample_mm) {
+  constexpr double kNearest = 3, kFarthest = 5;  // half-widths of the sample
+  constexpr double kMostTilt_deg = 20, kFlashBeside_mm = 12;
+  procedural::Rng rng(procedural::Mix64(seed) ^ 0xf1a54ull);
+  std::vector<View> views;
+  for (int i = 0; i < count; ++i) {
+    const double distance = 0.5 * sample_mm * rng.Uniform(kNearest, kFarthest);
+    const double tilt = (i == 0 ? 0.1 : 1.0) * kMostTilt_deg * kRadians * std::sqrt(rng.Unit());
+    const double azimuth = 2 * std::numbers::pi * rng.Unit();
+    View view;
+    view.camera_in_sample_mm = {distance * std::sin(tilt) * std::cos(azimuth),
+                                distance * std::sin(tilt) * std::sin(azimuth),
+                                distance * std::cos(tilt)};
+    view.light_in_sample_mm = view.camera_in_sample_mm;
+    view.light_in_sample_mm[0] += kFlashBeside_mm;  // of an upright phone
+    const double power = std::numbers::pi * std::pow(0.25 * sample_mm * (kNearest + kFarthest), 2);
+    view.light_rgb = {power, power, power};
+    views.push_back(view);
+  }
+  return views;
+}
+
 std::string PhotoName(int index, bool is_float) {
   return fmt::format("photos/view_{:03}.{}", index, is_float ? "exr" : "png");
 }
@@ -126,6 +149,14 @@ PlannedViews UndisturbedViews(const ViewSetOptions& options, std::uint64_t seed,
     throw UserError(fmt::format("least-tilt-deg: found {} with rule {}; use rule dir",
                                 options.least_tilt_deg, options.rule));
   }
+  if (options.rule == "flash") {
+    constexpr double kSample_mm = 100;
+    planned.convention = ReflectanceConvention::Photograph();
+    planned.plane = {width, height, kSample_mm, kSample_mm * height / width,
+                     planned.convention.sampling};
+    planned.views = FlashViews(options.count, seed, kSample_mm);
+    return planned;
+  }
   // Exposure and poses of the longest capture, so that sets of one seed are nested.
   constexpr int kPlannedPhotos = 64;
   CapturePlanOptions capture;
@@ -139,14 +170,29 @@ PlannedViews UndisturbedViews(const ViewSetOptions& options, std::uint64_t seed,
   return planned;
 }
 
+// Errors of the capture: those asked for, and those that belong to the discrepancy.
+Disturbance DisturbanceOf(const ViewSetOptions& options) {
+  Disturbance disturbance = options.disturbance;
+  Discrepancy discrepancy;
+  discrepancy.strength = options.discrepancy;
+  const auto at_least = [&](double value, double* field) {
+    *field = std::max(*field, discrepancy.strength * value);
+  };
+  at_least(discrepancy.light_off_deg, &disturbance.light_off_deg);
+  at_least(discrepancy.registration_texel, &disturbance.registration_texel);
+  at_least(discrepancy.ambient_percent, &disturbance.environment_percent);
+  return disturbance;
+}
+
 }  // namespace
 
 void AddViewSetOptions(ViewSetOptions* options, OptionSet* set) {
   set->AddRange("count", &options->count, 1, 10000, "views");
   set->AddChoice(
-      "rule", &options->rule, {"dir", "photo"},
+      "rule", &options->rule, {"dir", "photo", "flash"},
       "dir: camera = light, DIR 2019's synthetic geometry; photo: a phone's poses, flash "
-      "beside the lens, inverse square");
+      "beside the lens, inverse square; flash: the same from nearer the top, as published flash "
+      "captures");
   set->AddChoice("bits", &options->bits, {"8", "float"}, "8: clipped and rounded; float: exact");
   set->AddChoice("encoding", &options->encoding, {"gamma2.2", "srgb", "linear"},
                  "what the 8 bits are spaced evenly in (linear: as in DIR 2019)");
@@ -163,13 +209,18 @@ void AddViewSetOptions(ViewSetOptions* options, OptionSet* set) {
                 "moves the corners of every view by this (RMS), unknown to the manifest");
   set->AddRange("environment-percent", &disturbance->environment_percent, 0, 1000,
                 "light of the surroundings relative to the flash's on a white plane, likewise");
+  set->AddRange("discrepancy", &options->discrepancy, 0, 2,
+                "photographs of what the reflectance model does not express: other lobes, relief, "
+                "diffuse blur, errors of a capture, JPEG; 1: as real samples");
   set->Add("environment", &disturbance->environment,
            "equirectangular radiance map, .hdr or .exr (default: a white surround)");
 }
 
 PlannedViews PlanViews(const ViewSetOptions& options, std::uint64_t seed, int width, int height) {
   PlannedViews planned = UndisturbedViews(options, seed, width, height);
-  const Disturbance& disturbance = options.disturbance;
+  planned.discrepancy.strength = options.discrepancy;
+  planned.drawn_discrepancy = DrawDiscrepancy(planned.discrepancy, seed, options.count);
+  const Disturbance disturbance = DisturbanceOf(options);
   if (disturbance.environment_percent > 0) {
     const View first = options.rule == "dir" ? DirView(0, 0) : planned.views[0];
     planned.environment = ScaledEnvironment(disturbance, first, planned.plane, planned.convention);
@@ -178,6 +229,7 @@ PlannedViews PlanViews(const ViewSetOptions& options, std::uint64_t seed, int wi
     planned.views[i].exposure *= std::exp2(options.exposure_stops);
     const ViewDisturbance drawn = DrawDisturbance(disturbance, seed, static_cast<int>(i));
     View taken = planned.views[i];
+    taken.exposure *= planned.drawn_discrepancy.exposures[i];
     taken.light_in_sample_mm =
         TurnLight(taken.light_in_sample_mm, disturbance.light_off_deg, drawn.light_azimuth_rad);
     planned.taken.push_back(taken);
@@ -189,22 +241,34 @@ PlannedViews PlanViews(const ViewSetOptions& options, std::uint64_t seed, int wi
 RectifiedImage RenderPlannedView(const SvbrdfMaps& maps, const PlannedViews& planned, int index,
                                  const ViewSetOptions& options, int threads) {
   RectifiedImage image{maps.width, maps.height, {}, {}};
-  image.rgb.resize(3 * maps.texels());
   image.mask.assign(maps.texels(), 1.0f);
-  const View& view = planned.taken[index];
-  RenderView(maps, planned.plane, view, planned.convention, image.rgb.data(), threads);
+  const View& view = planned.taken[static_cast<size_t>(index)];
+  if (planned.discrepancy.any()) {
+    image.rgb = RenderDiscrepant(planned.discrepancy, planned.drawn_discrepancy, maps,
+                                 IntegrateNormals(maps, planned.plane), planned.plane, view,
+                                 planned.convention, threads);
+  } else {
+    image.rgb.resize(3 * maps.texels());
+    RenderView(maps, planned.plane, view, planned.convention, image.rgb.data(), threads);
+  }
   if (!planned.environment.lights.empty()) {
     AddEnvironment(planned.environment, maps, planned.plane, view, planned.convention,
                    image.rgb.data(), threads);
   }
-  if (options.disturbance.registration_texel > 0) {
-    ShiftPicture(planned.shifts[index], maps.width, maps.height, &image.rgb);
+  if (DisturbanceOf(options).registration_texel > 0) {
+    ShiftPicture(planned.shifts[static_cast<size_t>(index)], maps.width, maps.height, &image.rgb);
   }
   if (options.bits == "float") return image;
+  const size_t texels = maps.texels();
   const Encoding encoding = ParseEncoding(options.encoding);
   const EightBitEncoder encoder(encoding);
+  std::vector<unsigned char> codes(3 * texels);
+  for (size_t k = 0; k < codes.size(); ++k) codes[k] = encoder(image.rgb[k % 3 * texels + k / 3]);
+  if (planned.discrepancy.any()) {
+    codes = JpegRoundTrip(codes, maps.width, maps.height, planned.discrepancy.jpeg_quality);
+  }
   const std::vector<float> decoded = LinearTable(encoding, 256);
-  for (float& value : image.rgb) value = decoded[encoder(value)];
+  for (size_t k = 0; k < codes.size(); ++k) image.rgb[k % 3 * texels + k / 3] = decoded[codes[k]];
   return image;
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/synth/discrepancy.h"
 #include "datasets/synth/disturbance.h"
 #include "datasets/synth/material_source.h"
 #include "datasets/synth/sensor.h"
@@ -26,6 +27,9 @@ struct ViewSetOptions {
   // dir: DIR's synthetic geometry (DirView in view.h), reflectance convention dir2019.
   // photo: the poses, flash and exposure of a planned phone capture (capture_plan.h) of a sample of
   // 100 mm, convention photograph.
+  // flash: as published flash captures are taken (nine_photographs): a sample of 100 mm, the camera
+  // 3 to 5 half-widths away and tilted by at most 20°, its flash 12 mm beside the lens; convention
+  // photograph.
   std::string rule = "dir";
   // 8: radiance is clipped to [0, 1], encoded, rounded to 8 bits, and decoded again, as a
   // photograph that was read back. float: left as it is.
@@ -39,6 +43,8 @@ struct ViewSetOptions {
   // normal, at DIR's height.
   double least_tilt_deg = 0;
   Disturbance disturbance;
+  // What the reflectance model does not express, at this strength (discrepancy.h).
+  double discrepancy = 0;
 };
 
 // Adds all of them to a program's options.
@@ -54,6 +60,8 @@ struct PlannedViews {
   std::vector<View> taken;
   std::vector<CornerShifts> shifts;
   EnvironmentLight environment;
+  Discrepancy discrepancy;
+  DrawnDiscrepancy drawn_discrepancy;
 };
 // Throws UserError.
 PlannedViews PlanViews(const ViewSetOptions& options, std::uint64_t seed, int width, int height);

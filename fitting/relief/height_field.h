@@ -1,0 +1,35 @@
+// The surface whose normals the maps hold.
+#pragma once
+
+#include <vector>
+
+#include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/reflectance/view.h"
+
+namespace glint {
+
+// Height above the sample's mean plane at the texels' centres, rows top (+y) to bottom.
+struct HeightField {
+  int width = 0, height = 0;
+  double texel_x_mm = 0, texel_y_mm = 0;  // distance between neighbouring texels
+  std::vector<float> height_mm;           // H·W, mean 0
+
+  float at(int row, int column) const {
+    return height_mm[static_cast<size_t>(row) * width + column];
+  }
+  // Bilinear between texels' centres; border texels continue.
+  double Lookup(double row, double column) const;
+};
+
+// The height whose differences between neighbouring texels are nearest, in least squares, to those
+// that the normals say: Poisson's equation with free borders, solved exactly by cosine transforms
+// (Frankot and Chellappa, "A method for enforcing integrability in shape from shading algorithms",
+// PAMI 1988, with Neumann's boundary in place of a periodic one). Slopes are at most
+// kMostReliefSlope.
+inline constexpr double kMostReliefSlope = 5;  // 79°: a normal beyond says little about height
+HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane);
+
+// Normals of a height field, by central differences: [3·H·W], planar.
+std::vector<float> NormalsOf(const HeightField& field);
+
+}  // namespace glint

@@ -1,0 +1,76 @@
+#include "fitting/relief/height_field.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace glint {
+namespace {
+
+// A smooth relief of some tenths of a millimetre, on a sample of 20 mm.
+HeightField Waves(int width, int height) {
+  HeightField field{width, height, 20.0 / width, 20.0 / height, {}};
+  double mean = 0;
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      const double x = 20.0 * column / width, y = 20.0 * row / height;
+      field.height_mm.push_back(static_cast<float>(0.3 * std::sin(0.9 * x + 0.4 * y) +
+                                                   0.2 * std::cos(0.7 * y) + 0.01 * x));
+      mean += field.height_mm.back() / (static_cast<double>(width) * height);
+    }
+  }
+  for (float& h : field.height_mm) h -= static_cast<float>(mean);
+  return field;
+}
+
+SvbrdfMaps MapsOf(const HeightField& field) {
+  SvbrdfMaps maps(field.width, field.height);
+  const std::vector<float> normals = NormalsOf(field);
+  std::copy(normals.begin(), normals.end(), maps.planes.begin());
+  return maps;
+}
+
+class HeightFieldSizes : public testing::TestWithParam<std::pair<int, int>> {};
+
+TEST_P(HeightFieldSizes, NormalsOfAReliefIntegrateToIt) {
+  const auto [width, height] = GetParam();
+  const HeightField truth = Waves(width, height);
+  const HeightField found =
+      IntegrateNormals(MapsOf(truth), {width, height, 20, 20, TexelSampling::kPixelCentres});
+  ASSERT_EQ(found.height_mm.size(), truth.height_mm.size());
+  EXPECT_NEAR(found.texel_x_mm, 20.0 / width, 1e-9);
+  double squares = 0;
+  for (size_t i = 0; i < truth.height_mm.size(); ++i) {
+    squares += std::pow(found.height_mm[i] - truth.height_mm[i], 2);
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(truth.height_mm.size())), 0.005);
+}
+
+INSTANTIATE_TEST_SUITE_P(EvenAndOdd, HeightFieldSizes,
+                         testing::Values(std::pair{64, 64}, std::pair{63, 80}, std::pair{81, 65}));
+
+TEST(HeightField, AFlatSampleIsFlat) {
+  SvbrdfMaps maps(9, 7);
+  for (float& z : maps.plane(kNormalZ)) z = 1;
+  const HeightField field = IntegrateNormals(maps, {9, 7, 9, 7, TexelSampling::kPixelCentres});
+  for (const float h : field.height_mm) EXPECT_EQ(h, 0.0f);
+}
+
+TEST(HeightField, BrokenNormalsStayFinite) {
+  SvbrdfMaps maps(16, 16);
+  maps.plane(kNormalX)[40] = 1;  // normals of length 0 elsewhere
+  for (const float h :
+       IntegrateNormals(maps, {16, 16, 16, 16, TexelSampling::kPixelCentres}).height_mm) {
+    EXPECT_TRUE(std::isfinite(h));
+  }
+}
+
+TEST(HeightField, LookupIsBilinear) {
+  const HeightField field{2, 2, 1, 1, {0, 1, 2, 3}};
+  EXPECT_NEAR(field.Lookup(0.5, 0.5), 1.5, 1e-9);
+  EXPECT_NEAR(field.Lookup(-3, 9), 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace glint
