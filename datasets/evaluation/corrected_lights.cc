@@ -23,11 +23,12 @@ double AngleDeg(const Vec3d& a, const Vec3d& b) {
 LightAngles CompareLights(const PlannedViews& planned, const std::filesystem::path& fit_manifest) {
   const Manifest manifest = ReadManifest(fit_manifest);
   const auto corrections = ReadCorrections(fit_manifest, manifest.data);
+  const FlashOffset flash_offset_mm = ReadFlashOffset(fit_manifest, manifest.data);
   LightAngles angles;
   for (size_t i = 0; i < planned.views.size(); ++i) {
     const auto found = corrections.find(ViewName(i));
-    const View view = found == corrections.end() ? planned.views[i]
-                                                 : CorrectedView(planned.views[i], found->second);
+    View view = WithFlashOffset(planned.views[i], flash_offset_mm);
+    if (found != corrections.end()) view = CorrectedView(view, found->second);
     const Vec3d& light = view.light_in_sample_mm;
     const double off_deg = AngleDeg(light, planned.taken[i].light_in_sample_mm);
     angles.mean_deg += off_deg / static_cast<double>(planned.views.size());

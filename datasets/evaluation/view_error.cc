@@ -92,6 +92,7 @@ FittedMaps ReadFittedMaps(const fs::path& path) {
   fit.maps = ReadSvbrdf(file.parent_path() / "svbrdf.exr", &fit.convention);
   fit.light_scale_rgb =
       OptionalNumbers(file, manifest.data, "light_scale_rgb", fit.light_scale_rgb);
+  fit.flash_offset_mm = ReadFlashOffset(file, manifest.data);
   fit.corrections = ReadCorrections(file, manifest.data);
   fit.room = ReadRoomLight(file, manifest.data);
   return fit;
@@ -118,7 +119,8 @@ std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
   ReflectanceConvention convention = set.convention;
   convention.diffuse_weight = fit.convention.diffuse_weight;
   const auto found = fit.corrections.find(view.name);
-  View lit = found == fit.corrections.end() ? view.view : CorrectedView(view.view, found->second);
+  View lit = WithFlashOffset(view.view, fit.flash_offset_mm);
+  if (found != fit.corrections.end()) lit = CorrectedView(lit, found->second);
   for (int c = 0; c < 3; ++c) {
     lit.light_rgb[c] *= fit.light_scale_rgb[c];
   }

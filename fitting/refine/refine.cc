@@ -22,6 +22,7 @@ namespace glint {
 namespace {
 
 constexpr int kTexelsPerPiece = 256;
+constexpr int kFlashMoves = 2;  // that half vectors turn by half is a first approximation
 
 void CheckProblem(const RefineProblem& problem, const SvbrdfMaps& start) {
   const SamplePlane& plane = problem.plane;
@@ -80,6 +81,7 @@ class Refiner {
 
  private:
   void EstimateModel();
+  void MoveFlash();
   void SolveFromStarts();
   void SolveFromNeighbours(int half_pass);
   void Conclude();
@@ -93,7 +95,8 @@ class Refiner {
 
   std::vector<int> order_;
   std::vector<int> all_views_;
-  RefineProblem problem_;  // views in canonical order
+  RefineProblem problem_;   // views in canonical order
+  std::vector<View> said_;  // those, with lights where they are said to be
   const SvbrdfMaps& start_;
   const RefineOptions& options_;
   const int threads_;
@@ -124,6 +127,7 @@ Refiner::Refiner(const RefineProblem& problem, const SvbrdfMaps& start,
       progress_(progress),
       model_(problem_, start, options) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
+  for (const RefineView& view : problem_.views) said_.push_back(view.view);
   kernel_.diffuse_weight = problem.convention.diffuse_weight;
   kernel_.robust_scale = options.robust_scale;
   for (int i = 0; i < threads_; ++i) {
@@ -180,9 +184,33 @@ void Refiner::EstimateModel() {
     return Prediction{2 * w.search.solver().Cost(w.observations, TexelPrior(), values),
                       3 * w.observations.views()};
   };
+  for (int i = 0; options_.flash_offset > 0 && i < kFlashMoves; ++i) {
+    model_.Begin(solver, threads_);
+    MoveFlash();
+  }
   model_.Estimate(solver, threads_);
   for (auto& worker : workers_) worker->search.SetNoise(std::sqrt(model_.residuals().variance()));
   model_.Describe(&result_.summary);
+}
+
+// To where the sample is level in the mean: of an offset half vectors turn by half.
+void Refiner::MoveFlash() {
+  double distance_mm = 0;
+  for (const RefineView& view : problem_.views) {
+    const Vec3d& light = view.view.light_in_sample_mm;
+    distance_mm +=
+        std::hypot(light[0], light[1], light[2]) / static_cast<double>(all_views_.size());
+  }
+  const std::array<double, 2>& tilt = model_.tilt();
+  FlashOffset& offset = result_.summary.flash_offset_mm;
+  // Normals that lean toward +x say that the half vectors do: that the light stands there.
+  FlashOffset more{0, 0, 0};
+  for (size_t i = 0; i < 2; ++i) more[i] = -2 * distance_mm * tilt[i];
+  for (size_t i = 0; i < 2; ++i) offset[i] += more[i];
+  for (size_t v = 0; v < problem_.views.size(); ++v) {
+    problem_.views[v].view = WithFlashOffset(said_[v], offset);
+  }
+  model_.Level();
 }
 
 TexelSolution Refiner::Current(size_t texel, const TexelPrior& prior, Worker* worker) {
@@ -320,6 +348,7 @@ std::string RefineOptions::Check() const {
   if (substances < 1 || substances > kMostSubstances) return "substances must be from 1 to 8";
   if (estimation_rounds < 0) return "estimation rounds must be at least 0";
   if (neighbour_passes < 0) return "neighbour passes must be at least 0";
+  if (!(flash_offset >= 0.0)) return "the expected flash offset must be at least 0";
   if (!(prior >= 0.0)) return "the prior's weight must be at least 0";
   if (!(robust_scale > 0.0)) return "the robust scale must be above 0";
   return "";

@@ -28,6 +28,7 @@
 #include "fitting/reflectance/room_light.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/reflectance/view.h"
+#include "fitting/view_correction/flash_offset.h"
 
 namespace glint {
 
@@ -52,6 +53,9 @@ struct RefineOptions {
   int neighbour_passes = 2;   // how often a texel tries its neighbours' solutions
   int substances = 8;         // at most, that share their roughness and specular albedo
   int estimation_rounds = 8;  // of variances and substances, on sampled texels
+  // Standard deviation expected of the flash's place beside where it is said to be, relative to its
+  // distance (flash_offset.h). 0: it is where it is said to be.
+  double flash_offset = 0;
   double prior = 1.0;         // factor on the priors' weight; 0: none
   double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
 
@@ -77,14 +81,15 @@ enum ConfidencePlane : int {
 struct RefineSummary {
   double start_cost = 0;  // means over texels
   double final_cost = 0;
-  double residual_sigma = 0;      // standard deviation of residuals, log units
-  double discrepancy = 0;         // of it, what the reflectance model does not express
-  double effective_views = 0;     // how many views say something of their own
-  int substances = 0;             // that are told apart
-  double roughness_spread = 0;    // of texels about their substance's mean …
-  double specular_spread = 0;     // … relative
-  double normal_spread = 0;       // of n_x, n_y about 0, and between neighbours
-  double converged = 0;           // share of texels
+  double residual_sigma = 0;             // standard deviation of residuals, log units
+  double discrepancy = 0;                // of it, what the reflectance model does not express
+  double effective_views = 0;            // how many views say something of their own
+  int substances = 0;                    // that are told apart
+  double roughness_spread = 0;           // of texels about their substance's mean …
+  double specular_spread = 0;            // … relative
+  double normal_spread = 0;              // of n_x, n_y about 0, and between neighbours
+  FlashOffset flash_offset_mm{0, 0, 0};  // by which the views' lights were moved
+  double converged = 0;                  // share of texels
   double other_start = 0;         // share of texels whose solution came from another start …
   double neighbour = 0;           // … or from a neighbour
   std::vector<double> view_loss;  // per view: mean |log(I + 0.01) − log(R + 0.01)|, NaN: masked

@@ -150,6 +150,10 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
   set->AddChoice("correct-views", &options->correction.when, {"auto", "always", "never"},
                  "find from the photographs where lights, registration and ambient light are off; "
                  "auto: from five distinct views on, and taken where it explains 2 % more");
+  set->AddRange("flash-offset", &options->flash_offset, 0, 1,
+                "expected standard deviation of the flash's place beside where it is said to be, "
+                "relative to its distance, where the light was not calibrated; the offset is found "
+                "from the photographs, alike in all; 0: none");
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");
   set->Add("views", &options->views, "views to use, by name or photo (default: those of fit)");
@@ -205,7 +209,9 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
   }
   {
     std::unique_ptr<Progress> bar;
-    refined = Refine(ProblemOf(photographs), maps, options.refine, threads,
+    RefineOptions refine = options.refine;
+    refine.flash_offset = set.light_power_known ? 0 : options.flash_offset;
+    refined = Refine(ProblemOf(photographs), maps, refine, threads,
                      [&](std::int64_t done, std::int64_t total) {
                        if (!bar) bar = std::make_unique<Progress>("refine", total);
                        bar->Set(done);
@@ -222,6 +228,7 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
            {{"convention", ToString(convention)}});
   result.data = {{"convention", ToString(convention)},
                  {"light_scale_rgb", start.light_scale_rgb},
+                 {"flash_offset_mm", refined.summary.flash_offset_mm},
                  {"views", result.views},
                  {"method", "refined"}};
   result.metrics = Metrics(refined.summary, views);

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/parallel/parallel.h"
@@ -14,13 +15,20 @@ namespace {
 constexpr size_t kSampled = 2048, kCrossValidated = 512;
 constexpr int kMostFolds = 7, kFoldRounds = 2;
 constexpr int kLeastValidatedViews = 3;  // of two, one would have to predict the other
-// Errors of the initialisation, in those of one photograph's estimate (texel_prior.h): fitting has
-// shown it the same photographs already, and what it took from them is not to count twice.
-constexpr double kInitialErrors = 3;
+// Of the albedos' errors, where fitting has seen the same photographs.
+constexpr double kSeenAlready = 3;
 // Scatter of normals to begin with; cross-validation changes it. Of what initial maps say of it a
 // part is what fitting made of its photographs.
 constexpr double kNormalSpread = 0.05;
+constexpr double kNormalTexels = 20;  // that this belief is worth, of a substance
 constexpr double kPi = 3.14159265358979;
+
+// Of log radiance, by which vignetting and the flash's beam may differ across the sample.
+constexpr double kCommonShading = 0.1;
+constexpr double kMostTiltStep = 0.05;  // of the sample's mean normal, in one round
+
+// By which spreads are tried.
+constexpr std::array<double, 4> kSpreadFactors = {0.25, 0.5, 1.0, 2.0};
 
 using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
@@ -71,12 +79,17 @@ SharedValues SharedOf(const TexelValues& values) {
   return shared;
 }
 
-InitialisationErrors ErrorsOfInitialisation() {
+// Errors of the initialisation. One photograph leaves it what the estimator made it. Of several,
+// fitting has shown it the same photographs already, and what it took from them is not to count
+// twice: roughness and normals, which hold its misfit, are then not taken from it at all.
+InitialisationErrors ErrorsOfInitialisation(const RefineProblem& problem) {
   InitialisationErrors errors;
-  for (double* error : {&errors.normal, &errors.roughness, &errors.diffuse,
-                        &errors.diffuse_relative, &errors.specular, &errors.specular_relative}) {
-    *error *= kInitialErrors;
+  if (problem.views.size() == 1) return errors;
+  for (double* error :
+       {&errors.diffuse, &errors.diffuse_relative, &errors.specular, &errors.specular_relative}) {
+    *error *= kSeenAlready;
   }
+  errors.normal = errors.roughness = std::numeric_limits<double>::infinity();
   return errors;
 }
 
@@ -113,24 +126,24 @@ SampleModel::SampleModel(const RefineProblem& problem, const SvbrdfMaps& initial
       initial_(initial),
       options_(options),
       all_views_(problem.views.size()),
+      initial_errors_(ErrorsOfInitialisation(problem)),
       residuals_(problem, {}),
       substances_(MedianColour(problem), options.substances),
-      normal_spread_(kNormalSpread) {
+      normal_spreads_(static_cast<size_t>(substances_.count()), kNormalSpread) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   means_.mean = InitialMeans(initial, substances_);
 }
 
 TexelGaussian SampleModel::Knowledge(size_t texel) const {
-  static const InitialisationErrors kErrors = ErrorsOfInitialisation();
-  TexelGaussian gaussian(ReadTexel(initial_, texel), kErrors);
+  TexelGaussian gaussian(ReadTexel(initial_, texel), initial_errors_);
   const SharedValues mean = means_.Of(substances_.shares(texel));
   const SharedValues variances = means_.Variances(mean);
   for (size_t p = 0; p < 4; ++p) {
     gaussian.Multiply(kSharedParameters[p], mean[p], 1 / variances[p]);
   }
-  const double precision = 1 / (normal_spread_ * normal_spread_);
-  gaussian.Multiply(kSlopeX, 0, precision);
-  gaussian.Multiply(kSlopeY, 0, precision);
+  const double precision = NormalPrecision(texel);
+  gaussian.Multiply(kSlopeX, tilt_[0], precision);
+  gaussian.Multiply(kSlopeY, tilt_[1], precision);
   return gaussian;
 }
 
@@ -159,7 +172,7 @@ void SampleModel::MultiplyNeighbours(size_t texel, const SvbrdfMaps& maps,
   add(row + 1, column);
   if (count == 0) return;
   for (int i = 0; i < 2; ++i) {
-    gaussian->Multiply(kSlopeX + i, normal[i] / count, count / (normal_spread_ * normal_spread_));
+    gaussian->Multiply(kSlopeX + i, normal[i] / count, count * NormalPrecision(texel));
   }
   const SharedValues mean = means_.Of(substances_.shares(texel));
   const SharedValues variances = means_.Variances(mean);
@@ -201,6 +214,8 @@ void SampleModel::Fit(std::span<const int> views, int rounds, bool update_residu
           sampling->solver->solve(texel, PriorOf(texel), sampling->solved[k].values, views, worker);
     });
     UpdateSubstances(*sampling);
+    if (tilts_) UpdateTilt(*sampling);
+    if (update_residuals && learns_normals_) UpdateNormalSpreads(*sampling);
     if (update_residuals) UpdateResiduals(*sampling);
   }
 }
@@ -272,6 +287,77 @@ void SampleModel::UpdateResiduals(const Sampling& sampling) {
   }
 }
 
+double SampleModel::NormalPrecision(size_t texel) const {
+  double variance = 0;
+  for (size_t k = 0; k < normal_spreads_.size(); ++k) {
+    variance += substances_.shares(texel)[k] * normal_spreads_[k] * normal_spreads_[k];
+  }
+  return 1 / variance;
+}
+
+// Expectation maximisation: the mean square of what is found of normals and of what is left open.
+void SampleModel::UpdateNormalSpreads(const Sampling& sampling) {
+  const double variance = residuals_.scale() * residuals_.scale();
+  const size_t count = normal_spreads_.size();
+  std::vector<double> squares(count, kNormalSpread * kNormalSpread * kNormalTexels);
+  std::vector<double> weights(count, kNormalTexels);
+  for (size_t i = 0; i < sampling.solved.size(); ++i) {
+    const SampledTexel& solved = sampling.solved[i];
+    if (solved.views == 0) continue;
+    const Matrix9 inverse = InverseInformation(solved);
+    double normal[2];
+    NormalOfSlopes(solved.values[kSlopeX], solved.values[kSlopeY], normal);
+    double square = 0;
+    for (int axis = 0; axis < 2; ++axis) {
+      const double off = normal[axis] - tilt_[static_cast<size_t>(axis)];
+      square += 0.5 * (off * off + variance * inverse(kSlopeX + axis, kSlopeX + axis));
+    }
+    for (size_t k = 0; k < count; ++k) {
+      const double share = substances_.shares(sampling.texels[i])[k];
+      squares[k] += share * square;
+      weights[k] += share;
+    }
+  }
+  for (size_t k = 0; k < count; ++k) normal_spreads_[k] = std::sqrt(squares[k] / weights[k]);
+}
+
+// A Newton step on the marginal likelihood of the mean normal, as UpdateMeans takes one: a flash
+// that is o of its distance aside tilts half vectors, and so the normals found, by o/2.
+//
+// Matte texels see a tilt by a few per cent of radiance, no more than what vignetting and the
+// flash's beam, alike in all views, are off by. That error is common to all texels, so n of them
+// know no more than one does: each is given n times its variance.
+void SampleModel::UpdateTilt(const Sampling& sampling) {
+  const double variance = residuals_.scale() * residuals_.scale();
+  const double worth = SampleWorth(sampling.texels);
+  const double expected = 0.5 * options_.flash_offset;
+  const auto n = static_cast<double>(sampling.texels.size());
+  for (int axis = 0; axis < 2; ++axis) {
+    const int parameter = kSlopeX + axis;
+    double& tilt = tilt_[static_cast<size_t>(axis)];
+    double information = 1 / (expected * expected), gradient = -tilt * information;
+    for (size_t i = 0; i < sampling.solved.size(); ++i) {
+      const SampledTexel& solved = sampling.solved[i];
+      if (solved.views == 0) continue;
+      const double precision = NormalPrecision(sampling.texels[i]);
+      const double posterior = variance * InverseInformation(solved)(parameter, parameter);
+      const double own = worth * std::max(0.0, precision - precision * precision * posterior);
+      // Mean square derivative of log radiance by the normal.
+      const double steepness =
+          (solved.gram[static_cast<size_t>(parameter)][static_cast<size_t>(parameter)] -
+           solved.prior_diagonal[static_cast<size_t>(parameter)]) /
+          (3 * solved.views);
+      const double common = kCommonShading * kCommonShading / std::max(steepness, 1e-9);
+      const double share = 1 / (1 + own * n * common);
+      double normal[2];
+      NormalOfSlopes(solved.values[kSlopeX], solved.values[kSlopeY], normal);
+      information += share * own;
+      gradient += share * worth * precision * (normal[axis] - tilt);
+    }
+    tilt += std::clamp(gradient / information, -kMostTiltStep, kMostTiltStep);
+  }
+}
+
 double SampleModel::CrossValidate(const Sampling& sampling) const {
   const int views = static_cast<int>(all_views_.size()), folds = std::min(views, kMostFolds);
   Prediction sum;
@@ -300,28 +386,59 @@ double SampleModel::CrossValidate(const Sampling& sampling) const {
   return sum.squares / std::max(sum.residuals, 1);
 }
 
+// The mean variance over what cross-validation leaves possible: a spread that predicts nearly as
+// well as the best one is nearly as likely, and to take the best alone would state deviations that
+// are too small.
 void SampleModel::ChooseSpreads(const Sampling& sampling) {
-  const auto choose = [&](std::initializer_list<double> factors, const auto& scale) {
-    double best = 1, least = CrossValidate(sampling);
-    for (const double factor : factors) {
+  const double independent = CrossValidatedResiduals(sampling);
+  const auto choose = [&](const auto& scale) {
+    std::array<double, kSpreadFactors.size()> error{};
+    for (size_t i = 0; i < kSpreadFactors.size(); ++i) {
       SampleModel tried(*this);
-      scale(factor, &tried);
-      const double error = tried.CrossValidate(sampling);
-      if (error < least) least = error, best = factor;
+      scale(kSpreadFactors[i], &tried);
+      error[i] = tried.CrossValidate(sampling);
     }
-    scale(best, this);
+    const double least = *std::min_element(error.begin(), error.end());
+    double weights = 0, squares = 0;
+    for (size_t i = 0; i < kSpreadFactors.size(); ++i) {
+      // Gauss's likelihood of as many residuals, their variance the least that is found.
+      const double weight = std::exp(-0.5 * independent * (error[i] / least - 1));
+      weights += weight;
+      squares += weight * kSpreadFactors[i] * kSpreadFactors[i];
+    }
+    scale(std::sqrt(squares / weights), this);
   };
-  choose({0.25, 0.5, 2.0}, [](double factor, SampleModel* model) {
+  choose([](double factor, SampleModel* model) {
     model->means_.roughness_spread *= factor;
     model->means_.specular_spread *= factor;
   });
-  choose({0.25, 0.5, 2.0},
-         [](double factor, SampleModel* model) { model->normal_spread_ *= factor; });
+  choose([](double factor, SampleModel* model) {
+    for (double& spread : model->normal_spreads_) spread *= factor;
+  });
+}
+
+// Residuals that are worth something of their own: those that are not discrepancy, and of
+// discrepancy as many as there are half vectors to be told apart, each once and not by channel.
+double SampleModel::CrossValidatedResiduals(const Sampling& sampling) const {
+  const double texels = static_cast<double>(sampling.texels.size());
+  const double views = static_cast<double>(all_views_.size());
+  const double channels =
+      3 / (1 + 2 * residuals_.options().channel_correlation * residuals_.discrepancy_share());
+  return SampleWorth(sampling.texels) * texels * views * channels;
+}
+
+void SampleModel::Begin(const SampleSolver& solver, int threads) {
+  Sampling sampling = Sample(kSampled, solver, threads);
+  tilts_ = true;
+  Fit(all_views_, options_.estimation_rounds, true, &sampling);
+  tilts_ = false;
 }
 
 void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   Sampling sampling = Sample(kSampled, solver, threads);
+  learns_normals_ = true;
   Fit(all_views_, options_.estimation_rounds, true, &sampling);
+  learns_normals_ = false;
   if (static_cast<int>(all_views_.size()) < kLeastValidatedViews) return;
   ChooseSpreads(Sample(kCrossValidated, solver, threads));
   Fit(all_views_, options_.estimation_rounds, true, &sampling);
@@ -334,7 +451,9 @@ void SampleModel::Describe(RefineSummary* summary) const {
   summary->substances = substances_.count();
   summary->roughness_spread = means_.roughness_spread;
   summary->specular_spread = means_.specular_spread;
-  summary->normal_spread = normal_spread_;
+  double squares = 0;
+  for (size_t t = 0; t < initial_.texels(); ++t) squares += 1 / NormalPrecision(t);
+  summary->normal_spread = std::sqrt(squares / static_cast<double>(initial_.texels()));
 }
 
 }  // namespace glint

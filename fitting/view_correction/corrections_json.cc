@@ -43,6 +43,12 @@ std::map<std::string, ViewCorrection> ReadCorrections(const std::filesystem::pat
   return corrections;
 }
 
+FlashOffset ReadFlashOffset(const std::filesystem::path& manifest_file, const Json& data) {
+  if (!data.contains("flash_offset_mm")) return {0, 0, 0};
+  const auto mm = RequireNumbers(manifest_file, data, "data", "flash_offset_mm", 3);
+  return {mm[0], mm[1], mm[2]};
+}
+
 Json JsonOf(const RoomLight& room) { return {{"radiance_rgb", room.radiance_rgb}}; }
 
 RoomLight ReadRoomLight(const std::filesystem::path& manifest_file, const Json& data) {

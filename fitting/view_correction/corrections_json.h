@@ -1,10 +1,12 @@
-// What was corrected, in a manifest: data.corrections and data.room_light (docs/manifest.md).
+// What was corrected, in a manifest: data.corrections, data.flash_offset_mm
+// and data.room_light (docs/manifest.md).
 #pragma once
 
 #include <filesystem>
 #include <map>
 #include <string>
 
+#include "fitting/view_correction/flash_offset.h"
 #include "fitting/view_correction/view_correction.h"
 #include "pipeline/contract/manifest.h"
 
@@ -15,6 +17,9 @@ Json JsonOf(const std::string& view, const ViewCorrection& correction);
 // By the views' names; none where `data` has no corrections. Throws UserError.
 std::map<std::string, ViewCorrection> ReadCorrections(const std::filesystem::path& manifest_file,
                                                       const Json& data);
+
+// data.flash_offset_mm; none where `data` has none. Throws UserError.
+FlashOffset ReadFlashOffset(const std::filesystem::path& manifest_file, const Json& data);
 
 Json JsonOf(const RoomLight& room);
 

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "base/text/json_depth.h"
+
 namespace glint {
 namespace {
 
@@ -137,6 +139,9 @@ TensorFile ReadTensorFile(const std::filesystem::path& path) {
   }
   const char* text = reinterpret_cast<const char*>(bytes.data()) + sizeof length;
   const std::span<const std::byte> data = std::span(bytes).subspan(sizeof length + length);
+  if (const int depth = JsonDepth({text, length}); depth > kMostJsonDepth) {
+    Fail(path, "header", "brackets nested " + std::to_string(depth) + " deep");
+  }
   TensorFile file;
   try {
     const Json header = Json::parse(text, text + length);

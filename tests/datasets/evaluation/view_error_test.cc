@@ -8,6 +8,7 @@
 #include "datasets/procedural/material.h"
 #include "datasets/synth/view_set.h"
 #include "fitting/render/render_room.h"
+#include "fitting/render/renderer.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
@@ -121,6 +122,19 @@ TEST_F(FittedMapsTest, ViewsAreComparedAsTheyWereCorrected) {
   EXPECT_EQ(ErrorOf(fit).mse, 0);  // the other view has no correction
   EXPECT_EQ(PhotographOfFit(fit, set_, set_.views[1]).rgb,
             ReadRectifiedImage(set_, set_.views[1]).rgb);
+}
+
+// The flash's offset is known of views that were not fitted, too.
+TEST_F(FittedMapsTest, EveryViewIsLitByTheFlashThatWasFound) {
+  const FlashOffset offset{3, -2, 0};
+  const FittedMaps fit = ReadFittedMaps(WriteFit("refine", {{"flash_offset_mm", offset}}));
+  for (const RectifiedView& view : set_.views) {
+    std::vector<float> expected(3 * material_.maps.texels());
+    RenderView(material_.maps, set_.plane, WithFlashOffset(view.view, offset), set_.convention,
+               expected.data());
+    EXPECT_EQ(RenderFit(fit, set_, view, 2), expected);
+  }
+  EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"flash_offset_mm", {1, 2}}})), UserError);
 }
 
 // The room lights views that were kept back, too.

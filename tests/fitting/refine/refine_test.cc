@@ -138,7 +138,7 @@ TEST(Refine, KeepsTheStartWhereNothingIsSeen) {
 
 TEST(Refine, OnePhotographDoesNotMakeMapsWorse) {
   const SyntheticScene scene = Photograph(QuarteredMaps(32, 14), 1, 8);
-  const SvbrdfMaps start = DisturbedMaps(scene.truth, 2.0f, 15);  // as wrong as is expected
+  const SvbrdfMaps start = DisturbedMaps(scene.truth, 1.2f, 15);  // errors of .12
   const RefineResult held = Refine(scene.Problem(), start, {}, 1);
   RefineOptions free_options;
   free_options.prior = 1e-6;
@@ -271,6 +271,45 @@ TEST(Refine, OneSubstanceBecomesNearlyHomogeneous) {
             0.02 * MeanSquare(start, truth, kRoughness, kRoughness));
   EXPECT_LT(MeanSquare(result.maps, truth, kSpecularR, kSpecularB),
             0.05 * MeanSquare(start, truth, kSpecularR, kSpecularB));
+}
+
+// A flash that stands beside where all views say it does: highlights of a level sample tell.
+TEST(Refine, FindsWhereTheFlashStands) {
+  SvbrdfMaps truth(32, 32);
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    truth.plane(kNormalZ)[t] = 1;
+    truth.plane(kRoughness)[t] = 0.2f;
+    for (int c = 0; c < 3; ++c) {
+      truth.plane(kDiffuseR + c)[t] = 0.15f + 0.05f * static_cast<float>(t % 7) / 7;
+      truth.plane(kSpecularR + c)[t] = 0.05f;
+    }
+  }
+  const Vec3d offset{0.12, -0.06, 0};  // of a distance of 2.1 to 2.7
+  SyntheticScene scene = Photograph(truth, 10, 8, 5, offset);
+  RefineOptions options;
+  options.flash_offset = 0.05;
+  const RefineResult found = Refine(scene.Problem(), truth, options, 1);
+  for (size_t i = 0; i < 2; ++i) {
+    // Expected beforehand at 0.11, so that it is drawn toward 0.
+    EXPECT_NEAR(found.summary.flash_offset_mm[i], offset[i], 0.5 * std::abs(offset[i])) << i;
+  }
+  options.flash_offset = 0;
+  const RefineResult believed = Refine(scene.Problem(), truth, options, 1);
+  EXPECT_EQ(believed.summary.flash_offset_mm, (Vec3d{0, 0, 0}));
+  EXPECT_LT(MeanSquare(found.maps, truth, kNormalX, kNormalY),
+            0.3 * MeanSquare(believed.maps, truth, kNormalX, kNormalY));
+}
+
+TEST(Refine, LeavesAFlashWhereItStands) {
+  const SyntheticScene scene = Photograph(QuarteredMaps(24, 26), 8, 8);
+  RefineOptions options;
+  options.flash_offset = 0.05;
+  const FlashOffset found =
+      Refine(scene.Problem(), DisturbedMaps(scene.truth, 0.5f, 27), options, 1)
+          .summary.flash_offset_mm;
+  // Within twice the error of the mean of normals that scatter by 0.17: 2.1 · 2 · 2 · 0.17 / 24.
+  EXPECT_NEAR(found[0], 0, 0.06);
+  EXPECT_NEAR(found[1], 0, 0.06);
 }
 
 // What photographs do not support is not there: exposures that differ from photograph to photograph
