@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/json.h"
+#include "pipeline/contract/json_file.h"
 #include "pipeline/contract/photo_name.h"
 
 namespace glint {
@@ -161,7 +161,7 @@ std::vector<GreyPatch> ReadPatches(const fs::path& file) {
   const std::string mend =
       "write {\"patches\": [{\"x\": 100, \"y\": 80, \"width\": 40, \"height\": 40, "
       "\"reflectance\": 0.18}, …]}";
-  const Json json = Json::parse(ReadTextFile(file, 1u << 20), nullptr, false);
+  const Json json = ReadJsonFile(file, mend, 1u << 20);
   if (!json.is_object() || !json.contains("patches") || !json["patches"].is_array()) {
     throw UserError(file, "patches", "no such list", mend);
   }

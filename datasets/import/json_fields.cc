@@ -4,17 +4,8 @@
 #include <utility>
 
 #include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
 
 namespace glint {
-
-Json ParseJsonFile(const std::filesystem::path& file, const std::string& mend) {
-  try {
-    return Json::parse(ReadTextFile(file));
-  } catch (const nlohmann::json::exception& error) {
-    throw UserError(file, "", "text that is not JSON (" + std::string(error.what()) + ")", mend);
-  }
-}
 
 std::string ShownJson(const Json& value) {
   std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -6,13 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/json.h"
+#include "pipeline/contract/json_file.h"
 
 namespace glint {
-
-// Throws UserError for a file that is missing or no JSON; `mend` says where its format is
-// described.
-Json ParseJsonFile(const std::filesystem::path& file, const std::string& mend);
 
 // The value's text, shortened.
 std::string ShownJson(const Json& value);

@@ -123,7 +123,7 @@ ForeignSet ReadMaterialGanJson(const fs::path& folder) {
   ForeignSet set = EmptySet(ForeignLayout::kMaterialGanJson);
   const fs::path file = folder / "parameters.json";
   set.description = {file};
-  const Json json = ParseJsonFile(file, "copy the file again");
+  const Json json = ReadJsonFile(file, "copy the file again");
   JsonFields fields(file, json, "");
   const std::string mend = "give image_size, idx, camera_pos, light_pos and light_pow";
   SetSize(file, "image_size",

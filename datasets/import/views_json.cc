@@ -86,7 +86,7 @@ void ReadSetFields(const fs::path& file, JsonFields* fields, ForeignSet* set) {
 }  // namespace
 
 ForeignSet ReadViewsJson(const fs::path& file) {
-  const Json json = ParseJsonFile(file, "see docs/views.md for the format");
+  const Json json = ReadJsonFile(file, "see docs/views.md for the format");
   JsonFields fields(file, json, "");
   ForeignSet set;
   set.layout = ForeignLayout::kViewsJson;

@@ -7,7 +7,7 @@
 
 #include "calib/board/dictionary.h"
 #include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
+#include "pipeline/contract/json_file.h"
 #include "pipeline/contract/json_object.h"
 
 namespace glint {
@@ -179,13 +179,8 @@ Json ToJson(const BoardFile& file) {
 }
 
 BoardFile ReadBoardFile(const fs::path& file) {
-  Json json;
-  try {
-    json = Json::parse(ReadTextFile(file, kMaxBytes));
-  } catch (const nlohmann::json::exception& error) {
-    throw UserError(file, "", "text that is not JSON (" + std::string(error.what()) + ")",
-                    "write it with glint board, or as docs/boards.md says");
-  }
+  const Json json =
+      ReadJsonFile(file, "write it with glint board, or as docs/boards.md says", kMaxBytes);
   JsonObject object(file, "", json);
   if (object.Integer("glint_board", "give the format's version, 1") != kBoardFormat) {
     object.Reject("glint_board",

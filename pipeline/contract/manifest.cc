@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
 #include "pipeline/contract/hash.h"
+#include "pipeline/contract/json_file.h"
 
 namespace glint {
 namespace {
@@ -30,6 +30,15 @@ std::string RequireRelativePath(const std::filesystem::path& file, const Json& o
   return text;
 }
 
+// Outputs lie in the manifest's folder.
+void RequireInside(const std::filesystem::path& file, const std::string& name,
+                   const std::string& path) {
+  const std::filesystem::path normal = std::filesystem::path(path).lexically_normal();
+  if (*normal.begin() != "..") return;
+  throw UserError(file, name + ".path", "'" + path + "'",
+                  "outputs lie in the manifest's folder; run the stage again");
+}
+
 const Json& RequireArray(const std::filesystem::path& file, const Json& object,
                          const std::string& field) {
   const Json& array = RequireField(file, object, "", field);
@@ -37,6 +46,20 @@ const Json& RequireArray(const std::filesystem::path& file, const Json& object,
     throw UserError(file, field, Describe(array), "a list is expected; run the stage again");
   }
   return array;
+}
+
+// Of all that stands in the manifest but the seal itself: no digit of `data` changes unseen.
+std::string SealOf(Json json) {
+  json.erase("seal");
+  // Names of files may hold bytes that are no UTF-8.
+  return HashBytes(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+void VerifySeal(const std::filesystem::path& file, const Json& json) {
+  if (!json.contains("seal")) return;  // written by hand or by another program
+  if (json["seal"] == SealOf(json)) return;
+  throw UserError(file, "seal", "a manifest that was changed after it was written",
+                  "run the stage that wrote it again");
 }
 
 }  // namespace
@@ -63,6 +86,7 @@ Json ToJson(const Manifest& manifest) {
   }
   json["data"] = manifest.data;
   json["metrics"] = manifest.metrics;
+  json["seal"] = SealOf(json);
   return json;
 }
 
@@ -116,13 +140,7 @@ std::vector<double> RequireNumbers(const std::filesystem::path& file, const Json
 }
 
 Manifest ReadManifest(const std::filesystem::path& file, const std::string& expected_stage) {
-  Json json;
-  try {
-    json = Json::parse(ReadTextFile(file));
-  } catch (const nlohmann::json::exception& error) {
-    throw UserError(file, "", "text that is not JSON (" + std::string(error.what()) + ")",
-                    "run the stage that wrote it again");
-  }
+  Json json = ReadJsonFile(file, "run the stage that wrote it again");
   const double format = RequireNumber(file, json, "", "glint_manifest");
   if (format != kManifestFormat) {
     throw UserError(file, "glint_manifest", Describe(json["glint_manifest"]),
@@ -148,6 +166,7 @@ Manifest ReadManifest(const std::filesystem::path& file, const std::string& expe
     const std::string name = "outputs[" + std::to_string(i) + "]";
     ManifestOutput output;
     output.path = RequireRelativePath(file, outputs[i], name);
+    RequireInside(file, name, output.path);
     output.hash = RequireString(file, outputs[i], name, "hash");
     if (outputs[i].contains("width")) {
       output.width = static_cast<int>(RequireNumber(file, outputs[i], name, "width"));
@@ -163,6 +182,7 @@ Manifest ReadManifest(const std::filesystem::path& file, const std::string& expe
   }
   manifest.data = RequireField(file, json, "", "data");
   manifest.metrics = RequireField(file, json, "", "metrics");
+  VerifySeal(file, json);
   return manifest;
 }
 

@@ -226,7 +226,8 @@ void Stage::Commit(const Json& data, const Json& metrics) {
     manifest.outputs.push_back(Describe(staging(), name));
   }
   WriteRunFacts();
-  WriteFileAtomically(staging() / "manifest.json", ToJson(manifest).dump(2) + "\n");
+  WriteFileAtomically(staging() / "manifest.json",
+                      ToJson(manifest).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   SyncFile(staging());
   Exchange(staging(), folder_);
   SyncFile(folder_.parent_path());

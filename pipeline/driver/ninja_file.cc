@@ -67,8 +67,9 @@ std::string EdgeText(const NinjaEdge& edge) {
   text += "\n  program = " + EscapedWord(edge.program.string());
   text += "\n  arguments =";
   for (const std::string& argument : step.arguments) text += " " + EscapedWord(argument);
-  // Ninja does not see that an input is gone; that the command has changed it does.
-  text += "\n  inputs = " + HashBytes(inputs);
+  // Ninja does not see that an input is gone or has another content; that the command has changed
+  // it does.
+  text += "\n  inputs = " + HashBytes(inputs + edge.content);
   text += "\n  stage = " + step.stage + "\n\n";
   return text;
 }

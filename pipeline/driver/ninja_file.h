@@ -15,6 +15,9 @@ struct NinjaEdge {
   std::filesystem::path program;
   // Files that the last result says it read, besides the step's inputs (weights, say).
   std::vector<std::string> more_inputs;
+  // Hash of what people put there: files among the step's inputs that no stage writes. Times tell
+  // less: a photograph may be replaced by an older one.
+  std::string content;
   // Runs the program whatever the times of the files say.
   bool always = false;
 };

@@ -25,6 +25,7 @@ constexpr KnownVerb kKnownVerbs[] = {
     {"init", "write a capture.toml for a folder of photographs"},
     {"run", "run every stage that is not up to date"},
     {"status", "say which results are up to date, and why others are not"},
+    {"verify", "compare everything on disk with the manifests' hashes"},
     {"calib", "stage: cameras, poses and lights from the board"},
     {"rectify", "stage: linear top views of the sample"},
     {"import", "take over photographs that other programs have rectified"},

@@ -1,7 +1,6 @@
 #include "pipeline/driver/run.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -13,6 +12,7 @@
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
+#include "pipeline/contract/hash_cache.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/ninja_file.h"
@@ -53,34 +53,30 @@ fs::path RequireNinja() {
       "ninja: no such program in PATH; install it with: apt-get install ninja-build");
 }
 
-// -1: no such file.
-std::int64_t ModificationTime_ns(const fs::path& file) {
-  struct stat status {};
-  if (::stat(file.c_str(), &status) != 0) return -1;
-  return static_cast<std::int64_t>(status.st_mtim.tv_sec) * 1'000'000'000 + status.st_mtim.tv_nsec;
-}
-
 // Files outside the capture, which the manifest does not say the place of.
-void AddOutsideInputs(const fs::path& run_file, NinjaEdge* edge) {
+void AddOutsideInputs(const fs::path& run_file, const Manifest& manifest, HashCache* hashes,
+                      NinjaEdge* edge) {
   std::ifstream stream(run_file);
   const Json facts = Json::parse(stream, nullptr, false);
   if (!facts.is_object() || !facts.contains("outside") || !facts["outside"].is_array()) return;
-  for (const Json& path : facts["outside"]) {
+  std::vector<std::string> recorded;  // hashes, in the order of the places
+  for (const ManifestInput& input : manifest.inputs) {
+    if (input.path.rfind(kOutsidePrefix, 0) == 0) recorded.push_back(input.hash);
+  }
+  for (size_t i = 0; i < facts["outside"].size(); ++i) {
+    const Json& path = facts["outside"][i];
     if (!path.is_string()) continue;
-    if (fs::exists(path.get<std::string>())) {
-      edge->more_inputs.push_back(path.get<std::string>());
-    } else {
-      edge->always = true;
-    }
+    const std::string hash = hashes->Hash(path.get<std::string>());
+    if (hash.empty() || (i < recorded.size() && hash != recorded[i])) edge->always = true;
+    if (!hash.empty()) edge->more_inputs.push_back(path.get<std::string>());
   }
 }
 
 // Adds to an edge what its last result says: files it read that the graph does not know, and
 // whether something is amiss that the times of the inputs do not show.
-void LookAtLastResult(const Capture& capture, NinjaEdge* edge) {
+void LookAtLastResult(const Capture& capture, HashCache* hashes, NinjaEdge* edge) {
   const fs::path file = capture.folder / edge->step.manifest;
-  const std::int64_t written_ns = ModificationTime_ns(file);
-  if (written_ns < 0) return;
+  if (!fs::exists(file)) return;
   Manifest manifest;
   try {
     manifest = ReadManifest(file, edge->step.stage);
@@ -89,20 +85,28 @@ void LookAtLastResult(const Capture& capture, NinjaEdge* edge) {
     return;
   }
   const fs::path stage_folder = fs::path("glint") / edge->step.stage;
-  AddOutsideInputs(file.parent_path() / "run.json", edge);
+  AddOutsideInputs(file.parent_path() / "run.json", manifest, hashes, edge);
   for (const ManifestInput& input : manifest.inputs) {
     if (input.path.rfind(kOutsidePrefix, 0) == 0) continue;
     const fs::path path = (stage_folder / input.path).lexically_normal();
     if (fs::exists(capture.folder / path)) {
       edge->more_inputs.push_back(path.generic_string());
-    } else {
-      edge->always = true;
     }
+    if (hashes->Hash(capture.folder / path) != input.hash) edge->always = true;
   }
   for (const ManifestOutput& output : manifest.outputs) {
-    const std::int64_t output_ns = ModificationTime_ns(file.parent_path() / output.path);
-    if (output_ns < 0 || output_ns > written_ns) edge->always = true;
+    if (hashes->Hash(file.parent_path() / output.path) != output.hash) edge->always = true;
   }
+}
+
+// Content of the step's inputs that no stage writes.
+std::string ContentOf(const Capture& capture, const StageStep& step, HashCache* hashes) {
+  std::string content;
+  for (const std::string& input : step.inputs) {
+    const bool written_by_a_stage = input.rfind("glint/", 0) == 0;
+    if (!written_by_a_stage) content += hashes->Hash(capture.folder / input) + "\n";
+  }
+  return content;
 }
 
 // Earlier stages' manifests that no step of this run writes must be there.
@@ -125,15 +129,18 @@ void RequireEarlierResults(const Capture& capture, const std::vector<StageStep>&
 
 std::vector<NinjaEdge> Edges(const Capture& capture, const std::vector<StageStep>& steps,
                              bool force) {
+  HashCache hashes(capture.work() / ".hashes.json");
   std::vector<NinjaEdge> edges;
   for (const StageStep& step : steps) {
     NinjaEdge edge;
     edge.step = step;
     edge.program = RequireGlintProgram("glint-" + step.stage);
-    LookAtLastResult(capture, &edge);
+    LookAtLastResult(capture, &hashes, &edge);
+    edge.content = ContentOf(capture, step, &hashes);
     edge.always |= force;
     edges.push_back(std::move(edge));
   }
+  hashes.Save();
   return edges;
 }
 

@@ -6,6 +6,7 @@
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
+#include "pipeline/contract/json_file.h"
 
 namespace glint {
 namespace {
@@ -62,9 +63,8 @@ void WriteResponseCurve(const std::filesystem::path& file, const ResponseCurve& 
 }
 
 ResponseCurve ReadResponseCurve(const std::filesystem::path& file) {
-  const Json json = Json::parse(ReadTextFile(file, kMostBytes), nullptr, false);
-  if (json.is_discarded() || !json.is_object() ||
-      json.value("format", Json()) != "glint-response") {
+  const Json json = ReadJsonFile(file, kMend, kMostBytes);
+  if (!json.is_object() || json.value("format", Json()) != "glint-response") {
     throw UserError(file, "", "no response curve (format: glint-response)", kMend);
   }
   if (json.value("version", Json()) != 1) {

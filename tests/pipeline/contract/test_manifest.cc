@@ -59,6 +59,34 @@ TEST_F(ManifestTest, AChangedOutputIsNoticed) {
   EXPECT_THAT(Complaint(), AllOf(HasSubstr("outputs[0].hash"), HasSubstr("out.txt")));
 }
 
+TEST_F(ManifestTest, AChangedDigitBreaksTheSeal) {
+  json_["data"]["distance_mm"] = 1.5;
+  EXPECT_THAT(Complaint(), AllOf(HasSubstr("seal"), HasSubstr("run the stage")));
+  json_.erase("seal");  // as other programs write it
+  EXPECT_EQ(Complaint(), "");
+}
+
+TEST_F(ManifestTest, NamesThatAreNoUtf8KeepTheirSeal) {
+  manifest_.data = {{"photo", "caf\xe9.jpg"}};
+  json_ = ToJson(manifest_);
+  const auto file =
+      folder_.Write("manifest.json", json_.dump(1, ' ', false, Json::error_handler_t::replace));
+  EXPECT_EQ(ReadManifest(file, "demo").stage, "demo");
+}
+
+TEST_F(ManifestTest, OutputsElsewhereAreRefused) {
+  json_["outputs"][0]["path"] = "../../out.txt";
+  EXPECT_THAT(Complaint(),
+              AllOf(HasSubstr("outputs[0].path"), HasSubstr("in the manifest's folder")));
+}
+
+TEST_F(ManifestTest, BracketsNestedVeryDeepAreRefused) {
+  const std::string text = std::string(100000, '[') + std::string(100000, ']');
+  const auto file = folder_.Write("manifest.json", text);
+  EXPECT_THAT(test::MessageOf<UserError>([&] { ReadManifest(file, "demo"); }),
+              HasSubstr("nested 100000 deep"));
+}
+
 TEST_F(ManifestTest, AnotherStageIsRefused) {
   json_["stage"] = "other";
   EXPECT_THAT(Complaint(), AllOf(HasSubstr("'other'"), HasSubstr("'demo'")));

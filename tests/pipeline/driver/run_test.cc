@@ -29,7 +29,7 @@ class RunTest : public testing::Test {
   RunTest() {
     const fs::path bin = folder_.path() / "bin";
     fs::create_directory(bin);
-    for (const char* name : {"glint", "glint-run", "glint-status", "glint-init"}) {
+    for (const char* name : {"glint", "glint-run", "glint-status", "glint-init", "glint-verify"}) {
       fs::copy_file(fs::path(GLINT_BIN_DIR) / name, bin / name);
     }
     for (const char* stage : {"calib", "rectify", "fit", "refine", "export", "report"}) {
@@ -109,6 +109,60 @@ TEST_F(RunTest, AChangedPhotographComputesAll) {
   RunJson();
   test::WriteAll(capture() / "photos/a.jpg", "other");
   EXPECT_EQ(RunJson().computed.size(), 6u);
+}
+
+// Hashes decide, not times: `mv`, `cp -p` and `rsync -a` bring old ones along.
+TEST_F(RunTest, WhatIsReplacedByAnOlderFileIsNoticed) {
+  RunJson();
+  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1000);
+  test::WriteAll(capture() / "photos/a.jpg", "older");
+  fs::last_write_time(capture() / "photos/a.jpg", long_ago);
+  EXPECT_EQ(RunJson().computed.size(), 6u);
+  EXPECT_THAT(RunJson().started, IsEmpty());
+  SetToml("[refine]\ngain = 2.0\n");
+  fs::last_write_time(capture() / "capture.toml", long_ago);
+  EXPECT_THAT(RunJson().computed, ElementsAre("refine", "export", "report"));
+  EXPECT_THAT(RunJson().started, IsEmpty());
+}
+
+TEST_F(RunTest, AFlippedByteInAnOutputThatKeepsItsTimeIsNoticed) {
+  RunJson();
+  const fs::path output = capture() / "glint/fit/result.txt";
+  const auto time = fs::last_write_time(output);
+  std::string bytes = test::ReadAll(output);
+  bytes[0] ^= 1;
+  test::WriteAll(output, bytes);
+  fs::last_write_time(output, time);
+  EXPECT_THAT(RunJson().computed, testing::Contains("fit"));
+  EXPECT_THAT(RunJson().started, IsEmpty());
+}
+
+TEST_F(RunTest, ADigitChangedInAManifestIsNoticed) {
+  RunJson();
+  std::string text = test::ReadAll(manifest("calib"));
+  const size_t at = text.find("\"stage_version\": ") + 17;
+  text[at] = text[at] == '9' ? '8' : '9';
+  test::WriteAll(manifest("calib"), text);
+  fs::last_write_time(manifest("calib"), fs::file_time_type::clock::now() - std::chrono::hours(1));
+  EXPECT_THAT(RunJson().computed, testing::Contains("calib"));
+}
+
+TEST_F(RunTest, VerifyNamesWhatHasChanged) {
+  RunJson();
+  EXPECT_EQ(Glint({"verify", capture().string()}).code, 0);
+  test::WriteAll(capture() / "photos/a.jpg", "other");
+  test::WriteAll(capture() / "glint/fit/result.txt", "other");
+  fs::remove(capture() / "glint/export/result.txt");
+  std::string text = test::ReadAll(manifest("rectify"));
+  text.insert(text.find("\"stage_version\": ") + 17, "1");
+  test::WriteAll(manifest("rectify"), text);
+  const Outcome outcome = Glint({"verify", capture().string()});
+  EXPECT_EQ(outcome.code, 1);
+  for (const char* said : {"a.jpg has changed", "output result.txt has changed",
+                           "output result.txt is missing", "changed after it was written"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(said));
+  }
+  EXPECT_EQ(Glint({"verify", (folder_.path() / "nothing").string()}).code, 2);
 }
 
 TEST_F(RunTest, AnAddedOrRemovedPhotographIsNoticed) {

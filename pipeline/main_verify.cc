@@ -1,0 +1,25 @@
+// glint-verify: whether results on disk are what their stages wrote.
+#include <cstdio>
+
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/program.h"
+#include "pipeline/driver/verify.h"
+
+int main(int argc, char** argv) {
+  std::filesystem::path folder = ".";
+  bool intact = true;
+  glint::OptionSet options;
+  options.AddPositional("CAPTURE", &folder, "folder of the capture", false);
+  const int code = glint::RunProgram(
+      argc, argv,
+      {"glint-verify",
+       "Compares every file below CAPTURE/glint, and what it was made from, with the hashes of the "
+       "manifests. Exit code 1: something has changed.",
+       GLINT_VERSION, ""},
+      &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
+        const glint::Verification verification = glint::VerifyCapture(folder);
+        intact = verification.intact();
+        return {verification.Text(), verification.ToJson()};
+      });
+  return code == 0 && !intact ? glint::kExitComputation : code;
+}
