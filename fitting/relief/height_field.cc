@@ -37,7 +37,7 @@ double HeightField::Lookup(double row, double column) const {
          v * ((1 - u) * at(r1, c0) + u * at(r1, c1));
 }
 
-HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane) {
+HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane, double longest_mm) {
   HeightField field;
   field.width = maps.width;
   field.height = maps.height;
@@ -67,6 +67,10 @@ HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane) {
       }
     }
   }
+  // Texels are as good as square (glint-rectify, glint-import).
+  const double texel_mm = std::sqrt(field.texel_x_mm * field.texel_y_mm);
+  const double screening =
+      longest_mm > 0 ? std::pow(2 * std::numbers::pi * texel_mm / longest_mm, 2) : 0;
   cv::Mat spectrum;
   cv::dct(divergence, spectrum);
   for (int row = 0; row < height; ++row) {
@@ -74,7 +78,7 @@ HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane) {
       const double eigenvalue = 2 * std::cos(std::numbers::pi * column / width) +
                                 2 * std::cos(std::numbers::pi * row / height) - 4;
       double& value = spectrum.at<double>(row, column);
-      value = row + column > 0 ? value / eigenvalue : 0.0;
+      value = row + column > 0 ? value / (eigenvalue - screening) : 0.0;
     }
   }
   cv::Mat solved;

@@ -26,8 +26,13 @@ struct HeightField {
 // (Frankot and Chellappa, "A method for enforcing integrability in shape from shading algorithms",
 // PAMI 1988, with Neumann's boundary in place of a periodic one). Slopes are at most
 // kMostReliefSlope.
+//
+// A small error that normals share adds up over long distances. With `longest_mm` above 0 the
+// sample is expected to be flat on larger scales: waves of that length are halved, longer ones
+// flattened, those of a third of it lose a tenth (a screened Poisson equation).
 inline constexpr double kMostReliefSlope = 5;  // 79°: a normal beyond says little about height
-HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane);
+HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane,
+                             double longest_mm = 0);
 
 // Normals of a height field, by central differences: [3·H·W], planar.
 std::vector<float> NormalsOf(const HeightField& field);

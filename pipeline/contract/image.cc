@@ -37,22 +37,20 @@ void Write(const std::filesystem::path& file, const OIIO::ImageSpec& spec, OIIO:
   if (!output->close()) fail(output->geterror());
 }
 
-// By way of memory: libpng's writer does not say when the disk is full.
-void WriteEncoded(const std::filesystem::path& file, const OIIO::ImageSpec& spec,
-                  OIIO::TypeDesc type, const void* interleaved) {
+std::string EncodedPng(const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* interleaved) {
   SetUpOiio();
   OIIO::Filesystem::IOVecOutput encoded;
-  const std::unique_ptr<OIIO::ImageOutput> output =
-      OIIO::ImageOutput::create(file.string(), &encoded);
+  const std::string name = "memory.png";
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name, &encoded);
   const auto fail = [&](const std::string& reason) {
-    throw EnvironmentError(file.string() + ": cannot encode the image: " + reason);
+    throw EnvironmentError("a PNG cannot be encoded: " + reason);
   };
   if (!output) fail(OIIO::geterror());
-  if (!output->open(file.string(), spec)) fail(output->geterror());
+  if (!output->open(name, spec)) fail(output->geterror());
   if (!output->write_image(type, interleaved)) fail(output->geterror());
   if (!output->close()) fail(output->geterror());
   const auto& bytes = encoded.buffer();
-  WriteFileAtomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 // Planar to interleaved in the order `order` (channel index for each written channel).
@@ -90,7 +88,12 @@ void WriteExr(const std::filesystem::path& file, const Image& image,
   Write(file, spec, OIIO::TypeFloat, interleaved.data());
 }
 
+// By way of memory: libpng's writer does not say when the disk is full.
 void WritePng(const std::filesystem::path& file, const Image& image, int bits) {
+  WriteFileAtomically(file, EncodePng(image, bits));
+}
+
+std::string EncodePng(const Image& image, int bits) {
   const int channels = static_cast<int>(image.channels.size());
   OIIO::ImageSpec spec(image.width, image.height, channels,
                        bits == 16 ? OIIO::TypeUInt16 : OIIO::TypeUInt8);
@@ -107,11 +110,8 @@ void WritePng(const std::filesystem::path& file, const Image& image, int bits) {
     rounded[i] = static_cast<std::uint16_t>(std::lround(value * scale));
     if (bits != 16) bytes[i] = static_cast<std::uint8_t>(rounded[i]);
   }
-  if (bits == 16) {
-    WriteEncoded(file, spec, OIIO::TypeUInt16, rounded.data());
-  } else {
-    WriteEncoded(file, spec, OIIO::TypeUInt8, bytes.data());
-  }
+  return bits == 16 ? EncodedPng(spec, OIIO::TypeUInt16, rounded.data())
+                    : EncodedPng(spec, OIIO::TypeUInt8, bytes.data());
 }
 
 ImageHeader ReadImageHeader(const std::filesystem::path& file) {

@@ -46,6 +46,8 @@ Image ReadExr(const std::filesystem::path& file,
 // no gamma is told, so that viewers show them as they show any picture (sRGB). Throws
 // EnvironmentError.
 void WritePng(const std::filesystem::path& file, const Image& image, int bits = 8);
+// The bytes of such a file.
+std::string EncodePng(const Image& image, int bits = 8);
 
 // Size and channels of any image, from its header alone. Throws UserError.
 struct ImageHeader {

@@ -65,6 +65,23 @@ void AddExportOptions(OptionSet* set, ExportOptions* options) {
   set->AddChoice("normal-y", &options->normal_y, {"+", "-"},
                  "direction of green in the normal map: + OpenGL, - DirectX");
   set->Add("metallic", &options->metallic, "base colour and metalness as well");
+  set->Add("height", &options->height, "height map, 16 bits, integrated from the normals");
+  set->AddRange(
+      "height-longest", &options->height_longest, 0, 100,
+      "longest waves that the height map keeps, of the sample's shorter side; small errors "
+      "that normals share make bowls of longer ones; 0: all");
+  set->Add("gltf", &options->gltf,
+           "the material on a plane of its true size, as a glTF file (.glb)");
+}
+
+MapPicture HeightPicture(const HeightField& field, std::array<double, 2>* range_mm) {
+  MapPicture picture{"height", "linear", Image(field.width, field.height, kGrey)};
+  const auto [low, high] = std::minmax_element(field.height_mm.begin(), field.height_mm.end());
+  *range_mm = {*low, *high};
+  const float range = std::max(*high - *low, 1e-6f);
+  std::transform(field.height_mm.begin(), field.height_mm.end(), picture.image.channel(0).begin(),
+                 [&](float h) { return (h - *low) / range; });
+  return picture;
 }
 
 float SrgbFromLinear(float linear) {

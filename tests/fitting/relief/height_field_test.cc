@@ -50,6 +50,30 @@ TEST_P(HeightFieldSizes, NormalsOfAReliefIntegrateToIt) {
 INSTANTIATE_TEST_SUITE_P(EvenAndOdd, HeightFieldSizes,
                          testing::Values(std::pair{64, 64}, std::pair{63, 80}, std::pair{81, 65}));
 
+// Waves of 2 mm stay what they are, a bowl as wide as the sample goes.
+TEST(HeightField, ScreeningFlattensWhatIsLong) {
+  const auto relief = [](double fine, double bowl) {
+    HeightField field{128, 128, 20.0 / 128, 20.0 / 128, {}};
+    for (int i = 0; i < 128 * 128; ++i) {
+      const double x = 20.0 * (i % 128) / 128, t = x / 20;
+      field.height_mm.push_back(
+          static_cast<float>(fine * std::sin(2 * M_PI * x / 2) + bowl * std::cos(M_PI * t)));
+    }
+    return field;
+  };
+  const auto rms = [](const HeightField& field) {
+    double squares = 0;
+    for (const float h : field.height_mm) squares += h * h / (128.0 * 128.0);
+    return std::sqrt(squares);
+  };
+  const SamplePlane plane{128, 128, 20, 20, TexelSampling::kPixelCentres};
+  const auto integrated = [&](double fine, double bowl) {
+    return IntegrateNormals(MapsOf(relief(fine, bowl)), plane, 6);
+  };
+  EXPECT_NEAR(rms(integrated(0.1, 0)), rms(relief(0.1, 0)), 0.2 * rms(relief(0.1, 0)));
+  EXPECT_LT(rms(integrated(0, 0.1)), 0.05 * rms(relief(0, 0.1)));
+}
+
 TEST(HeightField, AFlatSampleIsFlat) {
   SvbrdfMaps maps(9, 7);
   for (float& z : maps.plane(kNormalZ)) z = 1;

@@ -49,6 +49,20 @@ TEST(ExportTest, EncodesEachMapAsItsNameSays) {
   EXPECT_EQ(Named(pictures, "roughness").image.channels.size(), 1u);
 }
 
+TEST(ExportTest, HeightsAreBetweenItsLowestAndHighestPoint) {
+  HeightField field{2, 2, 1, 1, {-0.5f, 0.25f, 0.0f, 0.5f}};
+  std::array<double, 2> range_mm;
+  const MapPicture picture = HeightPicture(field, &range_mm);
+  EXPECT_NEAR(range_mm[0], -0.5, 1e-6);
+  EXPECT_NEAR(range_mm[1], 0.5, 1e-6);
+  for (size_t i = 0; i < 4; ++i) {
+    const double h = range_mm[0] + picture.image.samples[i] * (range_mm[1] - range_mm[0]);
+    EXPECT_NEAR(h, field.height_mm[i], 1e-6);
+  }
+  const HeightField flat{2, 2, 1, 1, {0, 0, 0, 0}};
+  for (const float h : HeightPicture(flat, &range_mm).image.samples) EXPECT_EQ(h, 0.0f);
+}
+
 TEST(ExportTest, MinusYMirrorsGreenOnly) {
   ExportOptions options;
   options.normal_y = "-";

@@ -1,0 +1,189 @@
+#include "pipeline/export/gltf_material.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "pipeline/contract/image.h"
+#include "pipeline/contract/json.h"
+#include "pipeline/export/export_maps.h"
+
+namespace glint {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
+
+const std::vector<std::string> kRgb = {"R", "G", "B"};
+constexpr int kFloat = 5126, kUnsignedShort = 5123;          // glTF's component types
+constexpr int kArrayBuffer = 34962, kElementBuffer = 34963;  // and buffer targets
+
+// Bytes that views refer to, each at a multiple of four.
+class Buffer {
+ public:
+  // Index of the view that holds the bytes.
+  int Add(std::string_view bytes, int target = 0) {
+    bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');
+    Json view = {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes.size()}};
+    if (target != 0) view["target"] = target;
+    views_.push_back(view);
+    bytes_ += bytes;
+    return static_cast<int>(views_.size()) - 1;
+  }
+  template <class T>
+  int AddValues(const std::vector<T>& values, int target) {
+    return Add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)}, target);
+  }
+  const std::string& bytes() const { return bytes_; }
+  const Json& views() const { return views_; }
+
+ private:
+  std::string bytes_;
+  Json views_ = Json::array();
+};
+
+Image BaseColor(const SvbrdfMaps& maps, const ReflectanceConvention& convention) {
+  Image image(maps.width, maps.height, kRgb);
+  const bool whole = convention.diffuse_weight == DiffuseWeight::kOne;
+  for (size_t i = 0; i < maps.texels(); ++i) {
+    float most = 0;
+    for (int c = 0; c < 3; ++c) most = std::max(most, maps.plane(kSpecularR + c)[i]);
+    const float left = whole ? std::max(1e-3f, 1 - most) : 1.0f;
+    for (int c = 0; c < 3; ++c) {
+      image.channel(c)[i] = SrgbFromLinear(maps.plane(kDiffuseR + c)[i] / left);
+    }
+  }
+  return image;
+}
+
+// Roughness in green; red (occlusion) 1, blue (metalness) 0.
+Image OcclusionRoughnessMetallic(const SvbrdfMaps& maps) {
+  Image image(maps.width, maps.height, kRgb);
+  std::fill(image.channel(0).begin(), image.channel(0).end(), 1.0f);
+  std::copy(maps.plane(kRoughness).begin(), maps.plane(kRoughness).end(), image.channel(1).begin());
+  return image;
+}
+
+Image Normal(const SvbrdfMaps& maps) {
+  Image image(maps.width, maps.height, kRgb);
+  for (int c = 0; c < 3; ++c) {
+    std::transform(maps.plane(kNormalX + c).begin(), maps.plane(kNormalX + c).end(),
+                   image.channel(c).begin(), [](float n) { return 0.5f * n + 0.5f; });
+  }
+  return image;
+}
+
+// F0 over the largest of the sample.
+Image SpecularColor(const SvbrdfMaps& maps, float largest) {
+  Image image(maps.width, maps.height, kRgb);
+  for (int c = 0; c < 3; ++c) {
+    std::transform(maps.plane(kSpecularR + c).begin(), maps.plane(kSpecularR + c).end(),
+                   image.channel(c).begin(),
+                   [largest](float f0) { return SrgbFromLinear(f0 / largest); });
+  }
+  return image;
+}
+
+Json MaterialJson(const std::string& name, float largest_f0) {
+  const double factor = largest_f0 / kGltfF0;
+  return {{"name", name},
+          {"doubleSided", true},
+          {"pbrMetallicRoughness",
+           {{"baseColorTexture", {{"index", 0}}},
+            {"metallicRoughnessTexture", {{"index", 1}}},
+            {"metallicFactor", 0.0}}},
+          {"normalTexture", {{"index", 2}}},
+          {"extensions",
+           {{"KHR_materials_specular",
+             {{"specularColorFactor", {factor, factor, factor}},
+              {"specularColorTexture", {{"index", 3}}}}}}}};
+}
+
+// A plane of four corners; texture coordinates run from the upper left.
+Json PlaneAccessors(double width_m, double height_m, Buffer* buffer) {
+  const auto x = static_cast<float>(width_m / 2), y = static_cast<float>(height_m / 2);
+  const std::vector<float> positions = {-x, y, 0, x, y, 0, -x, -y, 0, x, -y, 0};
+  const std::vector<float> normals = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+  const std::vector<float> tangents = {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};
+  const std::vector<float> coordinates = {0, 0, 1, 0, 0, 1, 1, 1};
+  const std::vector<std::uint16_t> triangles = {0, 2, 1, 1, 2, 3};
+  Json accessors = Json::array();
+  const auto add = [&](int view, int component, int count, const char* type) {
+    accessors.push_back(
+        {{"bufferView", view}, {"componentType", component}, {"count", count}, {"type", type}});
+  };
+  add(buffer->AddValues(positions, kArrayBuffer), kFloat, 4, "VEC3");
+  accessors[0]["min"] = {-x, -y, 0};
+  accessors[0]["max"] = {x, y, 0};
+  add(buffer->AddValues(normals, kArrayBuffer), kFloat, 4, "VEC3");
+  add(buffer->AddValues(tangents, kArrayBuffer), kFloat, 4, "VEC4");
+  add(buffer->AddValues(coordinates, kArrayBuffer), kFloat, 4, "VEC2");
+  add(buffer->AddValues(triangles, kElementBuffer), kUnsignedShort, 6, "SCALAR");
+  return accessors;
+}
+
+void AppendChunk(const char type[4], std::string bytes, char padding, std::string* file) {
+  bytes.resize((bytes.size() + 3) / 4 * 4, padding);
+  const auto length = static_cast<std::uint32_t>(bytes.size());
+  file->append(reinterpret_cast<const char*>(&length), 4);
+  file->append(type, 4);
+  file->append(bytes);
+}
+
+}  // namespace
+
+std::string GlbOf(const GltfMaterial& material, const SvbrdfMaps& maps,
+                  const ReflectanceConvention& convention) {
+  float largest = static_cast<float>(kGltfF0);
+  for (int c = 0; c < 3; ++c) {
+    for (const float f0 : maps.plane(kSpecularR + c)) largest = std::max(largest, f0);
+  }
+  Buffer buffer;
+  const Json accessors =
+      PlaneAccessors(material.width_mm / 1000, material.height_mm / 1000, &buffer);
+  Json images = Json::array(), textures = Json::array();
+  for (const auto& [name, image] :
+       {std::pair{"basecolor", BaseColor(maps, convention)},
+        std::pair{"occlusion_roughness_metallic", OcclusionRoughnessMetallic(maps)},
+        std::pair{"normal", Normal(maps)},
+        std::pair{"specularcolor", SpecularColor(maps, largest)}}) {
+    textures.push_back({{"source", images.size()}, {"sampler", 0}});
+    images.push_back({{"name", material.name + "_" + name},
+                      {"mimeType", "image/png"},
+                      {"bufferView", buffer.Add(EncodePng(image))}});
+  }
+  constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kRepeat = 10497;
+  const Json json = {
+      {"asset", {{"version", "2.0"}, {"generator", "Glint"}}},
+      {"extensionsUsed", {"KHR_materials_specular"}},
+      {"scene", 0},
+      {"scenes", {{{"nodes", {0}}}}},
+      {"nodes", {{{"mesh", 0}, {"name", material.name}}}},
+      {"meshes",
+       {{{"name", material.name},
+         {"primitives",
+          {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}, {"TANGENT", 2}, {"TEXCOORD_0", 3}}},
+            {"indices", 4},
+            {"material", 0}}}}}}},
+      {"materials", {MaterialJson(material.name, largest)}},
+      {"samplers",
+       {{{"magFilter", kLinear},
+         {"minFilter", kLinearMipmapLinear},
+         {"wrapS", kRepeat},
+         {"wrapT", kRepeat}}}},
+      {"textures", textures},
+      {"images", images},
+      {"accessors", accessors},
+      {"bufferViews", buffer.views()},
+      {"buffers", {{{"byteLength", buffer.bytes().size()}}}}};
+  std::string chunks;
+  AppendChunk("JSON", json.dump(-1, ' ', false, Json::error_handler_t::replace), ' ', &chunks);
+  AppendChunk("BIN\0", buffer.bytes(), '\0', &chunks);
+  const std::uint32_t header[3] = {0x46546C67u, 2u, static_cast<std::uint32_t>(12 + chunks.size())};
+  return std::string(reinterpret_cast<const char*>(header), sizeof header) + chunks;
+}
+
+}  // namespace glint

@@ -1,0 +1,28 @@
+// The material as a binary glTF 2.0 file (.glb): a plane of the sample's true size with its maps,
+// which Blender, three.js, Godot, Unreal and Unity read as it is.
+//
+// glTF's dielectric has base colour and F0 = 0.04 · specularColor (KHR_materials_specular), which
+// may be any colour; metalness is 0 throughout and metals are dielectrics of high F0. Its diffuse
+// lobe is weighted by 1 − max(F); where Glint's is not (convention "diffuse=one"), base colour is
+// divided by 1 − max(F0), so that both agree at normal incidence as far as base colour can reach 1.
+#pragma once
+
+#include <string>
+
+#include "fitting/reflectance/convention.h"
+#include "fitting/reflectance/svbrdf_maps.h"
+
+namespace glint {
+
+inline constexpr double kGltfF0 = 0.04;  // of glTF's default index of refraction, 1.5
+
+struct GltfMaterial {
+  std::string name;  // of material and mesh
+  double width_mm = 0, height_mm = 0;
+};
+
+// The file's bytes. The plane lies in x and y about the origin and looks along +z; metres.
+std::string GlbOf(const GltfMaterial& material, const SvbrdfMaps& maps,
+                  const ReflectanceConvention& convention);
+
+}  // namespace glint

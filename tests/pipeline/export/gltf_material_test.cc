@@ -1,0 +1,123 @@
+#include "pipeline/export/gltf_material.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "pipeline/contract/image.h"
+#include "pipeline/contract/json.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+constexpr int kSize = 16;
+
+SvbrdfMaps Maps() {
+  SvbrdfMaps maps(kSize, kSize);
+  const float planes[] = {0.0f, 0.6f, 0.8f, 0.2f, 0.4f, 0.1f, 0.04f, 0.3f, 0.5f, 0.35f};
+  for (int p = 0; p < kSvbrdfPlanes; ++p) {
+    std::fill(maps.plane(p).begin(), maps.plane(p).end(), planes[p]);
+  }
+  for (int c = 0; c < 3; ++c) maps.plane(kSpecularR + c)[7] = 0.8f;
+  return maps;
+}
+
+float LinearFromSrgb(float v) {
+  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+}
+
+class GltfTest : public testing::Test {
+ protected:
+  // Reads a .glb as the specification says.
+  void Read(const std::string& bytes) {
+    std::uint32_t header[3], length = 0;
+    ASSERT_GE(bytes.size(), 20u);
+    std::memcpy(header, bytes.data(), sizeof header);
+    EXPECT_EQ(bytes.substr(0, 4), "glTF");
+    EXPECT_EQ(header[1], 2u);
+    EXPECT_EQ(header[2], bytes.size());
+    std::memcpy(&length, bytes.data() + 12, 4);
+    EXPECT_EQ(bytes.substr(16, 4), "JSON");
+    EXPECT_EQ(length % 4, 0u);
+    json_ = Json::parse(bytes.substr(20, length));
+    const size_t binary = 20 + length;
+    std::memcpy(&length, bytes.data() + binary, 4);
+    EXPECT_EQ(bytes.substr(binary + 4, 4), std::string("BIN\0", 4));
+    EXPECT_EQ(length % 4, 0u);
+    binary_ = bytes.substr(binary + 8);
+    EXPECT_EQ(binary_.size(), length);
+    EXPECT_LE(json_["buffers"][0]["byteLength"].get<size_t>(), length);
+  }
+  std::string View(const Json& index) const {
+    const Json& view = json_["bufferViews"][index.get<size_t>()];
+    EXPECT_EQ(view["byteOffset"].get<size_t>() % 4, 0u);
+    return binary_.substr(view["byteOffset"].get<size_t>(), view["byteLength"].get<size_t>());
+  }
+  // One texel of the texture that the material names, encoded.
+  float Texel(const Json& texture, int channel, size_t texel) {
+    const Json& source = json_["textures"][texture["index"].get<size_t>()]["source"];
+    const auto file = folder_.path() / "texture.png";
+    test::WriteAll(file, View(json_["images"][source.get<size_t>()]["bufferView"]));
+    return ReadPhoto(file).image.channel(channel)[texel];
+  }
+
+  test::TemporaryFolder folder_;
+  Json json_;
+  std::string binary_;
+};
+
+TEST_F(GltfTest, ThePlaneHasTheSamplesSizeInMetres) {
+  Read(GlbOf({"wood", 120, 80}, Maps(), ReflectanceConvention::Photograph()));
+  const Json& primitive = json_["meshes"][0]["primitives"][0];
+  const Json& positions = json_["accessors"][primitive["attributes"]["POSITION"].get<size_t>()];
+  EXPECT_NEAR(positions["max"][0].get<double>() - positions["min"][0].get<double>(), 0.12, 1e-6);
+  EXPECT_NEAR(positions["max"][1].get<double>() - positions["min"][1].get<double>(), 0.08, 1e-6);
+  const std::string corners = View(positions["bufferView"]);
+  ASSERT_EQ(corners.size(), 4 * 3 * sizeof(float));
+  float first[3];  // upper left, where the maps' first texel is
+  std::memcpy(first, corners.data(), sizeof first);
+  EXPECT_FLOAT_EQ(first[0], -0.06f);
+  EXPECT_FLOAT_EQ(first[1], 0.04f);
+  EXPECT_EQ(json_["nodes"][json_["scenes"][0]["nodes"][0].get<size_t>()]["mesh"], 0);
+}
+
+// What glTF's dielectric is made of, put together again.
+TEST_F(GltfTest, TexturesSayWhatTheMapsSay) {
+  for (const bool whole : {true, false}) {
+    const ReflectanceConvention convention =
+        whole ? ReflectanceConvention::Photograph() : ReflectanceConvention::MaterialGan();
+    Read(GlbOf({"wood", 120, 80}, Maps(), convention));
+    const Json& material = json_["materials"][0];
+    const Json& base = material["pbrMetallicRoughness"];
+    const Json& specular = material["extensions"]["KHR_materials_specular"];
+    const SvbrdfMaps maps = Maps();
+    for (const size_t texel : {size_t{3}, size_t{7}}) {
+      float most = 0;
+      for (int c = 0; c < 3; ++c) {
+        const double f0 = kGltfF0 * specular["specularColorFactor"][c].get<double>() *
+                          LinearFromSrgb(Texel(specular["specularColorTexture"], c, texel));
+        EXPECT_NEAR(f0, maps.plane(kSpecularR + c)[texel], 0.004);
+        most = std::max(most, maps.plane(kSpecularR + c)[texel]);
+      }
+      for (int c = 0; c < 3; ++c) {
+        const double diffuse =
+            LinearFromSrgb(Texel(base["baseColorTexture"], c, texel)) * (whole ? 1 - most : 1);
+        const double reachable = whole ? 1 - most : 1;
+        EXPECT_NEAR(diffuse, std::min<double>(maps.plane(kDiffuseR + c)[texel], reachable), 0.004);
+      }
+      EXPECT_NEAR(Texel(base["metallicRoughnessTexture"], 1, texel), 0.35, 0.003);
+      EXPECT_EQ(base["metallicFactor"], 0.0);
+      EXPECT_NEAR(Texel(material["normalTexture"], 1, texel), 0.8, 0.003);  // +Y is up
+    }
+  }
+}
+
+TEST_F(GltfTest, TheSameMapsGiveTheSameBytes) {
+  const auto once = GlbOf({"wood", 120, 80}, Maps(), ReflectanceConvention::Photograph());
+  EXPECT_EQ(once, GlbOf({"wood", 120, 80}, Maps(), ReflectanceConvention::Photograph()));
+}
+
+}  // namespace
+}  // namespace glint
