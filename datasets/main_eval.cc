@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <tuple>
 
 #include "datasets/evaluation/calibration_error.h"
 #include "datasets/evaluation/experiment_verbs.h"
@@ -10,6 +11,7 @@
 #include "datasets/evaluation/light_verb.h"
 #include "datasets/evaluation/limits_verb.h"
 #include "datasets/evaluation/map_error.h"
+#include "datasets/evaluation/predicted_deviation.h"
 #include "datasets/evaluation/view_error.h"
 #include "datasets/synth/material_source.h"
 #include "pipeline/contract/calibration.h"
@@ -55,6 +57,23 @@ ProgramResult ReportMaps(const Table1Row& row, bool resampled) {
   return result;
 }
 
+// How often the truth lies within the deviations that refinement states: 68 and 95 % of normal
+// ones.
+void ReportCoverage(const SvbrdfMaps& maps, const SvbrdfMaps& truth, const StatedDeviations& stated,
+                    ProgramResult* result) {
+  result->text += "truth within the stated deviations (normal, diffuse, specular, roughness)\n";
+  for (const auto& [name, percent, widths] :
+       {std::tuple{"coverage_68", 68, 1.0}, std::tuple{"coverage_95", 95, 1.96}}) {
+    const Coverage share = CoverageOf(maps, truth, stated, widths);
+    result->json[name] = {{"normal", share.normal},
+                          {"diffuse", share.diffuse},
+                          {"specular", share.specular},
+                          {"roughness", share.roughness}};
+    result->text += fmt::format("{} % interval   {:6.3f} {:6.3f} {:6.3f} {:6.3f}\n", percent,
+                                share.normal, share.diffuse, share.specular, share.roughness);
+  }
+}
+
 int RunMaps(int argc, char** argv, const ProgramInfo& info) {
   fs::path estimate_path, truth_path;
   OptionSet options;
@@ -66,7 +85,14 @@ int RunMaps(int argc, char** argv, const ProgramInfo& info) {
     const SvbrdfMaps truth = ReadAnyMaps(truth_path, estimate.width);
     const bool resample = estimate.width != truth.width || estimate.height != truth.height;
     if (resample) estimate = ResampleSvbrdf(estimate, truth.width, truth.height);
-    return ReportMaps(EvaluateMaps(estimate, truth, common.threads), resample);
+    ProgramResult result = ReportMaps(EvaluateMaps(estimate, truth, common.threads), resample);
+    const fs::path manifest = estimate_path.parent_path() / "manifest.json";
+    if (!resample && fs::exists(manifest)) {
+      if (const auto stated = ReadStatedDeviations(manifest)) {
+        ReportCoverage(estimate, truth, *stated, &result);
+      }
+    }
+    return result;
   });
 }
 

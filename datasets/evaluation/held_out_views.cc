@@ -13,6 +13,7 @@
 #include "datasets/evaluation/their_rendering.h"
 #include "datasets/evaluation/view_error.h"
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/files.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/subprocess.h"
 
@@ -34,9 +35,8 @@ std::vector<std::string> Pieces(const std::string& text, char separator) {
 }
 
 bool IsNumber(const std::string& text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isdigit(c) != 0;
-  });
+  return !text.empty() && std::all_of(text.begin(), text.end(),
+                                      [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
 // Of a set: the views that a split lists and the others.
@@ -134,9 +134,8 @@ class SetRuns {
         const fs::path file = source_ / kTheirs / fs::path(view.photo).filename();
         if (!fs::exists(file)) return false;
         const RectifiedImage photograph = ReadRectifiedImage(set_, view);
-        const ViewError error =
-            CompareView(ReadTheirRendering(file, photograph.width, photograph.height), photograph,
-                        view.ldr);
+        const ViewError error = CompareView(
+            ReadTheirRendering(file, photograph.width, photograph.height), photograph, view.ldr);
         sum->log_l1 += error.log_l1 / static_cast<double>(list.size());
         sum->mse += error.mse / static_cast<double>(list.size());
       }
@@ -189,16 +188,17 @@ class SetRuns {
     const fs::path log = folder_ / split.folder / (prefix + method.name + ".log");
     if (!fs::exists(capture / "glint" / "rectify" / "manifest.json")) {
       LinkFolder(rectified_, capture / "glint" / "rectify");
-      const fs::path toml = rectified_.parent_path().parent_path() / "capture.toml";
-      if (!fs::exists(capture / "capture.toml")) LinkOrCopy(toml, capture / "capture.toml");
+      // Neither photographs nor board: its work begins at fit, with the programs' own options.
+      WriteFileAtomically(
+          capture / "capture.toml",
+          fmt::format("[sample]\nsize_mm = [{}, {}]\n", set_.plane.width_mm, set_.plane.height_mm));
     }
     std::string names;
     for (const RectifiedView& view : views.fitted) {
       names += (names.empty() ? "" : ",") + view.name;
     }
-    Program(At(programs, "glint-fit"),
-            {capture.string(), "--method", method.fit, "--views", names}, method.fit_arguments,
-            log);
+    Program(At(programs, "glint-fit"), {capture.string(), "--method", method.fit, "--views", names},
+            method.fit_arguments, log);
     if (!method.refine) return {capture / "glint" / "fit" / "manifest.json", false};
     Program(At(programs, "glint-refine"), {capture.string()}, method.refine_arguments, log);
     return {capture / "glint" / "refine" / "manifest.json", true};

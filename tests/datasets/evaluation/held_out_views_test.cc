@@ -116,9 +116,7 @@ class StatedDeviationsTest : public testing::Test {
     view_.view = DirView(0.3, 0.2);
     view_.ldr = false;
   }
-  std::vector<float> Deviation() const {
-    return PredictedDeviation(fit_, stated_, set_, view_, 1);
-  }
+  std::vector<float> Deviation() const { return PredictedDeviation(fit_, stated_, set_, view_, 1); }
   FittedMaps fit_;
   StatedDeviations stated_;
   RectifiedSet set_;

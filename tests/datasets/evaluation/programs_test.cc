@@ -30,6 +30,14 @@ class ProgramsTest : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(ProgramsTest, AnUnknownInstructionSetIsRefused) {
+  ::setenv("GLINT_KERNEL", "xyz", 1);
+  const Outcome outcome = Synth({"views", "procedural:1", Path("views"), "--count", "1"});
+  ::unsetenv("GLINT_KERNEL");
+  EXPECT_NE(outcome.code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("GLINT_KERNEL: found 'xyz'"));
+}
+
 TEST_F(ProgramsTest, MaterialIsWrittenListedAndCompared) {
   const Outcome list = Synth({"material", "--list"});
   EXPECT_EQ(list.code, 0);
