@@ -87,7 +87,8 @@ RunRowsFunction<double> RunRows<double>(InstructionSet set);
 
 bool Available(InstructionSet set);  // on this processor
 // The best set of this processor, or the one that the environment variable GLINT_KERNEL names (one
-// of Name's; baseline if it is not available), read once. Sets differ in the last bits of results.
+// of Name's), read once. Sets differ in the last bits of results. Throws std::runtime_error for a
+// name that is none, or of a set that this processor lacks.
 InstructionSet BestInstructionSet();
 const char* Name(InstructionSet set);
 

@@ -1,5 +1,7 @@
 #include <cstdlib>
 #include <cstring>
+#include <stdexcept>
+#include <string>
 
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/render/kernel.h"
@@ -39,7 +41,8 @@ InstructionSet ChooseInstructionSet() {
   for (const InstructionSet set : kBestFirst) {
     if (Available(set) && (wanted == nullptr || std::strcmp(wanted, Name(set)) == 0)) return set;
   }
-  return InstructionSet::kBaseline;
+  throw std::runtime_error(std::string("GLINT_KERNEL: found '") + wanted +
+                           "'; use avx512, avx2 or baseline, as far as this processor has them");
 }
 
 }  // namespace

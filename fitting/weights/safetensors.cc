@@ -1,6 +1,7 @@
 #include "fitting/weights/safetensors.h"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -67,8 +68,21 @@ TensorRecord ReadRecord(const std::filesystem::path& path, const std::string& na
   return record;
 }
 
+// A network with one of these gives maps of one value, and nothing says why.
+void RequireFinite(const std::filesystem::path& path, const TensorRecord& record) {
+  if (record.dtype != "F32" && record.dtype != "BF16") return;
+  for (const float value : RecordValues(record)) {
+    if (!std::isfinite(value)) {
+      Fail(path, "tensor " + record.name, "a value that is not finite");
+    }
+  }
+}
+
 std::vector<std::byte> ReadAll(const std::filesystem::path& path) {
   std::error_code error;
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    Fail(path, "file", "something that is not a file", "give the path of a weights file");
+  }
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   std::ifstream in(path, std::ios::binary);
   if (error || !in) {
@@ -143,6 +157,7 @@ TensorFile ReadTensorFile(const std::filesystem::path& path) {
     Fail(path, "header", "brackets nested " + std::to_string(depth) + " deep");
   }
   TensorFile file;
+  std::size_t held = 0;  // a small file must not become a large one in memory
   try {
     const Json header = Json::parse(text, text + length);
     if (!header.is_object()) Fail(path, "header", "JSON that is not an object");
@@ -151,6 +166,9 @@ TensorFile ReadTensorFile(const std::filesystem::path& path) {
         file.metadata = entry.get<std::map<std::string, std::string>>();
       } else {
         file.tensors.push_back(ReadRecord(path, name, entry, data));
+        held += file.tensors.back().bytes.size();
+        if (held > data.size()) Fail(path, "tensor " + name, "bytes that other tensors have too");
+        RequireFinite(path, file.tensors.back());
       }
     }
   } catch (const Json::exception&) {

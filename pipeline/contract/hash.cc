@@ -26,6 +26,11 @@ std::string HashBytes(std::string_view bytes) {
 }
 
 std::string HashFile(const std::filesystem::path& file) {
+  // Devices and pipes have no end, or wait for someone to write.
+  std::error_code error;
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error)) {
+    throw UserError(file, "", "something that is not a file", "give the path of a file");
+  }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
                                                                &std::fclose);
   const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),

@@ -45,6 +45,11 @@ std::string Reason(int code) {
   return text;
 }
 
+// What cameras write. Playlists and scripts (HLS, ffconcat) are none: they name other files to
+// read.
+constexpr char kContainers[] =
+    "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,asf,flv,mxf,h264,hevc";
+
 // An opened file and its first video stream.
 class Video {
  public:
@@ -55,7 +60,12 @@ class Video {
       throw UserError(file, "", "no such file", "check the path");
     }
     AVFormatContext* context = nullptr;
-    if (const int code = avformat_open_input(&context, file.c_str(), nullptr, nullptr); code < 0) {
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "format_whitelist", kContainers, 0);
+    av_dict_set(&options, "protocol_whitelist", "file", 0);
+    const int code = avformat_open_input(&context, file.c_str(), nullptr, &options);
+    av_dict_free(&options);
+    if (code < 0) {
       throw UserError(file, "",
                       "no video that can be read (" + Reason(code) +
                           "); one that was cut off while it was copied looks like this",

@@ -93,10 +93,24 @@ TEST_F(Safetensors, HeadersThatLieAreRefused) {
                         R"("data_offsets":[0,16]}})"),
             "");
   EXPECT_NE(with_header(R"({"a":{"dtype":"F32","shape":[4],"data_offsets":[16,0]}})"), "");
+  EXPECT_NE(with_header(R"({"a":{"dtype":"F32","shape":[4],"data_offsets":[0,16]},)"
+                        R"("b":{"dtype":"F32","shape":[4],"data_offsets":[0,16]}})"),
+            "");
+  EXPECT_NE(with_header(std::string(100000, '[')), "");
   EXPECT_NE(with_header(R"({"a":3})"), "");
   EXPECT_NE(with_header("[]"), "");
   EXPECT_NE(with_header("{"), "");
   EXPECT_EQ(with_header(R"({"a":{"dtype":"F32","shape":[4],"data_offsets":[0,16]}})"), "");
+}
+
+TEST_F(Safetensors, ValuesThatAreNotFiniteAreRefused) {
+  TensorFile file;
+  const float values[2] = {1.0f, std::nanf("")};
+  for (const bool as_bf16 : {false, true}) {
+    file.tensors = {MakeRecord("w", {2}, values, as_bf16)};
+    WriteTensorFile(path_, file);
+    EXPECT_THAT(Message(), testing::HasSubstr("not finite")) << as_bf16;
+  }
 }
 
 TEST_F(Safetensors, AHugeHeaderLengthIsRefused) {
@@ -104,6 +118,15 @@ TEST_F(Safetensors, AHugeHeaderLengthIsRefused) {
   std::memset(bytes.data(), 0xff, 8);
   test::WriteAll(path_, bytes);
   EXPECT_THAT(Message(), testing::HasSubstr("header"));
+}
+
+TEST(SafetensorsFiles, DevicesAreRefusedWithoutReadingThem) {
+  try {
+    ReadTensorFile("/dev/zero");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("not a file"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(Safetensors, AMissingFileIsNamed) {

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
@@ -85,6 +86,18 @@ TEST_F(ManifestTest, BracketsNestedVeryDeepAreRefused) {
   const auto file = folder_.Write("manifest.json", text);
   EXPECT_THAT(test::MessageOf<UserError>([&] { ReadManifest(file, "demo"); }),
               HasSubstr("nested 100000 deep"));
+}
+
+// They have no end, or wait for someone to write.
+TEST_F(ManifestTest, DevicesAndPipesAreRefusedWithoutReadingThem) {
+  const auto pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::filesystem::path& file : {pipe, std::filesystem::path("/dev/zero")}) {
+    EXPECT_THAT(test::MessageOf<UserError>([&] { HashFile(file); }),
+                HasSubstr("something that is not a file"));
+    EXPECT_THAT(test::MessageOf<UserError>([&] { ReadManifest(file, "demo"); }),
+                HasSubstr("something that is not a file"));
+  }
 }
 
 TEST_F(ManifestTest, AnotherStageIsRefused) {

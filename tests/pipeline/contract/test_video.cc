@@ -57,6 +57,22 @@ TEST(Video, AnyFrameIsReadExactlyInAnyOrder) {
   }
 }
 
+// Playlists and scripts would have other files read than the capture's, which nothing hashes.
+TEST(Video, PlaylistsAndScriptsUnderAVideosNameAreRefused) {
+  const test::TemporaryFolder folder;
+  WriteVideo(folder / "real.avi", "MJPG");
+  const std::string real = (folder / "real.avi").string();
+  const auto hls = folder.Write(
+      "hls.mp4", "#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\n" + real + "\n#EXT-X-ENDLIST\n");
+  const auto script = folder.Write("script.mp4", "ffconcat version 1.0\nfile '" + real + "'\n");
+  for (const auto& file : {hls, script}) {
+    EXPECT_THAT(test::MessageOf<UserError>([&] { ReadVideoInfo(file); }),
+                HasSubstr("no video that can be read"))
+        << file;
+  }
+  EXPECT_EQ(ReadVideoInfo(folder / "real.avi").frames, kFrames);
+}
+
 TEST(Video, OneThatIsHeldUprightIsTurned) {
   const test::TemporaryFolder folder;
   WriteVideo(folder / "a.mp4", "mp4v");
