@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fitting/view_correction/deviating_view.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/manifest.h"
@@ -65,7 +66,7 @@ std::optional<StatedDeviations> ReadStatedDeviations(const fs::path& manifest) {
   const fs::path file = manifest.parent_path() / "confidence.exr";
   if (!fs::exists(file)) return std::nullopt;
   const Image image = ReadExr(file);
-  StatedDeviations stated{image.width, image.height, {}, 0};
+  StatedDeviations stated{image.width, image.height, {}, 0, 0, 0};
   for (const StatedPlane& plane : kStated) {
     const int index = image.ChannelIndex(plane.channel);
     if (index < 0) {
@@ -76,6 +77,8 @@ std::optional<StatedDeviations> ReadStatedDeviations(const fs::path& manifest) {
   }
   const Manifest refined = ReadManifest(manifest);
   stated.residual_sigma = refined.metrics.value("residual_sigma", 0.0);
+  stated.exposure_spread = refined.metrics.value("exposure_spread", 0.0);
+  stated.light_spread = refined.metrics.value("light_spread", 0.0);
   return stated;
 }
 
@@ -88,16 +91,34 @@ std::vector<float> PredictedDeviation(const FittedMaps& fit, const StatedDeviati
   }
   std::vector<double> variance(3 * fit.maps.texels(),
                                stated.residual_sigma * stated.residual_sigma);
-  for (size_t i = 0; i < kStated.size(); ++i) {
-    FittedMaps more = fit, less = fit;
-    more.maps = Moved(fit.maps, stated, i, 1);
-    less.maps = Moved(fit.maps, stated, i, -1);
-    const std::vector<float> above = RenderFit(more, set, view, threads);
-    const std::vector<float> below = RenderFit(less, set, view, threads);
+  const auto add = [&](const FittedMaps& more, const RectifiedView& view_of_more,
+                       const FittedMaps& less, const RectifiedView& view_of_less) {
+    const std::vector<float> above = RenderFit(more, set, view_of_more, threads);
+    const std::vector<float> below = RenderFit(less, set, view_of_less, threads);
     for (size_t k = 0; k < variance.size(); ++k) {
       const double half = 0.5 * (Log(above[k], view.ldr) - Log(below[k], view.ldr));
       variance[k] += half * half;
     }
+  };
+  for (size_t i = 0; i < kStated.size(); ++i) {
+    FittedMaps more = fit, less = fit;
+    more.maps = Moved(fit.maps, stated, i, 1);
+    less.maps = Moved(fit.maps, stated, i, -1);
+    add(more, view, less, view);
+  }
+  const DeviationValues spreads = {stated.exposure_spread, stated.light_spread,
+                                   stated.light_spread};
+  const bool known = fit.corrections.contains(view.name);
+  for (size_t i = 0; i < spreads.size() && !known; ++i) {
+    if (!(spreads[i] > 0)) continue;
+    const auto deviating = [&](double by) {
+      DeviationValues deviation{};
+      deviation[i] = by;
+      RectifiedView moved = view;
+      moved.view = Deviating(view.view, deviation);
+      return moved;
+    };
+    add(fit, deviating(spreads[i]), fit, deviating(-spreads[i]));
   }
   std::vector<float> deviation(variance.size());
   std::transform(variance.begin(), variance.end(), deviation.begin(),

@@ -66,10 +66,12 @@ struct Worker {
   Worker(const KernelOptions& options, const RefineOptions& refine, int views)
       : observations(views),
         search(options, refine.iterations, views, refine.starts),
-        differences(3 * static_cast<size_t>(views)) {}
+        differences(3 * static_cast<size_t>(views)),
+        nudged(kViewDeviations) {}
   TexelObservations observations;
   TexelSearch search;
   std::vector<double> differences;
+  std::vector<std::vector<double>> nudged;  // residuals, views a step further off
 };
 
 // One refinement in progress.
@@ -82,6 +84,9 @@ class Refiner {
  private:
   void EstimateModel();
   void MoveFlash();
+  void SetViews(const std::vector<DeviationValues>& deviations);
+  std::vector<DeviationProducts> OfViews(size_t texel, const TexelValues& values,
+                                         std::span<const int> views, Worker* worker);
   void SolveFromStarts();
   void SolveFromNeighbours(int half_pass);
   void Conclude();
@@ -97,6 +102,8 @@ class Refiner {
   std::vector<int> all_views_;
   RefineProblem problem_;   // views in canonical order
   std::vector<View> said_;  // those, with lights where they are said to be
+  // The problem with one deviation of every view a step further, where they are looked for.
+  std::vector<RefineProblem> nudged_;
   const SvbrdfMaps& start_;
   const RefineOptions& options_;
   const int threads_;
@@ -169,6 +176,7 @@ void Refiner::EstimateModel() {
     if (sampled.views == 0) return sampled;
     sampled.values = w.search.FromStart(w.observations, prior, from).solution.values;
     TexelGram& gram = sampled.gram;
+    if (!nudged_.empty()) sampled.of_views = OfViews(texel, sampled.values, views, &w);
     w.search.solver().Gram(w.observations, TexelPrior(), sampled.values, &gram);
     sampled.squares = gram[kTexelParameters][kTexelParameters];
     for (int i = 0; i < kTexelParameters; ++i) sampled.prior_diagonal[i] = -gram[i][i];
@@ -184,6 +192,9 @@ void Refiner::EstimateModel() {
     return Prediction{2 * w.search.solver().Cost(w.observations, TexelPrior(), values),
                       3 * w.observations.views()};
   };
+  solver.deviate = [&](const std::vector<DeviationValues>& deviations) { SetViews(deviations); };
+  if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);
+  SetViews(model_.deviations().values());
   for (int i = 0; options_.flash_offset > 0 && i < kFlashMoves; ++i) {
     model_.Begin(solver, threads_);
     MoveFlash();
@@ -207,10 +218,48 @@ void Refiner::MoveFlash() {
   FlashOffset more{0, 0, 0};
   for (size_t i = 0; i < 2; ++i) more[i] = -2 * distance_mm * tilt[i];
   for (size_t i = 0; i < 2; ++i) offset[i] += more[i];
-  for (size_t v = 0; v < problem_.views.size(); ++v) {
-    problem_.views[v].view = WithFlashOffset(said_[v], offset);
-  }
+  SetViews(model_.deviations().values());
   model_.Level();
+}
+
+// To the flash's offset as it is known, and single views' deviations beside it.
+void Refiner::SetViews(const std::vector<DeviationValues>& deviations) {
+  const auto set = [&](size_t v, const DeviationValues& deviation, RefineProblem* problem) {
+    const View flashed = WithFlashOffset(said_[v], result_.summary.flash_offset_mm);
+    problem->views[v].view = Deviating(flashed, deviation);
+  };
+  for (size_t v = 0; v < said_.size(); ++v) {
+    set(v, deviations[v], &problem_);
+    for (size_t i = 0; i < nudged_.size(); ++i) {
+      DeviationValues further = deviations[v];
+      further[i] += kDeviationStep;
+      set(v, further, &nudged_[i]);
+    }
+  }
+}
+
+// Leaves the texel's own observations in `worker`.
+std::vector<DeviationProducts> Refiner::OfViews(size_t texel, const TexelValues& values,
+                                                std::span<const int> views, Worker* worker) {
+  TexelSolver& solver = worker->search.solver();
+  std::vector<int> usable;
+  for (const int v : views) {
+    if (problem_.views[static_cast<size_t>(v)].mask[texel] >= 0.5f) usable.push_back(v);
+  }
+  for (size_t i = 0; i < nudged_.size(); ++i) {
+    GatherObservations(nudged_[i], start_, texel, views, &worker->observations);
+    solver.Cost(worker->observations, TexelPrior(), values);
+    std::vector<double>& residuals = worker->nudged[i];
+    residuals.clear();
+    for (int c = 0; c < 3; ++c) {
+      const double* row = solver.rows().row(c, KernelRows::kResidual);
+      residuals.insert(residuals.end(), row, row + usable.size());
+    }
+  }
+  GatherObservations(problem_, start_, texel, views, &worker->observations);
+  TexelGram gram;
+  solver.Gram(worker->observations, TexelPrior(), values, &gram);
+  return ProductsOf(solver.rows(), worker->nudged, usable);
 }
 
 TexelSolution Refiner::Current(size_t texel, const TexelPrior& prior, Worker* worker) {
@@ -322,6 +371,17 @@ void Refiner::Conclude() {
   for (size_t v = 0; v < views; ++v) {
     summary.view_loss[order_[v]] = total[1 + v] / total[1 + views + v];
   }
+  summary.light_offsets_mm.assign(views, {});
+  summary.exposures.assign(views, 1.0);
+  for (size_t v = 0; v < views && model_.deviations().any(); ++v) {
+    const View flashed = WithFlashOffset(said_[v], summary.flash_offset_mm);
+    const View& found = problem_.views[v].view;
+    for (size_t i = 0; i < 3; ++i) {
+      summary.light_offsets_mm[static_cast<size_t>(order_[v])][i] =
+          found.light_in_sample_mm[i] - flashed.light_in_sample_mm[i];
+    }
+    summary.exposures[static_cast<size_t>(order_[v])] = found.exposure / flashed.exposure;
+  }
   const auto share = [&](unsigned char flag) {
     const auto has = [flag](unsigned char o) { return (o & flag) != 0; };
     return static_cast<double>(std::count_if(origin_.begin(), origin_.end(), has)) /
@@ -349,6 +409,8 @@ std::string RefineOptions::Check() const {
   if (estimation_rounds < 0) return "estimation rounds must be at least 0";
   if (neighbour_passes < 0) return "neighbour passes must be at least 0";
   if (!(flash_offset >= 0.0)) return "the expected flash offset must be at least 0";
+  if (!(exposure_spread >= 0.0)) return "the expected exposure spread must be at least 0";
+  if (!(light_spread >= 0.0)) return "the expected light spread must be at least 0";
   if (!(prior >= 0.0)) return "the prior's weight must be at least 0";
   if (!(robust_scale > 0.0)) return "the robust scale must be above 0";
   return "";
@@ -360,8 +422,9 @@ std::string RefineSummary::BriefReport() const {
   text << "cost " << start_cost << " -> " << final_cost << " per texel, residuals "
        << 100 * residual_sigma << " % (model discrepancy " << 100 * discrepancy << " %), "
        << effective_views << " effective views, " << substances << " substances (roughness spread "
-       << roughness_spread << "), normals scatter " << normal_spread * 180 / M_PI << " deg, "
-       << 100.0 * converged << " % converged";
+       << roughness_spread << "), normals scatter " << normal_spread * 180 / M_PI << " deg, ";
+  if (exposure_spread > 0) text << "exposures scatter " << 100 * exposure_spread << " %, ";
+  text << 100.0 * converged << " % converged";
   return text.str();
 }
 

@@ -56,6 +56,10 @@ struct RefineOptions {
   // Standard deviation expected of the flash's place beside where it is said to be, relative to its
   // distance (flash_offset.h). 0: it is where it is said to be.
   double flash_offset = 0;
+  // Standard deviations expected of the logarithm of single views' exposures, and of their lights'
+  // places across their directions, relative to their distance (view_deviations.h). 0: as said.
+  double exposure_spread = 0;
+  double light_spread = 0;
   double prior = 1.0;         // factor on the priors' weight; 0: none
   double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
 
@@ -89,7 +93,12 @@ struct RefineSummary {
   double specular_spread = 0;            // … relative
   double normal_spread = 0;              // of n_x, n_y about 0, and between neighbours
   FlashOffset flash_offset_mm{0, 0, 0};  // by which the views' lights were moved
-  double converged = 0;                  // share of texels
+  // What single views deviate by: added to the lights beside `flash_offset_mm`, factors on
+  // exposures; and the spreads of both, estimated.
+  std::vector<Vec3d> light_offsets_mm;
+  std::vector<double> exposures;
+  double light_spread = 0, exposure_spread = 0;
+  double converged = 0;           // share of texels
   double other_start = 0;         // share of texels whose solution came from another start …
   double neighbour = 0;           // … or from a neighbour
   std::vector<double> view_loss;  // per view: mean |log(I + 0.01) − log(R + 0.01)|, NaN: masked

@@ -76,19 +76,51 @@ Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& vie
           {"roughness_spread", summary.roughness_spread},
           {"specular_spread", summary.specular_spread},
           {"normal_spread", summary.normal_spread},
+          {"exposure_spread", summary.exposure_spread},
+          {"light_spread", summary.light_spread},
           {"log_l1", usable > 0 ? sum / usable : 0.0},
           {"views", losses}};
 }
 
-// What was found and taken: data.corrections, by view, and its sizes among the metrics.
+// What each view is to be corrected by: what was found before refinement and, beside it, the views'
+// deviations that refinement found. Empty: nothing.
+std::vector<ViewCorrection> Corrections(const CorrectionResult& found,
+                                        const RefineSummary& summary) {
+  std::vector<ViewCorrection> corrections(summary.exposures.size());
+  if (found.taken) corrections = found.corrections.views;
+  bool any = found.taken;
+  for (size_t v = 0; v < corrections.size(); ++v) {
+    ViewCorrection deviation;
+    deviation.light_offset_mm = summary.light_offsets_mm[v];
+    deviation.exposure = summary.exposures[v];
+    any = any || !deviation.none();
+    for (size_t i = 0; i < 3; ++i) {
+      corrections[v].light_offset_mm[i] += deviation.light_offset_mm[i];
+    }
+    corrections[v].exposure *= deviation.exposure;
+  }
+  return any ? corrections : std::vector<ViewCorrection>();
+}
+
+// data.corrections, by view.
+void AddCorrections(const std::vector<ViewCorrection>& corrections,
+                    const std::vector<RectifiedView>& views, Json* data) {
+  if (corrections.empty()) return;
+  Json entries = Json::array();
+  for (size_t i = 0; i < views.size(); ++i) {
+    entries.push_back(JsonOf(views[i].name, corrections[i]));
+  }
+  (*data)["corrections"] = entries;
+}
+
+// What was found and taken before refinement: the room, and the corrections' sizes.
 // `light_scale_rgb`: of the views' power, as the fit found it.
-void AddCorrections(const CorrectionResult& found, const RectifiedSet& set,
-                    const std::vector<RectifiedView>& views, const Vec3d& light_scale_rgb,
-                    RefineStageResult* result) {
+void DescribeCorrection(const CorrectionResult& found, const RectifiedSet& set,
+                        const std::vector<RectifiedView>& views, const Vec3d& light_scale_rgb,
+                        RefineStageResult* result) {
   result->metrics["correction"] = {
       {"taken", found.taken}, {"cost_before", found.cost_before}, {"cost_after", found.cost_after}};
   if (!found.taken) return;
-  Json entries = Json::array();
   double turned_deg = 0, shifted = 0;
   bool moved = false;
   for (size_t i = 0; i < views.size(); ++i) {
@@ -96,9 +128,7 @@ void AddCorrections(const CorrectionResult& found, const RectifiedSet& set,
     turned_deg += LightTurnedDeg(views[i].view, c) / static_cast<double>(views.size());
     shifted += c.shifts.rms() / static_cast<double>(views.size());
     moved = moved || !c.none();
-    entries.push_back(JsonOf(views[i].name, c));
   }
-  result->data["corrections"] = entries;
   result->data["room_light"] = JsonOf(found.corrections.room);
   const Vec3d ambient = found.corrections.room.PlaneIrradiance();
   const TexelGeometry<double> centre =
@@ -154,6 +184,12 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "expected standard deviation of the flash's place beside where it is said to be, "
                 "relative to its distance, where the light was not calibrated; the offset is found "
                 "from the photographs, alike in all; 0: none");
+  set->AddRange("exposure-spread", &options->exposure_spread, 0, 1,
+                "expected standard deviation of single photographs' exposures (logarithm), where "
+                "the light was not calibrated; the spread and the exposures are found from the "
+                "photographs; 0: as they are said to be");
+  set->AddRange("light-spread", &options->light_spread, 0, 1,
+                "likewise of their lights' places across their directions, relative to distance");
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");
   set->Add("views", &options->views, "views to use, by name or photo (default: those of fit)");
@@ -210,7 +246,11 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
   {
     std::unique_ptr<Progress> bar;
     RefineOptions refine = options.refine;
-    refine.flash_offset = set.light_power_known ? 0 : options.flash_offset;
+    if (!set.light_power_known) {
+      refine.flash_offset = options.flash_offset;
+      refine.exposure_spread = options.exposure_spread;
+      refine.light_spread = options.light_spread;
+    }
     refined = Refine(ProblemOf(photographs), maps, refine, threads,
                      [&](std::int64_t done, std::int64_t total) {
                        if (!bar) bar = std::make_unique<Progress>("refine", total);
@@ -232,7 +272,8 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
                  {"views", result.views},
                  {"method", "refined"}};
   result.metrics = Metrics(refined.summary, views);
-  AddCorrections(result.correction, set, views, start.light_scale_rgb, &result);
+  AddCorrections(Corrections(result.correction, refined.summary), views, &result.data);
+  DescribeCorrection(result.correction, set, views, start.light_scale_rgb, &result);
   stage->Commit(result.data, result.metrics);
   return result;
 }

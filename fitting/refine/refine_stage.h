@@ -13,7 +13,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 12;
+inline constexpr int kRefineVersion = 13;
 
 struct RefineStageOptions {
   RefineOptions refine;
@@ -21,6 +21,9 @@ struct RefineStageOptions {
   // RefineOptions::flash_offset of sets whose light was not calibrated (of unknown power): phones'
   // flashes are 1 to 3 cm beside the lens, 20 to 40 cm away.
   double flash_offset = 0.05;
+  // Of the same sets, RefineOptions::exposure_spread and light_spread.
+  double exposure_spread = 0.1;
+  double light_spread = 0.02;
   std::vector<std::string> views;    // names of those to use; empty: those that fit used
   std::vector<std::string> exclude;  // names of those kept back
   std::filesystem::path from;        // maps to start from (svbrdf.exr); empty: the result of fit

@@ -44,6 +44,13 @@ Matrix9 InverseInformation(const SampledTexel& sampled) {
   return information.ldlt().solve(Matrix9::Identity());
 }
 
+// −1 … 1 along each axis.
+std::array<double, 2> PlaceOf(const SamplePlane& plane, size_t texel) {
+  const int column = static_cast<int>(texel) % plane.width;
+  const int row = static_cast<int>(texel) / plane.width;
+  return {2 * plane.x_mm(column) / plane.width_mm, 2 * plane.y_mm(row) / plane.height_mm};
+}
+
 // Median over the views of π·I/(E·NoL), the albedo of a matte texel: highlights are rare among
 // them.
 std::vector<float> MedianColour(const RefineProblem& problem) {
@@ -129,7 +136,9 @@ SampleModel::SampleModel(const RefineProblem& problem, const SvbrdfMaps& initial
       initial_errors_(ErrorsOfInitialisation(problem)),
       residuals_(problem, {}),
       substances_(MedianColour(problem), options.substances),
-      normal_spreads_(static_cast<size_t>(substances_.count()), kNormalSpread) {
+      normal_spreads_(static_cast<size_t>(substances_.count()), kNormalSpread),
+      deviations_(static_cast<int>(problem.views.size()),
+                  {options.exposure_spread, options.light_spread, options.light_spread}) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   means_.mean = InitialMeans(initial, substances_);
 }
@@ -215,6 +224,7 @@ void SampleModel::Fit(std::span<const int> views, int rounds, bool update_residu
     });
     UpdateSubstances(*sampling);
     if (tilts_) UpdateTilt(*sampling);
+    if (update_residuals) UpdateDeviations(*sampling);
     if (update_residuals && learns_normals_) UpdateNormalSpreads(*sampling);
     if (update_residuals) UpdateResiduals(*sampling);
   }
@@ -358,6 +368,22 @@ void SampleModel::UpdateTilt(const Sampling& sampling) {
   }
 }
 
+void SampleModel::UpdateDeviations(const Sampling& sampling) {
+  if (!deviations_.any()) return;
+  std::vector<TexelOfViews> texels;
+  for (size_t i = 0; i < sampling.solved.size(); ++i) {
+    const SampledTexel& solved = sampling.solved[i];
+    if (solved.views == 0) continue;
+    TexelOfViews& texel = texels.emplace_back();
+    texel.place = PlaceOf(problem_.plane, sampling.texels[i]);
+    Eigen::Map<Matrix9>(texel.inverse.data()) = InverseInformation(solved);
+    texel.products = &solved.of_views;
+  }
+  const double scale = residuals_.scale();
+  deviations_.Update(texels, SampleWorth(sampling.texels) / (scale * scale));
+  sampling.solver->deviate(deviations_.values());
+}
+
 double SampleModel::CrossValidate(const Sampling& sampling) const {
   const int views = static_cast<int>(all_views_.size()), folds = std::min(views, kMostFolds);
   Prediction sum;
@@ -451,6 +477,8 @@ void SampleModel::Describe(RefineSummary* summary) const {
   summary->substances = substances_.count();
   summary->roughness_spread = means_.roughness_spread;
   summary->specular_spread = means_.specular_spread;
+  summary->exposure_spread = deviations_.spreads()[kLogExposure];
+  summary->light_spread = deviations_.spreads()[kLightAcrossX];
   double squares = 0;
   for (size_t t = 0; t < initial_.texels(); ++t) squares += 1 / NormalPrecision(t);
   summary->normal_spread = std::sqrt(squares / static_cast<double>(initial_.texels()));

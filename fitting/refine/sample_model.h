@@ -10,6 +10,7 @@
 #include "fitting/refine/refine.h"
 #include "fitting/refine/residual_model.h"
 #include "fitting/refine/substances.h"
+#include "fitting/refine/view_deviations.h"
 #include "fitting/texel/texel_prior.h"
 
 namespace glint {
@@ -21,6 +22,7 @@ struct SampledTexel {
   double squares = 0;  // squared residuals g² of the photographs alone
   TexelGram gram{};    // by the physical values, prior included, in units of the residuals' scale²
   std::array<double, kTexelParameters> prior_diagonal{};  // what the prior added to its diagonal
+  std::vector<DeviationProducts> of_views;  // where deviations of views are looked for
 };
 
 // How well values predict views that they were not solved with.
@@ -38,6 +40,8 @@ struct SampleSolver {
   std::function<Prediction(size_t texel, const TexelValues& values, std::span<const int> views,
                            int worker)>
       predict;
+  // From now on views deviate so from what is said of them.
+  std::function<void(const std::vector<DeviationValues>& deviations)> deviate;
 };
 
 class SampleModel {
@@ -56,6 +60,7 @@ class SampleModel {
   const ResidualModel& residuals() const { return residuals_; }
   // The sample's mean n_x and n_y, as estimated with its lights where they are said to be.
   const std::array<double, 2>& tilt() const { return tilt_; }
+  const ViewDeviations& deviations() const { return deviations_; }
   // After the lights were moved to where the sample is level.
   void Level() { tilt_ = {0, 0}; }
 
@@ -76,6 +81,7 @@ class SampleModel {
   void UpdateNormalSpreads(const Sampling& sampling);
   double NormalPrecision(size_t texel) const;
   void UpdateTilt(const Sampling& sampling);
+  void UpdateDeviations(const Sampling& sampling);
   double SampleWorth(const std::vector<size_t>& texels) const;
   // Mean squared residual of held-out views.
   double CrossValidate(const Sampling& sampling) const;
@@ -101,6 +107,7 @@ class SampleModel {
   // Of n_x, n_y about the tilt, and about their neighbours' mean, by substance.
   std::vector<double> normal_spreads_;
   bool learns_normals_ = false;  // whether Fit estimates them
+  ViewDeviations deviations_;
 };
 
 }  // namespace glint

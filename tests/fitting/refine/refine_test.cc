@@ -29,6 +29,15 @@ double ShareWithin(const SvbrdfMaps& maps, const SvbrdfMaps& truth, int plane, d
   return static_cast<double>(within) / static_cast<double>(maps.texels());
 }
 
+// What a capture that nobody calibrated leaves open about its views.
+RefineOptions EverythingUnknown() {
+  RefineOptions options;
+  options.flash_offset = 0.05;
+  options.exposure_spread = 0.1;
+  options.light_spread = 0.02;
+  return options;
+}
+
 TEST(Refine, RecoversKnownMapsFromNoiseFreePhotographs) {
   const SyntheticScene scene = Photograph(QuarteredMaps(24, 1), 16);
   const SvbrdfMaps start = DisturbedMaps(scene.truth, 1.0f, 2);
@@ -84,13 +93,15 @@ TEST(Refine, NeverRaisesATexelsCost) {
 TEST(Refine, GivesTheSameBitsForAnyNumberOfThreads) {
   const SyntheticScene scene = Photograph(QuarteredMaps(40, 6), 5, 8);
   const SvbrdfMaps start = DisturbedMaps(scene.truth, 1.0f, 7);
-  const RefineResult one = Refine(scene.Problem(), start, {}, 1);
+  const RefineOptions options = EverythingUnknown();
+  const RefineResult one = Refine(scene.Problem(), start, options, 1);
   for (const int threads : {2, 3, 8}) {
-    const RefineResult several = Refine(scene.Problem(), start, {}, threads);
+    const RefineResult several = Refine(scene.Problem(), start, options, threads);
     EXPECT_EQ(several.maps.planes, one.maps.planes);
     EXPECT_EQ(several.confidence, one.confidence);
     EXPECT_EQ(several.summary.final_cost, one.summary.final_cost);
     EXPECT_EQ(several.summary.view_loss, one.summary.view_loss);
+    EXPECT_EQ(several.summary.exposures, one.summary.exposures);
   }
 }
 
@@ -98,13 +109,17 @@ TEST(Refine, DoesNotDependOnTheOrderOfPhotographs) {
   const SyntheticScene scene = Photograph(QuarteredMaps(16, 8), 7, 8);
   const SvbrdfMaps start = DisturbedMaps(scene.truth, 1.0f, 9);
   RefineProblem problem = scene.Problem();
-  const RefineResult forward = Refine(problem, start, {}, 1);
+  const RefineOptions options = EverythingUnknown();
+  const RefineResult forward = Refine(problem, start, options, 1);
   std::reverse(problem.views.begin(), problem.views.end());
-  const RefineResult backward = Refine(problem, start, {}, 1);
+  const RefineResult backward = Refine(problem, start, options, 1);
   EXPECT_EQ(forward.maps.planes, backward.maps.planes);
   std::vector<double> losses = backward.summary.view_loss;
   std::reverse(losses.begin(), losses.end());
   EXPECT_EQ(forward.summary.view_loss, losses);
+  std::vector<double> exposures = backward.summary.exposures;
+  std::reverse(exposures.begin(), exposures.end());
+  EXPECT_EQ(forward.summary.exposures, exposures);
 }
 
 TEST(Refine, LeavesMaskedTexelsOfAViewOut) {
@@ -310,6 +325,83 @@ TEST(Refine, LeavesAFlashWhereItStands) {
   // Within twice the error of the mean of normals that scatter by 0.17: 2.1 · 2 · 2 · 0.17 / 24.
   EXPECT_NEAR(found[0], 0, 0.06);
   EXPECT_NEAR(found[1], 0, 0.06);
+}
+
+double RootMeanSquareLog(const std::vector<double>& factors) {
+  double squares = 0;
+  for (const double factor : factors) squares += std::log(factor) * std::log(factor);
+  return std::sqrt(squares / static_cast<double>(factors.size()));
+}
+
+TEST(Refine, FindsTheExposuresOfSinglePhotographs) {
+  SyntheticScene scene = Photograph(QuarteredMaps(24, 26), 8);
+  const std::vector<double> truth = {1.2, 0.9, 1.05, 0.8, 1.1, 0.95, 1.0, 1.05};
+  double mean_log = 0;
+  for (const double t : truth) mean_log += std::log(t) / 8;
+  for (size_t v = 0; v < truth.size(); ++v) {
+    for (float& radiance : scene.photographs[v]) {
+      radiance *= static_cast<float>(truth[v] / std::exp(mean_log));
+    }
+  }
+  const SvbrdfMaps start = DisturbedMaps(scene.truth, 0.5f, 27);
+  RefineOptions options;
+  const double believed = MeanSquare(Refine(scene.Problem(), start, options, 1).maps, scene.truth,
+                                     kSpecularR, kRoughness);
+  options.exposure_spread = 0.1;
+  const RefineResult found = Refine(scene.Problem(), start, options, 1);
+  std::vector<double> left;
+  for (size_t v = 0; v < truth.size(); ++v) {
+    left.push_back(found.summary.exposures[v] * std::exp(mean_log) / truth[v]);
+  }
+  EXPECT_LT(RootMeanSquareLog(left), 0.02);
+  EXPECT_NEAR(found.summary.exposure_spread, 0.12, 0.04);
+  EXPECT_LT(MeanSquare(found.maps, scene.truth, kSpecularR, kRoughness), 0.3 * believed);
+}
+
+TEST(Refine, LeavesExposuresAndLightsThatAreRight) {
+  const SyntheticScene scene = Photograph(QuarteredMaps(24, 26), 8);
+  RefineOptions options;
+  options.exposure_spread = 0.1;
+  options.light_spread = 0.02;
+  const RefineSummary found =
+      Refine(scene.Problem(), DisturbedMaps(scene.truth, 0.5f, 27), options, 1).summary;
+  EXPECT_LT(RootMeanSquareLog(found.exposures), 0.005);
+  for (const Vec3d& offset : found.light_offsets_mm) {
+    // Of a distance of 2.1 to 2.7.
+    EXPECT_LT(std::hypot(offset[0], offset[1], offset[2]), 0.01);
+  }
+}
+
+TEST(Refine, FindsTheLightsOfSinglePhotographs) {
+  SyntheticScene scene = Photograph(QuarteredMaps(24, 26), 8);
+  const SvbrdfMaps start = DisturbedMaps(scene.truth, 0.5f, 27);
+  std::vector<Vec3d> wrong;
+  for (size_t v = 0; v < scene.views.size(); ++v) {
+    const double angle = 2 * M_PI * static_cast<double>(v) / 8;  // no offset is shared
+    wrong.push_back({0.06 * std::cos(angle), 0.06 * std::sin(angle), 0});
+    for (size_t i = 0; i < 3; ++i) scene.views[v].light_in_sample_mm[i] += wrong[v][i];
+  }
+  RefineOptions options;
+  options.exposure_spread = 0.1;
+  options.light_spread = 0.02;
+  const RefineSummary found = Refine(scene.Problem(), start, options, 1).summary;
+  double left = 0, before = 0;
+  for (size_t v = 0; v < wrong.size(); ++v) {
+    for (size_t i = 0; i < 2; ++i) {
+      before += wrong[v][i] * wrong[v][i];
+      left += std::pow(wrong[v][i] + found.light_offsets_mm[v][i], 2);
+    }
+  }
+  EXPECT_LT(left, 0.3 * before);  // squares: about half of what they are off
+}
+
+TEST(Refine, OnePhotographsExposureIsWhatIsSaid) {
+  const SyntheticScene scene = Photograph(QuarteredMaps(24, 26), 1);
+  RefineOptions options;
+  options.exposure_spread = 0.1;
+  options.light_spread = 0.02;
+  const RefineSummary found = Refine(scene.Problem(), scene.truth, options, 1).summary;
+  EXPECT_EQ(found.exposures, std::vector<double>{1.0});
 }
 
 // What photographs do not support is not there: exposures that differ from photograph to photograph

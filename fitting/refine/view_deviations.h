@@ -1,0 +1,68 @@
+// By how much each photograph deviates from what is said of it: the exposure or the flash's power,
+// and the place of its flash. Captures that nobody calibrated state one exposure for all and
+// positions to a degree or so; a telephone's flash and its exposure vary by some per cent.
+//
+// A flash elsewhere shades a matte sample a little from side to side, and so do vignetting and the
+// flash's beam, unlike in every view. So a gradient of each view's shading is unknown as well; it
+// is not applied, and leaves the flash's place to the highlights.
+//
+// Each deviation is Gaussian about 0 with a spread estimated of the capture (MacKay 1992, as the
+// residuals' variance is). The deviations are the most probable ones with all texels eliminated:
+// Newton steps on the marginal likelihood, whose information is the Schur complement of the texels.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "fitting/texel/texel_kernel.h"
+#include "fitting/view_correction/deviating_view.h"
+
+namespace glint {
+
+// Of one texel and one view that shows it: sums over channels of products of the residuals'
+// derivatives by the view's deviations.
+struct DeviationProducts {
+  int view = 0;
+  std::array<std::array<double, kViewDeviations>, kViewDeviations> squared{};
+  std::array<double, kViewDeviations> by_residual{};
+  std::array<std::array<double, kTexelParameters>, kViewDeviations> by_values{};
+};
+
+// Derivatives of residuals by the deviations: differences over a step this long.
+inline constexpr double kDeviationStep = 1e-4;
+
+// `rows`: of the views as they are; `nudged`: residuals [channel][usable view], for each deviation
+// in turn a step longer. `views`: which they are.
+std::vector<DeviationProducts> ProductsOf(const KernelRows& rows,
+                                          std::span<const std::vector<double>> nudged,
+                                          std::span<const int> views);
+
+// What one texel tells of the views.
+struct TexelOfViews {
+  std::array<double, 2> place{};  // on the sample, −1 … 1 along each axis
+  std::array<double, kTexelParameters * kTexelParameters> inverse{};  // (JᵀJ + prior)⁻¹
+  const std::vector<DeviationProducts>* products = nullptr;
+};
+
+class ViewDeviations {
+ public:
+  // `expected`: standard deviations before anything is seen; 0: that one is as said.
+  ViewDeviations(int views, const DeviationValues& expected);
+
+  bool any() const { return any_; }
+  // One step. `information`: what a squared residual of these texels is worth, 1 / variance.
+  void Update(std::span<const TexelOfViews> texels, double information);
+
+  const std::vector<DeviationValues>& values() const { return values_; }
+  const DeviationValues& spreads() const { return spreads_; }
+
+ private:
+  void UpdateSpreads(const std::vector<DeviationValues>& variances);
+
+  DeviationValues expected_, spreads_;
+  std::vector<DeviationValues> values_;
+  bool any_ = false;
+};
+
+}  // namespace glint
