@@ -1,41 +1,66 @@
-// glint-export: maps as PNG files.
+// glint-export: the material for other programs.
 #include <algorithm>
 
+#include "fitting/relief/ambient_occlusion.h"
 #include "pipeline/contract/capture.h"
+#include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/export/export_maps.h"
-#include "pipeline/export/gltf_material.h"
+#include "pipeline/export/material_formats.h"
 
 namespace {
 
 using namespace glint;
 
-Json WriteHeight(const SvbrdfMaps& maps, const SamplePlane& plane, double longest, Stage* stage) {
-  const double longest_mm = longest * std::min(plane.width_mm, plane.height_mm);
-  std::array<double, 2> range_mm;
-  const MapPicture picture = HeightPicture(IntegrateNormals(maps, plane, longest_mm), &range_mm);
-  WritePng(stage->Output("16bit/height.png"), picture.image, 16);
-  return {{"file", "16bit/height.png"},
-          {"map", "height"},
-          {"encoding", picture.encoding},
-          {"bits", 16},
-          {"range_mm", range_mm}};
+// Where each map's picture lies: the 8-bit one where there are both.
+std::string FileOfMap(const Json& files, const std::string& map) {
+  for (const Json& entry : files) {
+    if (entry["map"] == map) return entry["file"].get<std::string>();
+  }
+  throw std::logic_error("no picture of " + map);
 }
 
-std::string WriteGltf(const Capture& capture, const SvbrdfMaps& maps,
-                      const ReflectanceConvention& convention, Stage* stage) {
-  // Not the folder's name: a capture that is moved keeps its bytes.
-  const GltfMaterial material{"material", capture.sample_size_mm[0], capture.sample_size_mm[1]};
-  WriteFileAtomically(stage->Output("material.glb"), GlbOf(material, maps, convention));
-  return "material.glb";
+// Writes the material files; data.materials.
+Json WriteMaterials(const ExportedMaterial& material, const std::vector<MaterialFormat>& formats,
+                    const Json& maps, Stage* stage) {
+  const auto file_of = [&](const std::string& map) { return FileOfMap(maps, map); };
+  Json files = Json::array();
+  for (const MaterialFormat& format : formats) {
+    const std::string file = material.name + format.suffix;
+    WriteFileAtomically(stage->Output(file), format.write(material, file_of));
+    const double error = ShadingError(material.maps, material.diffuse_weight,
+                                      [&](size_t texel, const DirectionPair& pair) {
+                                        return format.brdf(material, texel, pair);
+                                      });
+    files.push_back({{"file", file}, {"format", format.name}, {"log_l1", error}});
+  }
+  return files;
+}
+
+ExportedMaterial MaterialOf(const Capture& capture, SvbrdfMaps maps,
+                            const ReflectanceConvention& convention, const ExportOptions& options,
+                            int threads) {
+  ExportedMaterial material;
+  material.name = options.name;
+  material.maps = std::move(maps);
+  material.diffuse_weight = convention.diffuse_weight;
+  material.width_mm = capture.sample_size_mm[0];
+  material.height_mm = capture.sample_size_mm[1];
+  material.metal = ToMetalRoughness(material.maps, material.diffuse_weight, options.metal, threads);
+  return material;
 }
 
 ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, ExportOptions* options,
                      const CommonOptions& common) {
   const Capture capture = ReadCapture(folder);
   set->LoadToml(capture.file, "export");
+  if (options->name != FileNameOf(options->name)) {
+    throw UserError(capture.file, "export.name", "'" + options->name + "'",
+                    "use letters, digits, '-', '_' and '.', beginning with a letter or digit");
+  }
+  const std::vector<MaterialFormat> formats = ChosenFormats(options->formats);
   const auto source = capture.work() / options->from / "manifest.json";
   const Manifest manifest = ReadManifest(source, options->from);
   Stage stage(capture.work() / "export", {"export", kExportVersion}, *set, common, {source});
@@ -44,18 +69,32 @@ ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, Export
   }
   VerifyOutputs(source, manifest);
   ReflectanceConvention convention;
-  const SvbrdfMaps maps = ReadSvbrdf(source.parent_path() / "svbrdf.exr", &convention);
+  SvbrdfMaps maps = ReadSvbrdf(source.parent_path() / "svbrdf.exr", &convention);
   const SamplePlane plane{maps.width, maps.height, capture.sample_size_mm[0],
                           capture.sample_size_mm[1], convention.sampling};
-  Json files = WriteMapPictures(MapPictures(maps, *options), *options, &stage);
-  if (options->height) files.push_back(WriteHeight(maps, plane, options->height_longest, &stage));
-  Json data = {{"convention", ToString(convention)}, {"maps", files}};
-  if (options->gltf) data["gltf"] = WriteGltf(capture, maps, convention, &stage);
-  stage.Commit(data, Json::object());
-  return {"export: " + std::to_string(files.size()) + " PNG files" +
-              (options->gltf ? " and " + data["gltf"].get<std::string>() : "") + " in " +
-              stage.folder().string(),
-          {{"stage", "export"}, {"up_to_date", false}, {"maps", files}}};
+  const double shorter_mm = std::min(plane.width_mm, plane.height_mm);
+  ExportedMaterial material =
+      MaterialOf(capture, std::move(maps), convention, *options, common.threads);
+  const HeightField relief =
+      IntegrateNormals(material.maps, plane, options->height_longest * shorter_mm);
+  material.height_range_mm = HeightRange(relief);
+  OcclusionOptions occlusion;
+  occlusion.reach_mm = options->occlusion_reach * shorter_mm;
+  const Json files = WriteMapPictures(
+      material, MapPictures(material, relief, AmbientOcclusion(relief, occlusion, common.threads)),
+      *options, &stage);
+  const Json materials = WriteMaterials(material, formats, files, &stage);
+  const double error = MetalRoughnessError(material.metal, material.maps, material.diffuse_weight);
+  stage.Commit({{"convention", ToString(convention)},
+                {"name", material.name},
+                {"size_mm", capture.sample_size_mm},
+                {"maps", files},
+                {"metal_roughness", {{"log_l1", error}}},
+                {"materials", materials}},
+               Json::object());
+  return {"export: " + std::to_string(files.size()) + " PNG files and " +
+              std::to_string(materials.size()) + " material files in " + stage.folder().string(),
+          {{"stage", "export"}, {"up_to_date", false}, {"maps", files}, {"materials", materials}}};
 }
 
 }  // namespace
@@ -68,7 +107,9 @@ int main(int argc, char** argv) {
   AddExportOptions(&set, &options);
   return RunProgram(
       argc, argv,
-      {"glint-export", "Writes the maps of fit or refine as PNG files and as a glTF material.",
-       GLINT_VERSION, "Example: glint export wood --normal-y=- --metallic"},
+      {"glint-export",
+       "Writes the material for other programs: maps as PNG files under the names they look for, "
+       "and whole materials for glTF, MaterialX, USD and Blender.",
+       GLINT_VERSION, "Example: glint export wood --bits both --formats gltf,blender"},
       &set, [&](const CommonOptions& common) { return Export(folder, &set, &options, common); });
 }

@@ -88,6 +88,17 @@ void WriteFileAtomically(const std::filesystem::path& file, std::string_view byt
   if (::rename(beside.c_str(), file.c_str()) != 0) ThrowErrno(file, "replace the file");
 }
 
+std::string FileNameOf(const std::string& text) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  };
+  std::string name;
+  for (const char c : text) {
+    name += plain(c) || c == '-' || c == '_' || c == '.' ? c : '_';
+  }
+  return name.empty() || !plain(name[0]) ? "m" + name : name;
+}
+
 FileLock::FileLock(const std::filesystem::path& file, const std::string& what) {
   descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) ThrowErrno(file, "create the lock file");

@@ -13,6 +13,10 @@ std::string ReadTextFile(const std::filesystem::path& file, std::size_t limit_by
 // Writes beside the target, syncs, renames over it. Throws EnvironmentError (disk full, read-only).
 void WriteFileAtomically(const std::filesystem::path& file, std::string_view bytes);
 
+// `text` as the beginning of a file's name that needs no quotes anywhere: letters, digits, '-', '_'
+// and '.' of ASCII, other bytes as '_', an 'm' before what begins with neither letter nor digit.
+std::string FileNameOf(const std::string& text);
+
 // An exclusive lock on `file` (created when missing), held until destruction and dropped by the
 // kernel when the process dies. Throws UserError when another process holds it.
 class FileLock {

@@ -89,15 +89,22 @@ void WriteExr(const std::filesystem::path& file, const Image& image,
 }
 
 // By way of memory: libpng's writer does not say when the disk is full.
-void WritePng(const std::filesystem::path& file, const Image& image, int bits) {
-  WriteFileAtomically(file, EncodePng(image, bits));
+void WritePng(const std::filesystem::path& file, const Image& image, int bits,
+              const PngTags& tags) {
+  WriteFileAtomically(file, EncodePng(image, bits, tags));
 }
 
-std::string EncodePng(const Image& image, int bits) {
+std::string EncodePng(const Image& image, int bits, const PngTags& tags) {
   const int channels = static_cast<int>(image.channels.size());
   OIIO::ImageSpec spec(image.width, image.height, channels,
                        bits == 16 ? OIIO::TypeUInt16 : OIIO::TypeUInt8);
   spec.attribute("DateTime", kNoDate);
+  if (tags.transfer == PngTransfer::kSrgb) spec.attribute("oiio:ColorSpace", "sRGB");
+  if (tags.pixels_per_m > 0) {
+    spec.attribute("XResolution", static_cast<float>(tags.pixels_per_m / 100));
+    spec.attribute("YResolution", static_cast<float>(tags.pixels_per_m / 100));
+    spec.attribute("ResolutionUnit", "cm");
+  }
   std::vector<int> order(static_cast<size_t>(channels));
   for (int c = 0; c < channels; ++c) order[static_cast<size_t>(c)] = c;
   const std::vector<float> interleaved = Interleave(image, order);

@@ -42,12 +42,22 @@ void WriteExr(const std::filesystem::path& file, const Image& image,
 Image ReadExr(const std::filesystem::path& file,
               std::map<std::string, std::string>* attributes = nullptr);
 
-// 8 or 16 bit PNG (1, 3 or 4 channels), values clamped to [0, 1], rounded and written as they are;
-// no gamma is told, so that viewers show them as they show any picture (sRGB). Throws
-// EnvironmentError.
-void WritePng(const std::filesystem::path& file, const Image& image, int bits = 8);
+// What a PNG tells of itself.
+enum class PngTransfer {
+  kUntold,  // viewers show it as they show any picture
+  kSrgb,    // chunks sRGB and gAMA
+};
+struct PngTags {
+  PngTransfer transfer = PngTransfer::kUntold;
+  double pixels_per_m = 0;  // chunk pHYs; 0: untold
+};
+
+// 8 or 16 bit PNG (1, 3 or 4 channels), values clamped to [0, 1], rounded and written as they are.
+// Throws EnvironmentError.
+void WritePng(const std::filesystem::path& file, const Image& image, int bits = 8,
+              const PngTags& tags = {});
 // The bytes of such a file.
-std::string EncodePng(const Image& image, int bits = 8);
+std::string EncodePng(const Image& image, int bits = 8, const PngTags& tags = {});
 
 // Size and channels of any image, from its header alone. Throws UserError.
 struct ImageHeader {

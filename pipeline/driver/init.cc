@@ -244,6 +244,14 @@ std::string InitResult::BriefReport() const {
   return text + ", then: glint run " + folder + "\n";
 }
 
+// The folder's name, as far as it can be a file's.
+std::string MaterialName(const fs::path& folder) {
+  std::error_code error;
+  const fs::path whole = fs::weakly_canonical(folder, error);
+  const std::string name = (error ? folder : whole).filename().string();
+  return name.empty() || name == "." ? "material" : FileNameOf(name);
+}
+
 std::string CaptureText(const InitOptions& options, InitResult* result) {
   RequireCount(options.light_offset_mm, 3, "light-offset-mm", "X,Y,Z");
   CheckEncoding(options.encoding);
@@ -275,7 +283,9 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   text += "# [rectify]\n# [fit]\n";
   text +=
       "# metals = \"rare\"                # the sample has no bare metal: see docs/capture.md\n";
-  text += "# [refine]\n# [export]\n# [report]\n";
+  text += "# [refine]\n# [report]\n";
+  text += "[export]\nname = \"" + MaterialName(options.folder) +
+          "\"                  # what the files' names begin with\n";
   return text;
 }
 

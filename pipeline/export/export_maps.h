@@ -1,12 +1,16 @@
-// Maps as PNG files, for programs that read pictures.
+// Maps as PNG files under the names that other programs look for.
 //
-//   normal      (n + 1)/2, OpenGL (+Y up) or DirectX (−Y)
-//   diffuse     sRGB-encoded albedo          specular   sRGB-encoded F0
-//   roughness   linear r (α = r²), grey
-//   basecolor   sRGB-encoded                 metallic   linear, grey        (on request)
-//   height      linear, grey, 16 bits alone; the manifest has the millimetres of 0 and 1
+//   NAME_basecolor  sRGB     NAME_metallic   linear, grey    what a metal-roughness material has
+//   NAME_roughness  linear r (α = r²), grey                  (metal_roughness.h)
+//   NAME_normal_gl, NAME_normal_dx   (n + 1)/2, +Y up (OpenGL) and −Y up (DirectX)
+//   NAME_height     linear, grey, 16 bits; the manifest has the millimetres of 0 and 1
+//   NAME_ao         linear, grey: share of the sky that the relief leaves (ambient_occlusion.h)
+//   NAME_orm        ao, roughness and metallic in red, green and blue
+//   exact/NAME_diffuse, exact/NAME_specular   sRGB: albedo and F0 as they were fitted
+//   exact/NAME_diffuse_layered                sRGB: albedo under a layer that lets 1 − F0 through,
+//                                             for programs whose diffuse lobe is weighted so
 //
-// 8-bit files lie in the stage's folder, 16-bit files in its folder 16bit/.
+// 8-bit files lie in the stage's folder, 16-bit ones in its folder 16bit/.
 #pragma once
 
 #include <array>
@@ -15,45 +19,69 @@
 
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/relief/height_field.h"
+#include "pipeline/contract/files.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/json.h"
 #include "pipeline/contract/options.h"
 #include "pipeline/contract/stage.h"
+#include "pipeline/export/metal_roughness.h"
 
 namespace glint {
 
-inline constexpr int kExportVersion = 3;
+inline constexpr int kExportVersion = 4;
 
 struct ExportOptions {
-  std::string from = "refine";  // stage whose maps are taken: refine, fit
-  std::string bits = "both";    // 8, 16, both
-  std::string normal_y = "+";   // "+": OpenGL, "-": DirectX
-  bool metallic = false;        // base colour and metalness as well
-  bool height = true;           // the relief that the normals say
+  std::string name = "material";  // of the files; letters, digits, - _ .
+  std::string from = "refine";    // stage whose maps are taken: refine, fit
+  std::string bits = "8";         // 8, 16, both; the height has 16
   // Longest waves of the relief that are kept, of the sample's shorter side (height_field.h).
   double height_longest = 0.25;
-  bool gltf = true;  // the material as NAME.glb (gltf_material.h)
+  double occlusion_reach = 0.125;  // how far walls hide the sky, of the sample's shorter side
+  MetalRoughnessOptions metal;
+  std::vector<std::string> formats;  // of material files; empty: all (material_formats.h)
 };
 
 void AddExportOptions(OptionSet* set, ExportOptions* options);
 
 // A picture of one map with values in [0, 1] as the file stores them.
 struct MapPicture {
-  std::string name;      // "diffuse"
-  std::string encoding;  // "sRGB", "linear", "normal +Y", "normal -Y"
-  Image image;           // one or three channels
+  std::string map;          // "basecolor"
+  std::string encoding;     // "sRGB", "linear", "normal +Y", "normal -Y"
+  Image image;              // one or three channels
+  std::string folder = "";  // or "exact/"
+  int bits = 0;             // 0: as the options say
 };
 
-std::vector<MapPicture> MapPictures(const SvbrdfMaps& maps, const ExportOptions& options);
+// What other programs get of one material.
+struct ExportedMaterial {
+  std::string name;
+  SvbrdfMaps maps;
+  DiffuseWeight diffuse_weight = DiffuseWeight::kOne;
+  double width_mm = 0, height_mm = 0;
+  MetalRoughness metal;
+  std::array<double, 2> height_range_mm{0, 0};  // of 0 and 1 in the height map
+};
 
-// Of the relief (fitting/relief), its lowest point 0 and its highest 1; `range_mm`: what these are.
-MapPicture HeightPicture(const HeightField& field, std::array<double, 2>* range_mm);
+// Linear, up to 1: diffuse_layered.
+std::array<double, 3> LayeredDiffuse(const ExportedMaterial& material, size_t texel);
+
+// All pictures, in the order of the list above.
+std::vector<MapPicture> MapPictures(const ExportedMaterial& material, const HeightField& relief,
+                                    const std::vector<float>& occlusion);
+
+// Height above `range_mm[0]`, of its range.
+MapPicture HeightPicture(const HeightField& field, const std::array<double, 2>& range_mm);
+// Lowest and highest point.
+std::array<double, 2> HeightRange(const HeightField& field);
 
 // sRGB's transfer function (IEC 61966-2-1), of a value clamped to [0, 1].
 float SrgbFromLinear(float linear);
 
-// Writes the files as outputs of `stage`; returns the manifest's data.
-Json WriteMapPictures(const std::vector<MapPicture>& pictures, const ExportOptions& options,
-                      Stage* stage);
+// "exact/wood_diffuse.png", of the material's name and the picture.
+std::string FileOf(const std::string& name, const MapPicture& picture);
+
+// Writes the files as outputs of `stage`; returns the manifest's data.maps.
+Json WriteMapPictures(const ExportedMaterial& material, const std::vector<MapPicture>& pictures,
+                      const ExportOptions& options, Stage* stage);
 
 }  // namespace glint

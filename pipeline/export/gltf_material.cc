@@ -45,15 +45,12 @@ class Buffer {
   Json views_ = Json::array();
 };
 
-Image BaseColor(const SvbrdfMaps& maps, const ReflectanceConvention& convention) {
-  Image image(maps.width, maps.height, kRgb);
-  const bool whole = convention.diffuse_weight == DiffuseWeight::kOne;
-  for (size_t i = 0; i < maps.texels(); ++i) {
-    float most = 0;
-    for (int c = 0; c < 3; ++c) most = std::max(most, maps.plane(kSpecularR + c)[i]);
-    const float left = whole ? std::max(1e-3f, 1 - most) : 1.0f;
+Image BaseColor(const ExportedMaterial& material) {
+  Image image(material.maps.width, material.maps.height, kRgb);
+  for (size_t i = 0; i < material.maps.texels(); ++i) {
+    const std::array<double, 3> base = GltfBaseColor(material, i);
     for (int c = 0; c < 3; ++c) {
-      image.channel(c)[i] = SrgbFromLinear(maps.plane(kDiffuseR + c)[i] / left);
+      image.channel(c)[i] = SrgbFromLinear(static_cast<float>(base[static_cast<size_t>(c)]));
     }
   }
   return image;
@@ -135,8 +132,21 @@ void AppendChunk(const char type[4], std::string bytes, char padding, std::strin
 
 }  // namespace
 
-std::string GlbOf(const GltfMaterial& material, const SvbrdfMaps& maps,
-                  const ReflectanceConvention& convention) {
+std::array<double, 3> GltfBaseColor(const ExportedMaterial& material, size_t texel) {
+  const SvbrdfMaps& maps = material.maps;
+  float most = 0;
+  for (int c = 0; c < 3; ++c) most = std::max(most, maps.plane(kSpecularR + c)[texel]);
+  const bool whole = material.diffuse_weight == DiffuseWeight::kOne;
+  const double left = whole ? std::max(1e-3f, 1 - most) : 1.0f;
+  std::array<double, 3> base;
+  for (int c = 0; c < 3; ++c) {
+    base[static_cast<size_t>(c)] = std::clamp(maps.plane(kDiffuseR + c)[texel] / left, 0.0, 1.0);
+  }
+  return base;
+}
+
+std::string GlbOf(const ExportedMaterial& material) {
+  const SvbrdfMaps& maps = material.maps;
   float largest = static_cast<float>(kGltfF0);
   for (int c = 0; c < 3; ++c) {
     for (const float f0 : maps.plane(kSpecularR + c)) largest = std::max(largest, f0);
@@ -146,7 +156,7 @@ std::string GlbOf(const GltfMaterial& material, const SvbrdfMaps& maps,
       PlaneAccessors(material.width_mm / 1000, material.height_mm / 1000, &buffer);
   Json images = Json::array(), textures = Json::array();
   for (const auto& [name, image] :
-       {std::pair{"basecolor", BaseColor(maps, convention)},
+       {std::pair{"basecolor", BaseColor(material)},
         std::pair{"occlusion_roughness_metallic", OcclusionRoughnessMetallic(maps)},
         std::pair{"normal", Normal(maps)},
         std::pair{"specularcolor", SpecularColor(maps, largest)}}) {

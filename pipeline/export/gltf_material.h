@@ -7,22 +7,19 @@
 // divided by 1 − max(F0), so that both agree at normal incidence as far as base colour can reach 1.
 #pragma once
 
+#include <array>
 #include <string>
 
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "pipeline/export/export_maps.h"
 
 namespace glint {
 
 inline constexpr double kGltfF0 = 0.04;  // of glTF's default index of refraction, 1.5
 
-struct GltfMaterial {
-  std::string name;  // of material and mesh
-  double width_mm = 0, height_mm = 0;
-};
-
 // The file's bytes. The plane lies in x and y about the origin and looks along +z; metres.
-std::string GlbOf(const GltfMaterial& material, const SvbrdfMaps& maps,
-                  const ReflectanceConvention& convention);
+std::string GlbOf(const ExportedMaterial& material);
+
+// The texel's base colour there, linear, up to 1.
+std::array<double, 3> GltfBaseColor(const ExportedMaterial& material, size_t texel);
 
 }  // namespace glint

@@ -6,28 +6,34 @@
 #include <cmath>
 #include <fstream>
 
-#include "pipeline/export/metallic.h"
+#include "tests/pipeline/export/exported_material.h"
 #include "tests/support/process.h"
 
 namespace glint {
 namespace {
 
-const MapPicture& Named(const std::vector<MapPicture>& pictures, const std::string& name) {
+using test::kSize;
+
+const MapPicture& Named(const std::vector<MapPicture>& pictures, const std::string& map) {
   const auto found = std::find_if(pictures.begin(), pictures.end(),
-                                  [&](const MapPicture& picture) { return picture.name == name; });
-  if (found == pictures.end()) throw std::runtime_error("no picture " + name);
+                                  [&](const MapPicture& picture) { return picture.map == map; });
+  if (found == pictures.end()) throw std::runtime_error("no picture of " + map);
   return *found;
 }
 
-constexpr int kSize = 16;  // smaller pictures are refused as photographs
+ExportedMaterial Uniform() {
+  return test::MaterialOf(
+      test::UniformMaps({0.6f, 0.8f, 0.0f, 0.2140411f, 0.5f, 1.0f, 0.04f, 0.04f, 0.04f, 0.3f}));
+}
 
-SvbrdfMaps Uniform() {
-  SvbrdfMaps maps(kSize, kSize);
-  const float planes[] = {0.6f, 0.8f, 0.0f, 0.2140411f, 0.5f, 1.0f, 0.04f, 0.04f, 0.04f, 0.3f};
-  for (int p = 0; p < kSvbrdfPlanes; ++p) {
-    std::fill(maps.plane(p).begin(), maps.plane(p).end(), planes[p]);
-  }
-  return maps;
+HeightField Slope() {
+  HeightField field{kSize, kSize, 1, 1, {}};
+  for (int i = 0; i < kSize * kSize; ++i) field.height_mm.push_back(0.01f * (i % kSize));
+  return field;
+}
+
+std::vector<MapPicture> Pictures() {
+  return MapPictures(Uniform(), Slope(), std::vector<float>(kSize * kSize, 0.7f));
 }
 
 // Values of IEC 61966-2-1: 0.5 encoded is 0.21404114 linear.
@@ -39,48 +45,46 @@ TEST(SrgbTest, AgreesWithTheStandard) {
 }
 
 TEST(ExportTest, EncodesEachMapAsItsNameSays) {
-  const auto pictures = MapPictures(Uniform(), ExportOptions());
-  ASSERT_EQ(pictures.size(), 4u);
-  EXPECT_NEAR(Named(pictures, "normal").image.samples[0], 0.8, 1e-6);
-  EXPECT_NEAR(Named(pictures, "normal").image.channel(1)[0], 0.9, 1e-6);
-  EXPECT_NEAR(Named(pictures, "normal").image.channel(2)[0], 0.5, 1e-6);
+  const auto pictures = Pictures();
+  ASSERT_EQ(pictures.size(), 11u);
+  EXPECT_NEAR(Named(pictures, "normal_gl").image.samples[0], 0.8, 1e-6);
+  EXPECT_NEAR(Named(pictures, "normal_gl").image.channel(1)[0], 0.9, 1e-6);
+  EXPECT_NEAR(Named(pictures, "normal_gl").image.channel(2)[0], 0.5, 1e-6);
   EXPECT_NEAR(Named(pictures, "diffuse").image.samples[0], 0.5, 1e-5);
   EXPECT_NEAR(Named(pictures, "roughness").image.samples[0], 0.3, 1e-7);
   EXPECT_EQ(Named(pictures, "roughness").image.channels.size(), 1u);
+  EXPECT_NEAR(Named(pictures, "metallic").image.samples[0], 0, 0.05);
+  EXPECT_EQ(FileOf("wood", Named(pictures, "basecolor")), "wood_basecolor.png");
+  EXPECT_EQ(FileOf("wood", Named(pictures, "specular")), "exact/wood_specular.png");
+}
+
+TEST(ExportTest, PacksOcclusionRoughnessAndMetalness) {
+  const auto pictures = Pictures();
+  const Image& orm = Named(pictures, "orm").image;
+  EXPECT_NEAR(orm.channel(0)[0], 0.7, 1e-6);
+  EXPECT_NEAR(orm.channel(1)[0], 0.3, 1e-6);
+  EXPECT_EQ(orm.channel(2)[0], Named(pictures, "metallic").image.samples[0]);
 }
 
 TEST(ExportTest, HeightsAreBetweenItsLowestAndHighestPoint) {
-  HeightField field{2, 2, 1, 1, {-0.5f, 0.25f, 0.0f, 0.5f}};
-  std::array<double, 2> range_mm;
-  const MapPicture picture = HeightPicture(field, &range_mm);
+  const HeightField field{2, 2, 1, 1, {-0.5f, 0.25f, 0.0f, 0.5f}};
+  const auto range_mm = HeightRange(field);
   EXPECT_NEAR(range_mm[0], -0.5, 1e-6);
   EXPECT_NEAR(range_mm[1], 0.5, 1e-6);
+  const MapPicture picture = HeightPicture(field, range_mm);
   for (size_t i = 0; i < 4; ++i) {
     const double h = range_mm[0] + picture.image.samples[i] * (range_mm[1] - range_mm[0]);
     EXPECT_NEAR(h, field.height_mm[i], 1e-6);
   }
   const HeightField flat{2, 2, 1, 1, {0, 0, 0, 0}};
-  for (const float h : HeightPicture(flat, &range_mm).image.samples) EXPECT_EQ(h, 0.0f);
+  for (const float h : HeightPicture(flat, {0, 0}).image.samples) EXPECT_EQ(h, 0.0f);
 }
 
-TEST(ExportTest, MinusYMirrorsGreenOnly) {
-  ExportOptions options;
-  options.normal_y = "-";
-  const auto pictures = MapPictures(Uniform(), options);
-  EXPECT_NEAR(Named(pictures, "normal").image.samples[0], 0.8, 1e-6);
-  EXPECT_NEAR(Named(pictures, "normal").image.channel(1)[0], 0.1, 1e-6);
-  EXPECT_EQ(Named(pictures, "normal").encoding, "normal -Y");
-}
-
-// What a metal-roughness material can be comes back: dielectrics and metals.
-TEST(MetallicTest, RecoversMetalRoughnessMaterials) {
-  const std::array<float, 3> base = {0.8f, 0.5f, 0.2f};
-  const BaseColorMetallic plastic = ToBaseColorMetallic(base, {0.04f, 0.04f, 0.04f});
-  EXPECT_NEAR(plastic.metallic, 0, 1e-3);
-  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(plastic.base_color[c], base[c], 1e-3);
-  const BaseColorMetallic gold = ToBaseColorMetallic({0, 0, 0}, base);
-  EXPECT_NEAR(gold.metallic, 1, 1e-3);
-  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(gold.base_color[c], base[c], 1e-3);
+TEST(ExportTest, DirectXMirrorsGreenOnly) {
+  const auto pictures = Pictures();
+  EXPECT_NEAR(Named(pictures, "normal_dx").image.samples[0], 0.8, 1e-6);
+  EXPECT_NEAR(Named(pictures, "normal_dx").image.channel(1)[0], 0.1, 1e-6);
+  EXPECT_EQ(Named(pictures, "normal_dx").encoding, "normal -Y");
 }
 
 TEST(ExportTest, WritesBothDepthsWithinHalfAStep) {
@@ -90,15 +94,43 @@ TEST(ExportTest, WritesBothDepthsWithinHalfAStep) {
   ExportOptions options;
   OptionSet set;
   AddExportOptions(&set, &options);
+  options.bits = "both";
   Stage stage(folder.path() / "export", {"export", 1}, set, CommonOptions(), {input});
-  const Json files = WriteMapPictures(MapPictures(Uniform(), options), options, &stage);
+  const Json files = WriteMapPictures(Uniform(), Pictures(), options, &stage);
   stage.Commit({{"maps", files}}, {});
-  EXPECT_EQ(files.size(), 8u);
+  EXPECT_EQ(files.size(), 21u);  // the height has 16 bits alone
   for (const Json& entry : files) {
     const Photo photo = ReadPhoto(folder.path() / "export" / entry["file"].get<std::string>());
     EXPECT_EQ(photo.bits, entry["bits"].get<int>());
+    if (entry["map"] == "height") {
+      EXPECT_EQ(entry["range_mm"], Json({-0.5, 0.75}));
+    }
     if (entry["map"] != "roughness") continue;
     EXPECT_NEAR(photo.image.samples[0], 0.3, 0.5 / (std::pow(2.0, photo.bits) - 1) + 1e-7);
+  }
+}
+
+// Chunks of the PNG specification: sRGB where the values are, pHYs in pixels per metre.
+TEST(ExportTest, PicturesSayTheirTransferAndTheirScale) {
+  const test::TemporaryFolder folder;
+  const auto input = folder.path() / "input";
+  std::ofstream(input) << "x";
+  ExportOptions options;
+  OptionSet set;
+  AddExportOptions(&set, &options);
+  Stage stage(folder.path() / "export", {"export", 1}, set, CommonOptions(), {input});
+  stage.Commit({{"maps", WriteMapPictures(Uniform(), Pictures(), options, &stage)}}, {});
+  const std::string base = test::ReadAll(folder.path() / "export/wood_basecolor.png");
+  const std::string rough = test::ReadAll(folder.path() / "export/wood_roughness.png");
+  EXPECT_NE(base.find("sRGB"), std::string::npos);
+  EXPECT_EQ(rough.find("sRGB"), std::string::npos);
+  for (const std::string& png : {base, rough}) {
+    const size_t at = png.find("pHYs");
+    ASSERT_NE(at, std::string::npos);
+    unsigned per_m = 0;
+    for (size_t i = 4; i < 8; ++i) per_m = per_m << 8 | static_cast<unsigned char>(png[at + i]);
+    EXPECT_NEAR(per_m, kSize / 0.12, 1);
+    EXPECT_EQ(png[at + 12], 1);  // the unit is the metre
   }
 }
 

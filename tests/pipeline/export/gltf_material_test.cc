@@ -7,12 +7,13 @@
 
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/json.h"
+#include "tests/pipeline/export/exported_material.h"
 #include "tests/support/process.h"
 
 namespace glint {
 namespace {
 
-constexpr int kSize = 16;
+using test::kSize;
 
 SvbrdfMaps Maps() {
   SvbrdfMaps maps(kSize, kSize);
@@ -69,7 +70,7 @@ class GltfTest : public testing::Test {
 };
 
 TEST_F(GltfTest, ThePlaneHasTheSamplesSizeInMetres) {
-  Read(GlbOf({"wood", 120, 80}, Maps(), ReflectanceConvention::Photograph()));
+  Read(GlbOf(test::MaterialOf(Maps())));
   const Json& primitive = json_["meshes"][0]["primitives"][0];
   const Json& positions = json_["accessors"][primitive["attributes"]["POSITION"].get<size_t>()];
   EXPECT_NEAR(positions["max"][0].get<double>() - positions["min"][0].get<double>(), 0.12, 1e-6);
@@ -86,9 +87,8 @@ TEST_F(GltfTest, ThePlaneHasTheSamplesSizeInMetres) {
 // What glTF's dielectric is made of, put together again.
 TEST_F(GltfTest, TexturesSayWhatTheMapsSay) {
   for (const bool whole : {true, false}) {
-    const ReflectanceConvention convention =
-        whole ? ReflectanceConvention::Photograph() : ReflectanceConvention::MaterialGan();
-    Read(GlbOf({"wood", 120, 80}, Maps(), convention));
+    Read(GlbOf(
+        test::MaterialOf(Maps(), whole ? DiffuseWeight::kOne : DiffuseWeight::kOneMinusSpecular)));
     const Json& material = json_["materials"][0];
     const Json& base = material["pbrMetallicRoughness"];
     const Json& specular = material["extensions"]["KHR_materials_specular"];
@@ -115,8 +115,8 @@ TEST_F(GltfTest, TexturesSayWhatTheMapsSay) {
 }
 
 TEST_F(GltfTest, TheSameMapsGiveTheSameBytes) {
-  const auto once = GlbOf({"wood", 120, 80}, Maps(), ReflectanceConvention::Photograph());
-  EXPECT_EQ(once, GlbOf({"wood", 120, 80}, Maps(), ReflectanceConvention::Photograph()));
+  const auto once = GlbOf(test::MaterialOf(Maps()));
+  EXPECT_EQ(once, GlbOf(test::MaterialOf(Maps())));
 }
 
 }  // namespace

@@ -1,0 +1,139 @@
+#include "pipeline/export/blender_script.h"
+
+#include <fmt/format.h>
+
+#include "pipeline/contract/json.h"
+
+namespace glint {
+namespace {
+
+// After the material's own values.
+constexpr char kBody[] = R"PY(
+
+def _node(tree, kind, x, y, **inputs):
+    node = tree.nodes.new(kind)
+    node.location = (x, y)
+    for name, value in inputs.items():
+        node.inputs[name.replace("_", " ")].default_value = value
+    return node
+
+
+def _picture(tree, file, colour, y):
+    node = _node(tree, "ShaderNodeTexImage", -900, y)
+    node.image = bpy.data.images.load(os.path.join(FOLDER, file), check_existing=True)
+    node.image.colorspace_settings.name = "sRGB" if colour else "Non-Color"
+    return node.outputs["Color"]
+
+
+def make_material():
+    """diffuse / pi + D G F / (4 NoL NoV), F = F0 + (1 - F0) (1 - NoV)^5."""
+    material = bpy.data.materials.new(NAME)
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    link = tree.links.new
+    diffuse = _picture(tree, DIFFUSE, True, 600)
+    specular = _picture(tree, SPECULAR, True, 300)
+    roughness = _picture(tree, ROUGHNESS, False, 0)
+    normal = _picture(tree, NORMAL, False, -300)
+
+    bend = _node(tree, "ShaderNodeNormalMap", -600, -300)
+    link(normal, bend.inputs["Color"])
+    if not DIFFUSE_WHOLE:
+        left = _node(tree, "ShaderNodeInvert", -600, 450)
+        link(specular, left.inputs["Color"])
+        times = _node(tree, "ShaderNodeMixRGB", -400, 600, Fac=1.0)
+        times.blend_type = "MULTIPLY"
+        link(diffuse, times.inputs["Color1"])
+        link(left.outputs["Color"], times.inputs["Color2"])
+        diffuse = times.outputs["Color"]
+
+    # Facing is 1 - (1 - NoV) at a blend of one half.
+    facing = _node(tree, "ShaderNodeLayerWeight", -600, 150, Blend=0.5)
+    link(bend.outputs["Normal"], facing.inputs["Normal"])
+    schlick = _node(tree, "ShaderNodeMath", -400, 150)
+    schlick.operation = "POWER"
+    schlick.inputs[1].default_value = 5.0
+    link(facing.outputs["Facing"], schlick.inputs[0])
+    fresnel = _node(tree, "ShaderNodeMixRGB", -200, 300, Color2=(1, 1, 1, 1))
+    link(schlick.outputs["Value"], fresnel.inputs["Fac"])
+    link(specular, fresnel.inputs["Color1"])
+
+    matte = _node(tree, "ShaderNodeBsdfDiffuse", 0, 400, Roughness=0.0)
+    link(diffuse, matte.inputs["Color"])
+    glossy = _node(tree, "ShaderNodeBsdfGlossy", 0, 200)
+    glossy.distribution = "GGX"
+    link(fresnel.outputs["Color"], glossy.inputs["Color"])
+    link(roughness, glossy.inputs["Roughness"])
+    for lobe in (matte, glossy):
+        link(bend.outputs["Normal"], lobe.inputs["Normal"])
+    both = _node(tree, "ShaderNodeAddShader", 200, 300)
+    link(matte.outputs["BSDF"], both.inputs[0])
+    link(glossy.outputs["BSDF"], both.inputs[1])
+    output = _node(tree, "ShaderNodeOutputMaterial", 400, 300)
+    link(both.outputs["Shader"], output.inputs["Surface"])
+
+    # Used where the material's displacement method is "Displacement"; bumps are the normals'.
+    height = _picture(tree, HEIGHT, False, -600)
+    displace = _node(tree, "ShaderNodeDisplacement", 200, -300,
+                     Midlevel=-HEIGHT_LOW_M / max(HEIGHT_RANGE_M, 1e-9), Scale=HEIGHT_RANGE_M)
+    link(height, displace.inputs["Height"])
+    if USE_DISPLACEMENT:
+        link(displace.outputs["Displacement"], output.inputs["Displacement"])
+        material.cycles.displacement_method = "DISPLACEMENT"
+    return material
+
+
+def make_plane(material):
+    x, y = WIDTH_M / 2, HEIGHT_M / 2
+    mesh = bpy.data.meshes.new(NAME)
+    mesh.from_pydata([(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)], [], [(0, 1, 2, 3)])
+    corners = mesh.uv_layers.new(name="UVMap").data
+    for corner, place in zip(corners, [(0, 0), (1, 0), (1, 1), (0, 1)]):
+        corner.uv = place
+    mesh.materials.append(material)
+    plane = bpy.data.objects.new(NAME, mesh)
+    bpy.context.collection.objects.link(plane)
+    return plane
+
+
+if __name__ == "__main__":
+    make_plane(make_material())
+)PY";
+
+// A Python string: JSON's quotes and escapes are Python's too.
+std::string Quoted(const std::string& text) { return Json(text).dump(); }
+
+}  // namespace
+
+std::string BlenderScriptOf(const ExportedMaterial& material,
+                            const std::function<std::string(const std::string& map)>& file_of) {
+  const double low_mm = material.height_range_mm[0], high_mm = material.height_range_mm[1];
+  return fmt::format(
+             R"(# Makes the material and a plane of its true size (metres). In Blender: Scripting > Open > Run
+# Script; or  blender --python {0}_blender.py
+import os
+
+import bpy
+
+FOLDER = os.path.dirname(os.path.abspath(
+    bpy.context.space_data.text.filepath
+    if getattr(bpy.context, "space_data", None) and getattr(bpy.context.space_data, "text", None)
+    else __file__))
+NAME = {1}
+WIDTH_M, HEIGHT_M = {2}, {3}
+DIFFUSE, SPECULAR = {4}, {5}
+ROUGHNESS, NORMAL, HEIGHT = {6}, {7}, {8}
+HEIGHT_LOW_M, HEIGHT_RANGE_M = {9}, {10}
+DIFFUSE_WHOLE = {11}  # False: the diffuse lobe has weight 1 - F0
+USE_DISPLACEMENT = False  # True: moves the surface too; subdivide the plane first
+)",
+             material.name, Quoted(material.name), material.width_mm / 1000,
+             material.height_mm / 1000, Quoted(file_of("diffuse")), Quoted(file_of("specular")),
+             Quoted(file_of("roughness")), Quoted(file_of("normal_gl")), Quoted(file_of("height")),
+             low_mm / 1000, (high_mm - low_mm) / 1000,
+             material.diffuse_weight == DiffuseWeight::kOne ? "True" : "False") +
+         kBody;
+}
+
+}  // namespace glint

@@ -1,0 +1,118 @@
+#include "pipeline/export/direction_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glint {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kLogOffset = 0.01;
+constexpr double kMostTilt_deg = 70;
+constexpr int kPairs = 36, kErrorPairs = 100;
+constexpr size_t kErrorTexels = 4096;
+
+using Direction = std::array<double, 3>;
+
+// Van der Corput's sequence: the digits of `index` in `base`, mirrored at the point.
+double RadicalInverse(int index, int base) {
+  double value = 0, digit = 1.0 / base;
+  for (; index > 0; index /= base, digit /= base) value += digit * (index % base);
+  return value;
+}
+
+Direction FromAngles(double sine, double azimuth) {
+  return {sine * std::cos(azimuth), sine * std::sin(azimuth),
+          std::sqrt(std::max(0.0, 1 - sine * sine))};
+}
+
+bool Seen(const Direction& d) { return d[2] > std::cos(kMostTilt_deg * kPi / 180); }
+
+// The i-th point of a sequence that fills the pairs evenly; false: below the horizon.
+bool HighlightPair(int i, double roughness, DirectionPair* pair) {
+  const double u = RadicalInverse(i, 2), alpha = roughness * roughness;
+  const double tangent = alpha * std::sqrt(u / (1 - u));
+  const Direction half =
+      FromAngles(tangent / std::sqrt(1 + tangent * tangent), 2 * kPi * RadicalInverse(i, 3));
+  const Direction camera =
+      FromAngles(std::sin(kMostTilt_deg * kPi / 180) * std::sqrt(RadicalInverse(i, 5)),
+                 2 * kPi * RadicalInverse(i, 7));
+  double dot = 0;
+  for (size_t k = 0; k < 3; ++k) dot += half[k] * camera[k];
+  Direction light;
+  for (size_t k = 0; k < 3; ++k) light[k] = 2 * dot * half[k] - camera[k];
+  if (!(dot > 0) || !Seen(light)) return false;
+  *pair = MakePair(light, camera);
+  return true;
+}
+
+DirectionPair AnyPair(int i) {
+  const double most = std::sin(kMostTilt_deg * kPi / 180);
+  return MakePair(
+      FromAngles(most * std::sqrt(RadicalInverse(i, 2)), 2 * kPi * RadicalInverse(i, 3)),
+      FromAngles(most * std::sqrt(RadicalInverse(i, 5)), 2 * kPi * RadicalInverse(i, 7)));
+}
+
+std::vector<DirectionPair> Pairs(double roughness, int count) {
+  std::vector<DirectionPair> pairs;
+  DirectionPair pair;
+  for (int i = 1; static_cast<int>(pairs.size()) < count / 2; ++i) {
+    if (HighlightPair(i, roughness, &pair)) pairs.push_back(pair);
+  }
+  for (int i = 1; static_cast<int>(pairs.size()) < count; ++i) pairs.push_back(AnyPair(i));
+  return pairs;
+}
+
+}  // namespace
+
+DirectionPair MakePair(const Direction& light, const Direction& camera) {
+  constexpr double kOne[3] = {1, 1, 1}, kNone[3] = {0, 0, 0};
+  DirectionPair pair{light, camera, 1, {}};
+  pair.geometry = MakeTexelGeometry<double>(light.data(), camera.data(), kOne, kNone);
+  pair.v_dot_h = 0;
+  for (size_t k = 0; k < 3; ++k) pair.v_dot_h += camera[k] * pair.geometry.half[k];
+  return pair;
+}
+
+double SmithSpecular(const DirectionPair& pair, double roughness) {
+  const double square = std::pow(std::max(roughness, 0.03), 4);  // α²
+  const double h = pair.geometry.half[2], l = pair.light[2], v = pair.camera[2];
+  const double denominator = h * h * (square - 1) + 1;
+  const double distribution = square / (kPi * denominator * denominator);
+  const double masking =
+      l * std::sqrt(v * v * (1 - square) + square) + v * std::sqrt(l * l * (1 - square) + square);
+  return distribution * 0.5 / std::max(masking, 1e-9);
+}
+
+double SchlickWeight(double cosine) { return std::pow(1 - std::clamp(cosine, 0.0, 1.0), 5); }
+
+std::vector<DirectionPair> PairsForRoughness(double roughness) { return Pairs(roughness, kPairs); }
+
+double ShadingError(
+    const SvbrdfMaps& maps, DiffuseWeight weight,
+    const std::function<std::array<double, 3>(size_t texel, const DirectionPair& pair)>& target) {
+  const size_t count = std::min(maps.texels(), kErrorTexels);
+  double sum = 0;
+  for (size_t k = 0; k < count; ++k) {
+    const size_t i = (2 * k + 1) * maps.texels() / (2 * count);
+    TexelSvbrdf<double> texel{{0, 0, 1}, {}, {}, maps.plane(kRoughness)[i]};
+    for (int c = 0; c < 3; ++c) {
+      texel.diffuse[c] = maps.plane(kDiffuseR + c)[i];
+      texel.specular[c] = maps.plane(kSpecularR + c)[i];
+    }
+    for (const DirectionPair& pair : Pairs(texel.roughness, kErrorPairs)) {
+      double ours[3];
+      EvaluateBrdf(texel, pair.geometry, weight, ours);
+      const std::array<double, 3> theirs = target(i, pair);
+      const double received = kPi * pair.light[2];
+      for (size_t c = 0; c < 3; ++c) {
+        sum += std::abs(std::log(received * std::max(theirs[c], 0.0) + kLogOffset) -
+                        std::log(received * ours[c] + kLogOffset));
+      }
+    }
+  }
+  return sum / static_cast<double>(3 * kErrorPairs * count);
+}
+
+}  // namespace glint

@@ -1,0 +1,39 @@
+// Pairs of light and view directions by which another program's shading is compared with ours.
+// Directions are unit and in the frame of a texel's normal.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "fitting/reflectance/brdf.h"
+#include "fitting/reflectance/convention.h"
+#include "fitting/reflectance/svbrdf_maps.h"
+
+namespace glint {
+
+struct DirectionPair {
+  std::array<double, 3> light, camera;
+  double v_dot_h = 1;
+  TexelGeometry<double> geometry;  // unit irradiance, no ambient light
+};
+
+DirectionPair MakePair(const std::array<double, 3>& light, const std::array<double, 3>& camera);
+
+// What other programs' GGX lobes have in common: D·G/(4·NoL·NoV) with Smith's height-correlated
+// masking (Heitz, JCGT 2014) of α = roughness², and Schlick's (1 − VoH)⁵.
+double SmithSpecular(const DirectionPair& pair, double roughness);
+double SchlickWeight(double cosine);
+
+// Half of them on the highlight of that roughness (half vectors distributed as its normals are),
+// half anywhere within 70° of the normal.
+std::vector<DirectionPair> PairsForRoughness(double roughness);
+
+// How far a shading model is from ours: mean over channels, a hundred pairs (fifty of each kind)
+// and up to 4,096 texels of |log(target + 0.01) − log(ours + 0.01)|, in radiance of which a white
+// matte texel under perpendicular light has 1. `target`: its f of a texel and pair.
+double ShadingError(
+    const SvbrdfMaps& maps, DiffuseWeight weight,
+    const std::function<std::array<double, 3>(size_t texel, const DirectionPair& pair)>& target);
+
+}  // namespace glint

@@ -1,0 +1,74 @@
+#include "pipeline/export/materialx_material.h"
+
+namespace glint {
+namespace {
+
+std::string Input(const std::string& name, const std::string& type, const std::string& rest) {
+  return "      <input name=\"" + name + "\" type=\"" + type + "\" " + rest + " />\n";
+}
+
+std::string Node(const std::string& category, const std::string& name, const std::string& type,
+                 const std::string& inputs) {
+  return "    <" + category + " name=\"" + name + "\" type=\"" + type + "\">\n" + inputs +
+         "    </" + category + ">\n";
+}
+
+std::string From(const std::string& node) { return "nodename=\"" + node + "\""; }
+std::string Value(const std::string& value) { return "value=\"" + value + "\""; }
+
+std::string Picture(const std::string& name, const std::string& type, const std::string& file,
+                    bool srgb) {
+  const std::string space = srgb ? " colorspace=\"srgb_texture\"" : "";
+  return Node("image", name, type, Input("file", "filename", Value(file) + space));
+}
+
+}  // namespace
+
+std::string MaterialXOf(const ExportedMaterial& material,
+                        const std::function<std::string(const std::string& map)>& file_of) {
+  const bool whole = material.diffuse_weight == DiffuseWeight::kOne;
+  std::string graph;
+  graph += Picture("diffuse", "color3", file_of("diffuse"), true);
+  graph += Picture("specular", "color3", file_of("specular"), true);
+  graph += Picture("roughness", "float", file_of("roughness"), false);
+  graph += Picture("normal", "vector3", file_of("normal_gl"), false);
+  graph += Node("normalmap", "bent", "vector3", Input("in", "vector3", From("normal")));
+  graph +=
+      Node("multiply", "alpha", "float",
+           Input("in1", "float", From("roughness")) + Input("in2", "float", From("roughness")));
+  graph += Node("combine2", "alpha_both", "vector2",
+                Input("in1", "float", From("alpha")) + Input("in2", "float", From("alpha")));
+  if (!whole) {  // the diffuse lobe has weight 1 − F0
+    graph += Node("invert", "left", "color3", Input("in", "color3", From("specular")));
+    graph += Node("multiply", "albedo", "color3",
+                  Input("in1", "color3", From("diffuse")) + Input("in2", "color3", From("left")));
+  }
+  graph +=
+      Node("oren_nayar_diffuse_bsdf", "matte", "BSDF",
+           Input("color", "color3", From(whole ? "diffuse" : "albedo")) +
+               Input("roughness", "float", Value("0")) + Input("normal", "vector3", From("bent")));
+  graph += Node(
+      "generalized_schlick_bsdf", "glossy", "BSDF",
+      Input("color0", "color3", From("specular")) + Input("color90", "color3", Value("1, 1, 1")) +
+          Input("exponent", "float", Value("5")) +
+          Input("roughness", "vector2", From("alpha_both")) +
+          Input("normal", "vector3", From("bent")) + Input("scatter_mode", "string", Value("R")));
+  graph += Node("add", "both", "BSDF",
+                Input("in1", "BSDF", From("matte")) + Input("in2", "BSDF", From("glossy")));
+  graph += Node("surface", "reflectance", "surfaceshader", Input("bsdf", "BSDF", From("both")));
+  graph += "    <output name=\"out\" type=\"surfaceshader\" nodename=\"reflectance\" />\n";
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+         "<materialx version=\"1.38\" colorspace=\"lin_rec709\">\n"
+         "  <nodegraph name=\"svbrdf\">\n" +
+         graph +
+         "  </nodegraph>\n"
+         "  <surfacematerial name=\"" +
+         material.name +
+         "\" type=\"material\">\n"
+         "    <input name=\"surfaceshader\" type=\"surfaceshader\" nodegraph=\"svbrdf\" "
+         "output=\"out\" />\n"
+         "  </surfacematerial>\n"
+         "</materialx>\n";
+}
+
+}  // namespace glint

@@ -1,0 +1,242 @@
+#include "pipeline/export/metal_roughness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/parallel/parallel.h"
+#include "fitting/reflectance/brdf.h"
+#include "pipeline/export/direction_pairs.h"
+
+namespace glint {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kLogOffset = 0.01;
+constexpr int kMetalnesses = 13;  // that are tried, denser near 0, where F0 is a little above 0.04
+constexpr double kLeastRoughness = 0.03;
+constexpr int kRoughnessBins = 64;
+constexpr size_t kMostPairs = 64;
+
+// Of a label, or of a place between two.
+double Metalness(double label) {
+  const double t = std::clamp(label / (kMetalnesses - 1), 0.0, 1.0);
+  return t * t;
+}
+
+// One pair's part of the target that does not depend on the texel's colour.
+struct PairTerms {
+  double ours = 0;         // our D·G/(4·NoL·NoV) …
+  double our_fresnel = 0;  // … and the power in our F
+  double specular = 0;     // the target's
+  double fresnel = 0;
+  double received = 0;  // π·NoL: radiance of f under unit irradiance, white matte 1
+};
+
+// The target as slope·base + rest.
+struct Linear {
+  double slope = 0, rest = 0;
+};
+
+Linear TargetOf(const PairTerms& pair, double metallic) {
+  const double dielectric = kDielectricF0 + (1 - kDielectricF0) * pair.fresnel;
+  return {(1 - metallic) * (1 - dielectric) / kPi + metallic * pair.specular * (1 - pair.fresnel),
+          pair.specular * ((1 - metallic) * dielectric + metallic * pair.fresnel)};
+}
+
+PairTerms TermsOf(const DirectionPair& pair, double roughness) {
+  TexelSvbrdf<double> texel{{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, roughness};
+  return {SpecularFactor(texel, pair.geometry), pair.geometry.fresnel,
+          SmithSpecular(pair, roughness), SchlickWeight(pair.v_dot_h), kPi * pair.light[2]};
+}
+
+// By roughness: the terms of its pairs.
+std::vector<std::vector<PairTerms>> TermsByRoughness() {
+  std::vector<std::vector<PairTerms>> table;
+  for (int bin = 0; bin < kRoughnessBins; ++bin) {
+    const double roughness = std::max(kLeastRoughness, (bin + 0.5) / kRoughnessBins);
+    std::vector<PairTerms>& terms = table.emplace_back();
+    for (const DirectionPair& pair : PairsForRoughness(roughness)) {
+      terms.push_back(TermsOf(pair, roughness));
+    }
+  }
+  return table;
+}
+
+struct Texel {
+  std::array<double, 3> diffuse, specular;  // diffuse with its lobe's weight
+  double roughness = 0;
+};
+
+Texel TexelOf(const SvbrdfMaps& maps, DiffuseWeight weight, size_t i) {
+  Texel texel;
+  for (int c = 0; c < 3; ++c) {
+    const double specular = maps.plane(kSpecularR + c)[i];
+    const double left = weight == DiffuseWeight::kOne ? 1 : 1 - specular;
+    texel.specular[static_cast<size_t>(c)] = specular;
+    texel.diffuse[static_cast<size_t>(c)] = maps.plane(kDiffuseR + c)[i] * left;
+  }
+  texel.roughness = maps.plane(kRoughness)[i];
+  return texel;
+}
+
+// The best base colour of a channel, and the mean error that it leaves.
+struct Best {
+  double base = 0, error = 0;
+};
+
+// Of log radiance; errors below count as squares, larger ones as they are: a highlight that the
+// target cannot have is not to spoil what it can.
+constexpr double kRobustScale = 0.05;
+constexpr int kReweightings = 4;
+
+Best BestBase(const std::vector<PairTerms>& pairs, double metallic, double diffuse,
+              double specular) {
+  std::array<double, kMostPairs> ours, slopes, rests, weights;  // radiances, 0.01 added to ours
+  const size_t count = std::min(pairs.size(), ours.size());
+  for (size_t i = 0; i < count; ++i) {
+    const PairTerms& pair = pairs[i];
+    const double brdf = diffuse / kPi + pair.ours * (specular + (1 - specular) * pair.our_fresnel);
+    const Linear target = TargetOf(pair, metallic);
+    ours[i] = pair.received * brdf + kLogOffset;
+    slopes[i] = pair.received * target.slope;
+    rests[i] = pair.received * target.rest + kLogOffset;
+    weights[i] = 1 / (ours[i] * ours[i]);
+  }
+  Best best;
+  for (int round = 0; round < kReweightings; ++round) {
+    double squares = 1e-12, products = 0;
+    for (size_t i = 0; i < count; ++i) {
+      squares += weights[i] * slopes[i] * slopes[i];
+      products += weights[i] * slopes[i] * (ours[i] - rests[i]);
+    }
+    best.base = std::clamp(products / squares, 0.0, 1.0);
+    best.error = 0;
+    for (size_t i = 0; i < count; ++i) {
+      // 2(x − 1)/(x + 1) is log x to third order.
+      const double theirs = best.base * slopes[i] + rests[i], mean = 0.5 * (theirs + ours[i]);
+      const double off = (theirs - ours[i]) / mean;
+      const double size = std::sqrt(off * off + kRobustScale * kRobustScale);
+      weights[i] = 1 / (size * mean * mean);
+      best.error += (size - kRobustScale) / static_cast<double>(count);
+    }
+  }
+  return best;
+}
+
+const std::vector<PairTerms>& PairsOf(const std::vector<std::vector<PairTerms>>& table,
+                                      double roughness) {
+  const int bin = std::clamp(static_cast<int>(roughness * kRoughnessBins), 0, kRoughnessBins - 1);
+  return table[static_cast<size_t>(bin)];
+}
+
+// √ of albedos, in which steps look alike.
+std::array<float, 6> ColourOf(const SvbrdfMaps& maps, size_t i) {
+  std::array<float, 6> colour;
+  for (int c = 0; c < 3; ++c) {
+    colour[static_cast<size_t>(c)] = std::sqrt(std::max(0.0f, maps.plane(kDiffuseR + c)[i]));
+    colour[static_cast<size_t>(3 + c)] = std::sqrt(std::max(0.0f, maps.plane(kSpecularR + c)[i]));
+  }
+  return colour;
+}
+
+using Costs = std::array<float, kMetalnesses>;
+
+// Where a parabola through the least cost and its neighbours is least.
+double BestMetalness(const Costs& costs) {
+  const int best = static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());
+  if (best == 0 || best == kMetalnesses - 1) return Metalness(best);
+  const double below = costs[static_cast<size_t>(best - 1)], at = costs[static_cast<size_t>(best)];
+  const double above = costs[static_cast<size_t>(best + 1)];
+  const double curvature = below - 2 * at + above;
+  const double shift = curvature > 1e-12 ? 0.5 * (below - above) / curvature : 0;
+  return Metalness(best + shift);
+}
+
+}  // namespace
+
+std::array<float, 3> MetalRoughness::ColorAt(size_t texel) const {
+  return {base_color[texel], base_color[metallic.size() + texel],
+          base_color[2 * metallic.size() + texel]};
+}
+
+MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, DiffuseWeight weight,
+                                const MetalRoughnessOptions& options, int threads) {
+  const auto table = TermsByRoughness();
+  const size_t texels = maps.texels();
+  std::vector<Costs> costs(texels);
+  std::vector<std::array<float, 6>> colours(texels);
+  ForEachBlock(static_cast<int>(texels), 4096, threads, [&](int begin, int end) {
+    for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+      const Texel texel = TexelOf(maps, weight, i);
+      const auto& pairs = PairsOf(table, texel.roughness);
+      colours[i] = ColourOf(maps, i);
+      for (int label = 0; label < kMetalnesses; ++label) {
+        const double m = Metalness(label);
+        double cost = 4 * options.blend_cost * m * (1 - m);
+        for (size_t c = 0; c < 3; ++c) {
+          cost += BestBase(pairs, m, texel.diffuse[c], texel.specular[c]).error / 3;
+        }
+        costs[i][static_cast<size_t>(label)] = static_cast<float>(cost);
+      }
+    }
+  });
+  MetalRoughness result{maps.width, maps.height, std::vector<float>(3 * texels),
+                        std::vector<float>(texels)};
+  const float narrow = static_cast<float>(0.5 / (options.colour_width * options.colour_width));
+  ForEachBlock(maps.height, 8, threads, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) {
+      for (int column = 0; column < maps.width; ++column) {
+        const auto at = [&](int r, int c) {
+          return static_cast<size_t>(r) * static_cast<size_t>(maps.width) + static_cast<size_t>(c);
+        };
+        const size_t i = at(row, column);
+        Costs sum{};
+        for (int r = std::max(0, row - options.radius);
+             r <= std::min(maps.height - 1, row + options.radius); ++r) {
+          for (int c = std::max(0, column - options.radius);
+               c <= std::min(maps.width - 1, column + options.radius); ++c) {
+            const size_t other = at(r, c);
+            float distance = 0;
+            for (size_t k = 0; k < 6; ++k) {
+              const float d = colours[other][k] - colours[i][k];
+              distance += d * d;
+            }
+            const float share = std::exp(-narrow * distance);
+            for (size_t k = 0; k < kMetalnesses; ++k) sum[k] += share * costs[other][k];
+          }
+        }
+        const double metallic = BestMetalness(sum);
+        result.metallic[i] = static_cast<float>(metallic);
+        const Texel texel = TexelOf(maps, weight, i);
+        const auto& pairs = PairsOf(table, texel.roughness);
+        for (size_t k = 0; k < 3; ++k) {
+          result.base_color[k * texels + i] = static_cast<float>(
+              BestBase(pairs, metallic, texel.diffuse[k], texel.specular[k]).base);
+        }
+      }
+    }
+  });
+  return result;
+}
+
+std::array<double, 3> MetalRoughnessBrdf(const std::array<float, 3>& base_color, double metallic,
+                                         double roughness, const std::array<double, 3>& light,
+                                         const std::array<double, 3>& camera) {
+  const PairTerms terms = TermsOf(MakePair(light, camera), roughness);
+  const Linear target = TargetOf(terms, metallic);
+  std::array<double, 3> brdf;
+  for (size_t c = 0; c < 3; ++c) brdf[c] = target.slope * base_color[c] + target.rest;
+  return brdf;
+}
+
+double MetalRoughnessError(const MetalRoughness& converted, const SvbrdfMaps& maps,
+                           DiffuseWeight weight) {
+  const auto target = [&](size_t texel, const DirectionPair& pair) {
+    return MetalRoughnessBrdf(converted.ColorAt(texel), converted.metallic[texel],
+                              maps.plane(kRoughness)[texel], pair.light, pair.camera);
+  };
+  return ShadingError(maps, weight, target);
+}
+
+}  // namespace glint

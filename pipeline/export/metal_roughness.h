@@ -1,0 +1,54 @@
+// Base colour and metalness: the maps of a metal-roughness material whose own shading is nearest to
+// ours.
+//
+// The target is glTF 2.0's material (specification, appendix B.2) with the roughness as it is: a
+// dielectric of F0 = 0.04 whose diffuse lobe is weighted by 1 − F, blended with a metal of F0 =
+// base colour. For a given metalness its radiance is linear in base colour, so for each of a few
+// metalnesses the best base colour over pairs of light and view directions, on the highlight and
+// beside it, is a closed form. What errors these leave is averaged over neighbours of like colour
+// (cost-volume filtering: Hosni et al., PAMI 2013) before a texel takes the best, so that metalness
+// is a property of substances, not of single texels.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fitting/reflectance/convention.h"
+#include "fitting/reflectance/svbrdf_maps.h"
+
+namespace glint {
+
+inline constexpr double kDielectricF0 = 0.04;
+
+struct MetalRoughnessOptions {
+  int radius = 4;             // texels, of the neighbours whose errors are averaged
+  double colour_width = 0.1;  // of √albedo, by which neighbours may differ
+  // Cost of metalness ½ beside 0 and 1: nothing is half a metal. Of log radiance.
+  double blend_cost = 0.003;
+};
+
+struct MetalRoughness {
+  int width = 0, height = 0;
+  std::vector<float> base_color;  // linear, planar, 3·H·W, 0 to 1
+  std::vector<float> metallic;    // H·W, 0 to 1
+
+  std::array<float, 3> ColorAt(size_t texel) const;
+};
+
+// The same for any number of threads.
+MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, DiffuseWeight weight,
+                                const MetalRoughnessOptions& options, int threads);
+
+// Its reflectance of the texel under one pair of directions, given in the frame of the texel's
+// normal: f [1/sr] per channel.
+std::array<double, 3> MetalRoughnessBrdf(const std::array<float, 3>& base_color, double metallic,
+                                         double roughness, const std::array<double, 3>& light,
+                                         const std::array<double, 3>& camera);
+
+// How faithful it is: mean over channels, a hundred pairs of directions and up to 4,096 texels of
+// |log(target + 0.01) − log(ours + 0.01)|, radiance of a white matte texel under perpendicular
+// light 1.
+double MetalRoughnessError(const MetalRoughness& converted, const SvbrdfMaps& maps,
+                           DiffuseWeight weight);
+
+}  // namespace glint

@@ -1,0 +1,96 @@
+#include "pipeline/export/material_formats.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "pipeline/contract/errors.h"
+#include "tests/pipeline/export/exported_material.h"
+
+namespace glint {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::array<float, kSvbrdfPlanes> kValues = {0,    0,    1,     0.4f,  0.3f,
+                                                  0.2f, 0.1f, 0.08f, 0.06f, 0.4f};
+
+std::string FileOfMap(const std::string& map) { return "wood_" + map + ".png"; }
+
+const MaterialFormat& Format(const std::string& name) {
+  static std::vector<MaterialFormat> chosen;
+  chosen = ChosenFormats({name});
+  return chosen.front();
+}
+
+std::string Written(const std::string& name, DiffuseWeight weight = DiffuseWeight::kOne) {
+  return Format(name).write(test::MaterialOf(test::UniformMaps(kValues), weight), FileOfMap);
+}
+
+// Every node that another reads is there.
+TEST(MaterialFormatsTest, MaterialXNamesTheNodesItConnects) {
+  for (const auto weight : {DiffuseWeight::kOne, DiffuseWeight::kOneMinusSpecular}) {
+    const std::string text = Written("materialx", weight);
+    const std::regex connected("node(?:name|graph)=\"([a-z_]+)\"");
+    int connections = 0;
+    for (std::sregex_iterator i(text.begin(), text.end(), connected), end; i != end; ++i) {
+      EXPECT_THAT(text, HasSubstr(" name=\"" + (*i)[1].str() + "\""));
+      ++connections;
+    }
+    EXPECT_GT(connections, 10);
+    EXPECT_THAT(text, HasSubstr("generalized_schlick_bsdf"));
+    EXPECT_EQ(text.find("invert") != std::string::npos, weight != DiffuseWeight::kOne);
+  }
+}
+
+TEST(MaterialFormatsTest, UsdHasThePlaneInMetresAndClosesWhatItOpens) {
+  const std::string text = Written("usd");
+  EXPECT_THAT(text, HasSubstr("metersPerUnit = 1"));
+  EXPECT_THAT(text, HasSubstr("(-0.06, -0.04, 0)"));
+  EXPECT_THAT(text, HasSubstr("asset inputs:file = @wood_specular.png@"));
+  EXPECT_THAT(text, HasSubstr("int inputs:useSpecularWorkflow = 1"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '{'), std::count(text.begin(), text.end(), '}'));
+}
+
+TEST(MaterialFormatsTest, UsdNamesPrimsByIdentifiers) {
+  ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));
+  material.name = "2nd-oak.v1";
+  const std::string text = Format("usd").write(material, FileOfMap);
+  EXPECT_THAT(text, HasSubstr("def Xform \"_2nd_oak_v1\""));
+}
+
+TEST(MaterialFormatsTest, BlendersScriptHasTrueScale) {
+  const std::string text = Written("blender");
+  EXPECT_THAT(text, HasSubstr("WIDTH_M, HEIGHT_M = 0.12, 0.08"));
+  EXPECT_THAT(text, HasSubstr("HEIGHT_LOW_M, HEIGHT_RANGE_M = -0.0005, 0.00125"));
+  EXPECT_THAT(text, HasSubstr("DIFFUSE_WHOLE = True"));
+  EXPECT_THAT(Written("blender", DiffuseWeight::kOneMinusSpecular),
+              HasSubstr("DIFFUSE_WHOLE = False"));
+}
+
+// The formats that keep F0 are nearer to ours than base colour and metalness alone can be.
+TEST(MaterialFormatsTest, WholeMaterialsAreMoreFaithfulThanMetalRoughness) {
+  const ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));
+  const double metal_roughness =
+      MetalRoughnessError(material.metal, material.maps, material.diffuse_weight);
+  for (const MaterialFormat& format : MaterialFormats()) {
+    const double error = ShadingError(material.maps, material.diffuse_weight,
+                                      [&](size_t texel, const DirectionPair& pair) {
+                                        return format.brdf(material, texel, pair);
+                                      });
+    EXPECT_GT(error, 0) << format.name;
+    EXPECT_LT(error, 0.06) << format.name;
+    EXPECT_LT(error, metal_roughness) << format.name;
+  }
+}
+
+TEST(MaterialFormatsTest, RefusesAFormatThatIsNone) {
+  EXPECT_THROW(ChosenFormats({"gltf", "obj"}), UserError);
+  EXPECT_EQ(ChosenFormats({"usd", "gltf"}).size(), 2u);
+  EXPECT_EQ(ChosenFormats({}).size(), MaterialFormats().size());
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,97 @@
+#include "pipeline/export/metal_roughness.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/pipeline/export/exported_material.h"
+
+namespace glint {
+namespace {
+
+using test::UniformMaps;
+
+// Two foils on card: a rough dielectric and a coloured metal, each with noise.
+SvbrdfMaps Foils(int size) {
+  std::mt19937 random(4);
+  std::normal_distribution<float> normal(0, 1);
+  SvbrdfMaps maps(size, size);
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      const size_t i = static_cast<size_t>(row) * size + column;
+      const bool metal = column >= size / 2;
+      const float card[kSvbrdfPlanes] = {0, 0, 1, 0.5f, 0.3f, 0.2f, 0.04f, 0.04f, 0.04f, 0.5f};
+      const float gold[kSvbrdfPlanes] = {0, 0, 1, 0.02f, 0.02f, 0.02f, 0.9f, 0.7f, 0.3f, 0.3f};
+      for (int p = 0; p < kSvbrdfPlanes; ++p) {
+        const float value = metal ? gold[p] : card[p];
+        const float noise = p > kNormalZ ? 0.15f * value * normal(random) : 0.0f;
+        maps.plane(p)[i] = std::clamp(value + noise, p > kNormalZ ? 0.01f : -1.0f, 1.0f);
+      }
+    }
+  }
+  return maps;
+}
+
+// What a metal-roughness material can be comes back: dielectrics and metals.
+TEST(MetalRoughnessTest, RecoversWhatItCanBe) {
+  const auto plastic =
+      ToMetalRoughness(UniformMaps({0, 0, 1, 0.8f, 0.5f, 0.2f, 0.04f, 0.04f, 0.04f, 0.4f}),
+                       DiffuseWeight::kOneMinusSpecular, {}, 1);
+  EXPECT_NEAR(plastic.metallic[5], 0, 0.01);
+  EXPECT_NEAR(plastic.ColorAt(5)[0], 0.8, 0.03);
+  EXPECT_NEAR(plastic.ColorAt(5)[2], 0.2, 0.02);
+  const auto gold = ToMetalRoughness(UniformMaps({0, 0, 1, 0, 0, 0, 0.9f, 0.7f, 0.3f, 0.3f}),
+                                     DiffuseWeight::kOne, {}, 1);
+  EXPECT_NEAR(gold.metallic[5], 1, 0.02);
+  EXPECT_NEAR(gold.ColorAt(5)[0], 0.9, 0.03);
+  EXPECT_NEAR(gold.ColorAt(5)[2], 0.3, 0.03);
+}
+
+TEST(MetalRoughnessTest, MetalnessIsOfSubstancesNotOfTexels) {
+  const SvbrdfMaps maps = Foils(48);
+  const auto found = ToMetalRoughness(maps, DiffuseWeight::kOne, {}, 2);
+  int wrong = 0;
+  for (int row = 0; row < 48; ++row) {
+    for (int column = 0; column < 48; ++column) {
+      const float truth = column >= 24 ? 1.0f : 0.0f;
+      wrong += std::abs(found.metallic[static_cast<size_t>(row) * 48 + column] - truth) > 0.3f;
+    }
+  }
+  EXPECT_LT(wrong, 12);  // half a per cent
+  MetalRoughnessOptions alone;
+  alone.radius = 0;
+  alone.blend_cost = 0;
+  // Sharing costs little of what single texels could be.
+  EXPECT_LT(MetalRoughnessError(found, maps, DiffuseWeight::kOne),
+            1.2 * MetalRoughnessError(ToMetalRoughness(maps, DiffuseWeight::kOne, alone, 1), maps,
+                                      DiffuseWeight::kOne));
+}
+
+// No base colour nearby explains it better.
+TEST(MetalRoughnessTest, IsTheBestOfItsNeighbourhood) {
+  const SvbrdfMaps maps = UniformMaps({0, 0, 1, 0.3f, 0.2f, 0.1f, 0.12f, 0.1f, 0.08f, 0.35f});
+  MetalRoughnessOptions options;
+  options.blend_cost = 0;
+  const MetalRoughness found = ToMetalRoughness(maps, DiffuseWeight::kOne, options, 1);
+  const double error = MetalRoughnessError(found, maps, DiffuseWeight::kOne);
+  for (const float factor : {0.8f, 1.25f}) {
+    MetalRoughness other = found;
+    for (float& base : other.base_color) base = std::min(1.0f, base * factor);
+    EXPECT_GT(MetalRoughnessError(other, maps, DiffuseWeight::kOne), error);
+    other = found;
+    for (float& metallic : other.metallic) metallic = std::min(1.0f, metallic * factor * factor);
+    EXPECT_GT(MetalRoughnessError(other, maps, DiffuseWeight::kOne), 0.98 * error);
+  }
+}
+
+TEST(MetalRoughnessTest, DoesNotDependOnTheNumberOfThreads) {
+  const SvbrdfMaps maps = Foils(24);
+  const auto one = ToMetalRoughness(maps, DiffuseWeight::kOne, {}, 1);
+  const auto three = ToMetalRoughness(maps, DiffuseWeight::kOne, {}, 3);
+  EXPECT_EQ(one.base_color, three.base_color);
+  EXPECT_EQ(one.metallic, three.metallic);
+}
+
+}  // namespace
+}  // namespace glint
