@@ -110,6 +110,14 @@ RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
   return photograph;
 }
 
+View ViewOfFit(const FittedMaps& fit, const RectifiedView& view) {
+  const auto found = fit.corrections.find(view.name);
+  View lit = WithFlashOffset(view.view, fit.flash_offset_mm);
+  if (found != fit.corrections.end()) lit = CorrectedView(lit, found->second);
+  for (int c = 0; c < 3; ++c) lit.light_rgb[c] *= fit.light_scale_rgb[c];
+  return lit;
+}
+
 std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
                              const RectifiedView& view, int threads) {
   const bool same_size = fit.maps.width == set.plane.width && fit.maps.height == set.plane.height;
@@ -118,12 +126,7 @@ std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
   // The maps are of the fit's diffuse weight; light and texels are the set's.
   ReflectanceConvention convention = set.convention;
   convention.diffuse_weight = fit.convention.diffuse_weight;
-  const auto found = fit.corrections.find(view.name);
-  View lit = WithFlashOffset(view.view, fit.flash_offset_mm);
-  if (found != fit.corrections.end()) lit = CorrectedView(lit, found->second);
-  for (int c = 0; c < 3; ++c) {
-    lit.light_rgb[c] *= fit.light_scale_rgb[c];
-  }
+  const View lit = ViewOfFit(fit, view);
   std::vector<float> rendered(3 * maps.texels());
   RenderView(maps, set.plane, lit, convention, rendered.data(), threads);
   AddRoomLight(fit.room, maps, set.plane, lit, convention, rendered.data(), threads);

@@ -52,6 +52,9 @@ FittedMaps ReadFittedMaps(const std::filesystem::path& path);
 RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
                                const RectifiedView& view);
 
+// Camera and light of `view` as the fit found them; the room's light apart.
+View ViewOfFit(const FittedMaps& fit, const RectifiedView& view);
+
 // Renders `view` of `set`, as the fit found it to be lit, from the fit, at the set's size.
 std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
                              const RectifiedView& view, int threads);

@@ -85,8 +85,9 @@ std::string CorrectionsSection(const ReportInput& input) {
   }
   const bool moved = std::any_of(input.fit.corrections.begin(), input.fit.corrections.end(),
                                  [](const auto& view) { return !view.second.none(); });
-  body += moved ? "Lights, exposures and pictures are as the table says; all views are shown so.</p>\n"
-                : "Lights, exposures and pictures are as they were said to be.</p>\n";
+  body +=
+      moved ? "Lights, exposures and pictures are as the table says; all views are shown so.</p>\n"
+            : "Lights, exposures and pictures are as they were said to be.</p>\n";
   if (input.fit.room.degree() > 0) body += RoomFigure(input.fit.room);
   if (moved) body += ViewsTable(input);
   return "<section>\n" + SourceLink(kLink) + "<h2>Corrected</h2>\n" + body + "</section>\n";

@@ -7,7 +7,8 @@ namespace glint {
 namespace {
 
 constexpr char kStyle[] = R"(
-:root { --ink: #1d2129; --soft: #667085; --line: #e4e7ec; --paper: #ffffff; --ground: #f7f7f5; --mark: #b54708; }
+:root { --ink: #1d2129; --soft: #5b6472; --line: #e4e7ec; --paper: #ffffff; --ground: #f7f7f5; --mark: #b54708; --link: #175cd3; --stage: #24262b; color-scheme: light dark; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e8eaed; --soft: #a3abb8; --line: #33373e; --paper: #1c1f24; --ground: #131519; --mark: #f4a460; --link: #7fb0ff; --stage: #0c0d10; } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--ground); color: var(--ink); font: 15px/1.5 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; }
 main { max-width: 1180px; margin: 0 auto; padding: 28px 20px 60px; }
@@ -16,7 +17,7 @@ h2 { font-size: 19px; margin: 0 0 12px; }
 h3 { font-size: 15px; margin: 18px 0 6px; }
 p { margin: 0 0 10px; color: var(--soft); max-width: 80ch; }
 section { background: var(--paper); border: 1px solid var(--line); border-radius: 8px; padding: 20px 22px; margin-top: 18px; }
-a { color: #175cd3; text-decoration: none; } a:hover { text-decoration: underline; }
+a { color: var(--link); text-decoration: none; } a:hover { text-decoration: underline; }
 .source { float: right; font-size: 12px; }
 .figures { display: flex; flex-wrap: wrap; gap: 12px 34px; margin-top: 12px; }
 .figures div { min-width: 110px; }
@@ -36,6 +37,18 @@ td.number, th.number { text-align: right; } tr:last-child td { border-bottom: 0;
 .charts { display: flex; flex-wrap: wrap; gap: 18px; } svg text { font: 11px system-ui, "DejaVu Sans", sans-serif; fill: #667085; }
 details { margin-top: 8px; } summary { cursor: pointer; color: var(--soft); }
 table.pairs { width: auto; min-width: 320px; } table + p { margin-top: 12px; } .scroll + p { margin-top: 12px; }
+.viewer { background: var(--paper); border: 1px solid var(--line); border-radius: 8px; margin-top: 14px; overflow: hidden; }
+.viewer .stage { position: relative; background: var(--stage); height: min(68vh, 92vw, 720px); touch-action: none; }
+.viewer canvas { width: 100%; height: 100%; display: block; outline-offset: -3px; }
+.viewer #viewer-photograph { display: none; position: absolute; }
+.viewer.comparing .stage { height: auto; display: grid; justify-items: center; touch-action: auto; }
+.viewer.comparing canvas, .viewer.comparing #viewer-photograph { display: block; position: static; grid-area: 1 / 1; width: min(100%, 720px); height: auto; }
+.viewer .controls { display: flex; flex-wrap: wrap; gap: 10px 18px; padding: 12px 16px; font-size: 13px; color: var(--soft); }
+.viewer label { display: flex; align-items: center; gap: 6px; } .viewer select { font: inherit; max-width: 180px; padding: 5px; }
+.viewer input[type=range] { width: 130px; } .viewer .compare { display: none; }
+.viewer.comparing .compare { display: flex; } .viewer.comparing .relight, .viewer.failed .controls, .viewer.failed .stage { display: none; }
+.viewer #viewer-note { margin: 0 16px 8px; } .viewer #viewer-note:empty { display: none; }
+details.fold { margin-top: 18px; } details.fold > summary { font-size: 16px; padding: 8px 0; }
 code { font: 12px ui-monospace, "DejaVu Sans Mono", monospace; overflow-wrap: anywhere; }
 )";
 

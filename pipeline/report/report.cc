@@ -5,6 +5,7 @@
 #include "pipeline/report/guidance_section.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/sections.h"
+#include "pipeline/report/viewer_section.h"
 
 namespace glint {
 namespace {
@@ -37,6 +38,8 @@ void AddReportOptions(OptionSet* set, ReportOptions* options) {
   set->AddChoice("from", &options->from, {"refine", "fit"}, "stage whose maps are shown");
   set->AddRange("picture-px", &options->picture_px, 64, 4096,
                 "longest side of a map's picture; photographs have half of that");
+  set->AddRange("viewer-px", &options->viewer_px, 16, 4096,
+                "longest side of the maps that the page's viewer relights");
 }
 
 std::vector<fs::path> ReportManifests(const fs::path& work, const std::string& from) {
@@ -69,16 +72,19 @@ Report MakeReport(const ReportInput& input, const ReportOptions& options, int th
   Report report;
   report.metrics = Json::object();
   const std::string views = ViewsSection(input, options, threads, &report.metrics);
-  std::string body = OverviewSection(input, report.metrics);
+  std::string body = TitleSection(input);
+  body += ViewerSection(input, options);
   body += MapsSection(input, options);
+  body += OverviewSection(input, report.metrics);
   body += GuidanceSection(input);
-  body += CorrectionsSection(input);
-  body += views;
-  body += GeometrySection(input);
+  std::string details = CorrectionsSection(input);
+  details += views;
+  details += GeometrySection(input);
   for (const std::string& stage : StagesShown(options.from)) {
-    if (input.Has(stage)) body += StageSection(input, stage);
+    if (input.Has(stage)) details += StageSection(input, stage);
   }
-  report.html = HtmlPage("Glint: material report", body);
+  body += Folded("Photographs, cameras and every stage in detail", details);
+  report.html = HtmlPage("Glint: material report", body + ViewerScript());
   return report;
 }
 

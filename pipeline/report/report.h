@@ -1,6 +1,7 @@
-// One HTML file that shows a whole result: maps, photographs beside re-renderings, cameras, lights,
-// calibration residuals, loss curves, options. Everything is inside the file; nothing is loaded and
-// nothing runs. Every number carries the manifest and field it comes from (hover over it); those
+// One HTML file that shows a whole result: the material to relight and to compare with its
+// photographs, maps, re-renderings, cameras, lights, calibration residuals, loss curves, options.
+// Everything is inside the file and nothing is loaded; without JavaScript or WebGL the pictures
+// remain. Every number carries the manifest and field it comes from (hover over it); those
 // that the report computes itself are in its own manifest.
 #pragma once
 
@@ -17,11 +18,12 @@
 
 namespace glint {
 
-inline constexpr int kReportVersion = 2;
+inline constexpr int kReportVersion = 3;
 
 struct ReportOptions {
   std::string from = "refine";  // stage whose maps are shown: refine, fit
   int picture_px = 512;         // longest side of a map's picture; views have half of that
+  int viewer_px = 1024;         // longest side of the maps that the viewer relights
 };
 
 void AddReportOptions(OptionSet* set, ReportOptions* options);

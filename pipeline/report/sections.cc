@@ -110,10 +110,27 @@ std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
     figures += HeadFigure(std::string("mean RMSE, ") + label, own_metrics[name]["rmse"],
                           trace.Field("rmse"));
   }
-  figures += "</div>\n";
-  return "<h1>Material report</h1>\n<p>Every number names the manifest and the field it comes from "
-         "when the pointer rests on it.</p>\n" +
-         Section("Overview", "", figures);
+  figures +=
+      "</div>\n<p>Every number names the manifest and the field it comes from when the "
+      "pointer rests on it.</p>\n";
+  return Section("How well the maps explain the photographs", "", figures);
+}
+
+std::string TitleSection(const ReportInput& input) {
+  const Trace rectify{ManifestLink("rectify"), "data"};
+  return "<h1>Material</h1>\n<p>" +
+         FigureHtml(input.set.plane.width_mm, rectify.Field("width_mm")) + " × " +
+         FigureHtml(input.set.plane.height_mm, rectify.Field("height_mm")) + " mm, " +
+         FigureHtml(input.fit.maps.width, rectify.Field("width")) + " × " +
+         FigureHtml(input.fit.maps.height, rectify.Field("height")) + " texels, from " +
+         std::to_string(input.used_views.size()) +
+         (input.used_views.size() == 1 ? " photograph" : " photographs") +
+         ". For other programs: <a href=\"../export/\">maps and material files</a>.</p>\n";
+}
+
+std::string Folded(const std::string& title, const std::string& body) {
+  return "<details class=\"fold\"><summary>" + HtmlText(title) + "</summary>\n" + body +
+         "</details>\n";
 }
 
 std::string MapsSection(const ReportInput& input, const ReportOptions& options) {

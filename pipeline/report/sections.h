@@ -7,6 +7,11 @@
 
 namespace glint {
 
+// The page's head: size, number of photographs, where the maps are.
+std::string TitleSection(const ReportInput& input);
+// A part of the page that is closed at first.
+std::string Folded(const std::string& title, const std::string& body);
+
 std::string OverviewSection(const ReportInput& input, const Json& own_metrics);
 std::string MapsSection(const ReportInput& input, const ReportOptions& options);
 // Renders every view; adds the errors to `own_metrics`.

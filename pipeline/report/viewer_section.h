@@ -1,0 +1,17 @@
+// The page's viewer: the material relit and, photograph by photograph, compared with what the
+// camera saw (pipeline/viewer).
+#pragma once
+
+#include <string>
+
+#include "pipeline/report/report.h"
+
+namespace glint {
+
+// Its place in the page, with the maps and photographs that it shows inside. Where the build has no
+// viewer: a note that says so.
+std::string ViewerSection(const ReportInput& input, const ReportOptions& options);
+// What the end of the page runs; nothing where the build has no viewer.
+std::string ViewerScript();
+
+}  // namespace glint

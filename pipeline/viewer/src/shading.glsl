@@ -1,0 +1,44 @@
+// The reflectance of fitting/reflectance/brdf.h, over the maps as textures.
+
+struct Texel {
+  vec3 normal;    // tangent frame
+  vec3 diffuse;   // weighted by 1 - F0 where the convention says so
+  vec3 specular;  // F0
+  float roughness;
+};
+
+uniform sampler2D diffuseMap;       // sRGB, decoded by the texture unit
+uniform sampler2D specularMap;      // likewise
+uniform sampler2D geometryHighMap;  // normal x, normal y, roughness: high bytes …
+uniform sampler2D geometryLowMap;   // … and low bytes of 16 bits
+uniform bool diffuseWhole;
+
+Texel texelAt(vec2 uv) {
+  Texel t;
+  vec3 g = (texture(geometryHighMap, uv).rgb * 65280.0 + texture(geometryLowMap, uv).rgb * 255.0)
+           / 65535.0;
+  vec2 xy = 2.0 * g.xy - 1.0;
+  t.normal = normalize(vec3(xy, sqrt(max(1e-6, 1.0 - dot(xy, xy)))));
+  t.roughness = max(g.z, 0.02);
+  t.specular = texture(specularMap, uv).rgb;
+  t.diffuse = texture(diffuseMap, uv).rgb;
+  if (!diffuseWhole) t.diffuse *= 1.0 - t.specular;
+  return t;
+}
+
+// f of unit directions n, l, v.
+vec3 brdf(Texel t, vec3 n, vec3 l, vec3 v, float extraAlpha) {
+  vec3 h = normalize(l + v);
+  float noL = max(dot(n, l), 1e-8), noV = max(dot(n, v), 1e-8), voH = max(dot(v, h), 1e-8);
+  float alpha = min(1.0, t.roughness * t.roughness + extraAlpha);
+  vec3 across = n - dot(n, h) * h;
+  float noH = max(dot(n, h), 0.0);
+  // noH²(α² − 1) + 1, without cancellation near the peak.
+  float denominator = noH > 0.0 ? dot(across, across) + noH * noH * alpha * alpha : 1.0;
+  float ratio = alpha / max(denominator, 1e-8);
+  float k = 0.5 * alpha;
+  float masking = (noL * (1.0 - k) + k) * (noV * (1.0 - k) + k);
+  float lobe = ratio * ratio / (4.0 * 3.14159265358979 * masking);
+  vec3 fresnel = t.specular + (1.0 - t.specular) * exp2(voH * (-5.55473 * voH - 6.98316));
+  return t.diffuse / 3.14159265358979 + lobe * fresnel;
+}
