@@ -7,6 +7,7 @@ namespace {
 
 void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
   options->AddPositional("DIR", &o->folder, "the capture's folder", false);
+  options->Add("create", &o->create, "make the folder where there is none");
   options->AddChoice("board", &o->board, {"charuco", "checkerboard", "none"},
                      "kind of board; none: COLMAP finds the cameras");
   options->Add("squares", &o->squares, "COLUMNS,ROWS of squares");

@@ -2,7 +2,9 @@
 
 #include <toml++/toml.h>
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <limits>
+#include <locale>
 #include <memory>
 #include <sstream>
 #include <type_traits>
@@ -22,6 +24,30 @@ std::string Joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
+}
+
+// Each word a number, or numbers with an x between them, as people write sizes: 100x80.
+std::vector<double> NumbersIn(const std::vector<std::string>& words) {
+  std::vector<double> numbers;
+  for (const std::string& word : words) {
+    std::string parts = word;
+    for (const std::string times : {"×", "x", "X"}) {
+      for (size_t at = parts.find(times); at != std::string::npos; at = parts.find(times)) {
+        parts.replace(at, times.size(), " ");
+      }
+    }
+    std::istringstream stream(parts);
+    stream.imbue(std::locale::classic());
+    for (std::string part; stream >> part;) {
+      double number = 0;
+      const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+      if (error != std::errc() || end != part.data() + part.size()) {
+        throw CLI::ConversionError("'" + word + "' is no number");
+      }
+      numbers.push_back(number);
+    }
+  }
+  return numbers;
 }
 
 std::string NumberText(double value) {
@@ -127,6 +153,13 @@ void OptionSet::Register(CLI::App* app) {
             added = app->add_option_function<std::string>(
                 flag, [target](const std::string& text) { *target = text; }, option.help);
             added->type_name("PATH");
+          } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+            const auto parse = [target](const std::vector<std::string>& words) {
+              *target = NumbersIn(words);
+            };
+            added = app->add_option_function<std::vector<std::string>>(flag, parse, option.help);
+            added->type_name("FLOAT");
+            if (!option.positional) added->delimiter(',');
           } else {
             added = app->add_option(flag, *target, option.help);
             if constexpr (IsList<T>::value) {

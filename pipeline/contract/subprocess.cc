@@ -42,8 +42,20 @@ bool Replaced(std::string_view variable, const std::vector<std::string>& environ
                      [&](const std::string& ours) { return ours.starts_with(name); });
 }
 
-pid_t Spawn(const std::vector<std::string>& argv, const fs::path& log,
+// A child whose parent is killed is killed too: nothing goes on writing into a folder that the next
+// run uses. (posix_spawn has no attribute for it; util-linux has, and execs the program itself.)
+std::vector<std::string> DyingWithParent(std::vector<std::string> argv) {
+  constexpr char kSetpriv[] = "/usr/bin/setpriv";
+  // A program that cannot be started is to be our error, not setpriv's.
+  if (::access(kSetpriv, X_OK) == 0 && ::access(argv[0].c_str(), X_OK) == 0) {
+    argv.insert(argv.begin(), {kSetpriv, "--pdeathsig", "KILL", "--"});
+  }
+  return argv;
+}
+
+pid_t Spawn(const std::vector<std::string>& command, const fs::path& log,
             const std::vector<std::string>& environment) {
+  const std::vector<std::string> argv = DyingWithParent(command);
   std::vector<char*> variables;
   for (const std::string& variable : environment) {
     variables.push_back(const_cast<char*>(variable.c_str()));
@@ -65,7 +77,7 @@ pid_t Spawn(const std::vector<std::string>& argv, const fs::path& log,
       posix_spawn(&process, argv[0].c_str(), &actions, nullptr, pointers.data(), variables.data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
-    throw EnvironmentError(argv[0] + ": cannot be started: " + std::strerror(error));
+    throw EnvironmentError(command[0] + ": cannot be started: " + std::strerror(error));
   }
   return process;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "calib/board/board.h"
@@ -45,16 +46,57 @@ std::map<std::string, size_t> CountFiles(const fs::path& folder,
   return counts;
 }
 
-// ["photos/*.jpg", "photos/*.png"], and the number of files that match.
+// A string in TOML.
+std::string Quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
+// ["photos/*.jpg", "photos/*.png"], and the number of files that match. `subfolder` may be empty.
 std::string Patterns(const fs::path& folder, const std::string& subfolder,
                      bool (*wanted)(const fs::path& file), size_t* files) {
   *files = 0;
   std::string list;
   for (const auto& [extension, count] : CountFiles(folder / subfolder, wanted)) {
     *files += count;
-    list += (list.empty() ? "" : ", ") + ("\"" + subfolder + "/*" + extension + "\"");
+    const std::string before = subfolder.empty() ? "" : subfolder + "/";
+    list += (list.empty() ? "" : ", ") + Quoted(before + "*" + extension);
   }
   return list.empty() ? "" : "[" + list + "]";
+}
+
+size_t Photographs(const fs::path& folder) {
+  size_t count = 0;
+  for (const auto& [extension, files] : CountFiles(folder, IsPhoto)) count += files;
+  for (const auto& [extension, files] : CountFiles(folder, IsVideoFileName)) count += files;
+  return count;
+}
+
+// Where the photographs lie: in photos/, or wherever beneath the folder, itself included, most are;
+// not what is of the board alone, or ours.
+std::string PhotoFolder(const fs::path& folder) {
+  if (Photographs(folder / "photos") > 0) return "photos";
+  std::string found = "photos";
+  size_t most = 0;
+  const auto consider = [&](const std::string& subfolder) {
+    const size_t count = Photographs(folder / subfolder);
+    if (count > most) most = count, found = subfolder;
+  };
+  consider("");
+  std::set<std::string> subfolders;  // in an order that no file system decides
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename();
+    if (entry.is_directory() && name[0] != '.' && name != "board" && name != "glint") {
+      subfolders.insert(name);
+    }
+  }
+  for (const std::string& subfolder : subfolders) consider(subfolder);
+  return found;
 }
 
 std::string NumberText(double value) {
@@ -132,12 +174,20 @@ std::vector<double> RoomInBoard_mm(const Board& board) {
           std::max(room.top_mm - room.bottom_mm - 2 * kSampleMargin_mm, 1.0)};
 }
 
+// Of the window; none: the sample lies on or beside the board.
+std::vector<double> Opening_mm(const Board& board) {
+  const auto opening = OpeningInSample(board);
+  if (!opening) return {};
+  return {opening->right_mm - opening->left_mm, opening->top_mm - opening->bottom_mm};
+}
+
 // What lies round the sample, as capture.toml says it, and the size of the sample that goes with
 // it.
 struct Surroundings {
   std::string text;
   std::vector<double> sample_mm;
-  std::string centre_from;  // where centre_mm counts from
+  std::string centre_from;      // where centre_mm counts from
+  std::vector<double> most_mm;  // what the board leaves room for; empty: unknown
 };
 
 std::string BoardPhotosText(const std::string& board_photos) {
@@ -185,10 +235,12 @@ Surroundings WithBoard(const InitOptions& options, const std::string& board_phot
   const fs::path board_file = options.folder / "board.json";
   if (fs::exists(board_file)) {
     const Board board = ReadBoardFile(board_file).board;
-    return {BoardFileText(board, board_photos), RoomInBoard_mm(board), "the board's centre"};
+    return {BoardFileText(board, board_photos), RoomInBoard_mm(board), "the board's centre",
+            Opening_mm(board)};
   }
   const Board board = DescribedBoard(options, &window);
-  return {BoardText(options, window, board_photos), RoomInBoard_mm(board), "the board's centre"};
+  return {BoardText(options, window, board_photos), RoomInBoard_mm(board), "the board's centre",
+          Opening_mm(board)};
 }
 
 // COLMAP knows no millimetres and not which part of the plane is meant: a person must say.
@@ -203,7 +255,8 @@ Surroundings WithoutBoard() {
       "left, top right, bottom right, bottom left\n"
       "# height_mm = 300                # or the lens's height above the sample, as usual\n",
       {100, 100},
-      "where the photographs look, or [poses] says"};
+      "where the photographs look, or [poses] says",
+      {}};
 }
 
 void CheckEncoding(const std::string& encoding) {
@@ -216,8 +269,9 @@ void CheckEncoding(const std::string& encoding) {
 
 std::string PhotoText(const InitOptions& options, size_t* files) {
   size_t videos = 0;
-  const std::string patterns = Patterns(options.folder, "photos", IsPhoto, files);
-  const std::string video = Patterns(options.folder, "photos", IsVideoFileName, &videos);
+  const std::string subfolder = PhotoFolder(options.folder);
+  const std::string patterns = Patterns(options.folder, subfolder, IsPhoto, files);
+  const std::string video = Patterns(options.folder, subfolder, IsVideoFileName, &videos);
   std::string text = "[photos]\n";
   if (!patterns.empty() || video.empty()) {
     text += "files = " + (patterns.empty() ? "[\"photos/*.jpg\"]" : patterns) + "\n";
@@ -264,6 +318,13 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   if (!options.sample_mm.empty()) CheckSampleSize(options.sample_mm);
   const std::vector<double>& size_mm =
       options.sample_mm.empty() ? around.sample_mm : options.sample_mm;
+  for (size_t i = 0; i < around.most_mm.size(); ++i) {
+    if (size_mm[i] <= around.most_mm[i]) continue;
+    throw UserError("--sample-mm: found " + List(size_mm) + ", which the board's window of " +
+                    List(around.most_mm) +
+                    " does not show whole; give what lies in the window, or print a board with a "
+                    "larger one (glint board --sample-mm)");
+  }
   std::string text = "# A capture for Glint; docs/capture.md explains every key.\n\n";
   text += "[sample]                         # the part of the surface that becomes maps\n";
   text += "size_mm = " + List(size_mm) + "             # width, height\n";
@@ -296,8 +357,12 @@ InitResult WriteCapture(const InitOptions& options) {
     throw UserError(result.file, "", "a capture.toml that is there already",
                     "edit it, or move it away first");
   }
-  const std::string text = CaptureText(options, &result);
   std::error_code error;
+  if (!options.create && !fs::is_directory(options.folder, error)) {
+    throw UserError(options.folder, "", "no such folder",
+                    "check its name, or make it with --create");
+  }
+  const std::string text = CaptureText(options, &result);
   fs::create_directories(options.folder, error);
   if (error) {
     throw EnvironmentError(options.folder.string() + ": cannot create the folder: " +

@@ -11,6 +11,7 @@ namespace glint {
 
 struct InitOptions {
   std::filesystem::path folder = ".";
+  bool create = false;            // the folder, where there is none
   std::string board = "charuco";  // or "checkerboard"; "none": poses come from COLMAP
   std::vector<double> squares = {13, 17};
   double square_mm = 15;
@@ -36,7 +37,8 @@ struct InitResult {
 // The text that WriteCapture writes. Throws UserError for options that describe no board.
 std::string CaptureText(const InitOptions& options, InitResult* result);
 
-// Writes folder/capture.toml; never over one that is there (UserError).
+// Writes folder/capture.toml; never over one that is there, nor for a sample that does not fit the
+// board's window (UserError).
 InitResult WriteCapture(const InitOptions& options);
 
 }  // namespace glint

@@ -213,6 +213,23 @@ ChildProcess NinjaProcess(const fs::path& ninja, const Capture& capture, const R
                          (summary.capture / "glint").string() + " not writable?");
 }
 
+// Before anything runs: a name that is none would only be met after calibration. (Views are named
+// by their number, or by their photograph; an imported set's names are read by the first stage.)
+void RequireKnownViews(const Capture& capture, const std::vector<std::string>& names) {
+  if (capture.imported()) return;
+  for (const std::string& name : names) {
+    bool known = name.starts_with("view_");
+    for (const std::string& photo : capture.photos) {
+      const fs::path path(photo);
+      known = known || photo == name || path.filename() == name || path.stem() == name;
+    }
+    if (known) continue;
+    std::string list;
+    for (const std::string& photo : capture.photos) list += (list.empty() ? "" : ", ") + photo;
+    throw UserError("--exclude: found no photograph named '" + name + "'; there are: " + list);
+  }
+}
+
 }  // namespace
 
 bool RunSummary::Changed(const std::string& stage) const {
@@ -251,6 +268,7 @@ Json RunSummary::ToJson() const {
 
 RunSummary RunCapture(const RunOptions& options) {
   const Capture capture = ReadCapture(options.capture);
+  RequireKnownViews(capture, options.choices.exclude);
   const std::vector<StageStep> steps =
       SelectSteps(StageSteps(capture, options.choices), options.from, options.until);
   RequireEarlierResults(capture, steps);

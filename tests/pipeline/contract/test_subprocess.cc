@@ -2,6 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <thread>
 
 #include "pipeline/contract/errors.h"
 #include "tests/support/process.h"
@@ -32,6 +39,27 @@ TEST(RunToLog, AProgramThatIsNotThereIsTheEnvironmentsFault) {
   const test::TemporaryFolder folder;
   EXPECT_THROW(RunToLog({"/nonexistent/program"}, folder.path() / "log"), EnvironmentError);
   EXPECT_THROW(SiblingProgram("glint-nothing"), EnvironmentError);
+}
+
+// kill -9 of a stage leaves nothing behind that goes on writing.
+TEST(RunToLog, AChildDiesWithItsKilledParent) {
+  const test::TemporaryFolder folder;
+  const auto alive = folder.path() / "alive";
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    RunToLog({"/bin/sh", "-c", "while :; do date +%s%N > " + alive.string() + "; sleep 0.05; done"},
+             folder.path() / "log");
+    ::_exit(0);
+  }
+  const auto wait = [](int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); };
+  for (int i = 0; i < 200 && !std::filesystem::exists(alive); ++i) wait(50);
+  ASSERT_TRUE(std::filesystem::exists(alive));
+  ::kill(parent, SIGKILL);
+  ::waitpid(parent, nullptr, 0);
+  wait(300);
+  const std::string last = test::ReadAll(alive);
+  wait(500);
+  EXPECT_EQ(test::ReadAll(alive), last);
 }
 
 TEST(RunToLog, AddsVariablesAndCallsWhileItRuns) {

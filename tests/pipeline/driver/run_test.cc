@@ -405,12 +405,61 @@ TEST_F(RunTest, InitWithoutABoardTakesCamerasFromColmap) {
   const Outcome plan = Glint({"run", folder.string(), "--dry-run"});
   EXPECT_EQ(plan.code, 0) << plan.err;
   const fs::path small = folder_.path() / "small";
-  ASSERT_EQ(Glint({"init", small.string(), "--board", "none", "--sample-mm", "60,40"}).code, 0);
+  ASSERT_EQ(
+      Glint({"init", small.string(), "--create", "--board", "none", "--sample-mm", "60x40"}).code,
+      0);
   EXPECT_THAT(test::ReadAll(small / "capture.toml"), HasSubstr("size_mm = [60, 40]"));
+}
+
+TEST_F(RunTest, InitFindsPhotographsBeneathTheFolder) {
+  const fs::path folder = folder_.path() / "wood & co";
+  test::WriteAll(folder / "DCIM 1/1.JPG", "x");
+  test::WriteAll(folder / "DCIM 1/2.jpg", "x");
+  test::WriteAll(folder / "board/1.jpg", "x");
+  test::WriteAll(folder / "board/2.jpg", "x");
+  test::WriteAll(folder / "board/3.jpg", "x");
+  test::WriteAll(folder / "screenshot.png", "x");
+  ASSERT_EQ(Glint({"init", folder.string()}).code, 0);
+  const std::string text = test::ReadAll(folder / "capture.toml");
+  EXPECT_THAT(text, HasSubstr("files = [\"DCIM 1/*.jpg\"]"));
+  EXPECT_THAT(text, HasSubstr("name = \"wood___co\""));
+  const fs::path flat = folder_.path() / "flat";
+  test::WriteAll(flat / "1.jpg", "x");
+  ASSERT_EQ(Glint({"init", flat.string()}).code, 0);
+  EXPECT_THAT(test::ReadAll(flat / "capture.toml"), HasSubstr("files = [\"*.jpg\"]"));
+}
+
+TEST_F(RunTest, InitDoesNotMakeAMistypedFolder) {
+  const fs::path folder = folder_.path() / "wod";
+  const Outcome outcome = Glint({"init", folder.string()});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("no such folder; check its name, or make it with --create"));
+  EXPECT_FALSE(fs::exists(folder));
+}
+
+TEST_F(RunTest, InitRefusesASampleLargerThanTheWindow) {
+  const fs::path folder = folder_.path() / "new";
+  fs::create_directories(folder);
+  const Outcome outcome = Glint({"init", folder.string(), "--sample-mm", "100x140"});
+  EXPECT_EQ(outcome.code, 2);  // seven squares of 15 mm are left out
+  EXPECT_THAT(outcome.err, HasSubstr("--sample-mm: found [100, 140], which the board's window of "
+                                     "[105, 105] does not show whole"));
+  EXPECT_FALSE(fs::exists(folder / "capture.toml"));
+  const Outcome wrong = Glint({"init", folder.string(), "--sample-mm", "100xabc"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("'100xabc' is no number"));
+}
+
+TEST_F(RunTest, AMisspeltExcludeIsAnErrorAtOnce) {
+  const Outcome outcome = Glint({"run", capture().string(), "--exclude", "IMG_9999"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--exclude: found no photograph named 'IMG_9999'"));
+  EXPECT_FALSE(fs::exists(capture() / "glint/calib"));
 }
 
 TEST_F(RunTest, InitRefusesABoardThatCannotBe) {
   const fs::path folder = folder_.path() / "new";
+  fs::create_directories(folder);
   const Outcome outcome = Glint({"init", folder.string(), "--marker-mm", "30"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("marker_mm"));
