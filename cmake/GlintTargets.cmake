@@ -12,12 +12,16 @@ function(glint_library name)
   endif()
 endfunction()
 
+# What a user runs, without tests and benchmarks: cmake --build … --target programs
+add_custom_target(programs)
+
 # glint_program(glint-calib SOURCES main_calib.cc DEPENDS …): a program in build/bin
 function(glint_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE glint_compile_options ${ARG_DEPENDS})
   target_compile_definitions(${name} PRIVATE GLINT_VERSION="${PROJECT_VERSION}")
+  add_dependencies(programs ${name})
 endfunction()
 
 # glint_test(test_x SOURCES … DEPENDS …): one GoogleTest binary, its cases known to ctest.

@@ -29,7 +29,8 @@ class RunTest : public testing::Test {
   RunTest() {
     const fs::path bin = folder_.path() / "bin";
     fs::create_directory(bin);
-    for (const char* name : {"glint", "glint-run", "glint-status", "glint-init", "glint-verify"}) {
+    for (const char* name :
+         {"glint", "glint-run", "glint-status", "glint-init", "glint-verify", "glint-view"}) {
       fs::copy_file(fs::path(GLINT_BIN_DIR) / name, bin / name);
     }
     for (const char* stage : {"calib", "rectify", "fit", "refine", "export", "report"}) {
@@ -427,6 +428,16 @@ TEST_F(RunTest, InitFindsPhotographsBeneathTheFolder) {
   test::WriteAll(flat / "1.jpg", "x");
   ASSERT_EQ(Glint({"init", flat.string()}).code, 0);
   EXPECT_THAT(test::ReadAll(flat / "capture.toml"), HasSubstr("files = [\"*.jpg\"]"));
+}
+
+TEST_F(RunTest, ViewOpensThePageOfAResult) {
+  const Outcome none = Glint({"view", capture().string()});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, HasSubstr("found no page; make it with: glint run"));
+  test::WriteAll(capture() / "glint/report/index.html", "x");
+  const Outcome page = Glint({"view", capture().string(), "--print"});
+  EXPECT_EQ(page.code, 0) << page.err;
+  EXPECT_THAT(page.out, HasSubstr("glint/report/index.html"));
 }
 
 TEST_F(RunTest, InitDoesNotMakeAMistypedFolder) {

@@ -1,0 +1,62 @@
+// glint-view: opens the report page.
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+
+#include "pipeline/contract/capture.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/program.h"
+#include "pipeline/contract/subprocess.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// What opens a page on this desktop; empty: nothing does.
+fs::path Opener() {
+  if (const char* browser = std::getenv("BROWSER"); browser != nullptr && *browser != '\0') {
+    return browser;
+  }
+  constexpr std::array kOpeners = {"xdg-open",         "wslview", "open",
+                                   "sensible-browser", "firefox", "chromium"};
+  for (const char* name : kOpeners) {
+    try {
+      return glint::ProgramOnPath(name, "");
+    } catch (const glint::EnvironmentError&) {
+    }
+  }
+  return {};
+}
+
+glint::ProgramResult View(const fs::path& folder, bool print) {
+  const glint::Capture capture = glint::ReadCapture(folder);
+  const fs::path page = fs::absolute(capture.work() / "report" / "index.html").lexically_normal();
+  if (!fs::exists(page)) {
+    throw glint::UserError(page, "", "no page", "make it with: glint run " + folder.string());
+  }
+  const glint::Json json = {{"page", page.string()}};
+  if (print) return {page.string(), json};
+  const fs::path opener = Opener();
+  if (opener.empty()) {
+    throw glint::EnvironmentError("found nothing that opens a page (xdg-open, $BROWSER); open " +
+                                  page.string() + " in a browser");
+  }
+  glint::RunToLog({opener.string(), page.string()}, "/dev/null");
+  return {"opened " + page.string(), json};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  fs::path folder = ".";
+  bool print = false;
+  glint::OptionSet options;
+  options.AddPositional("CAPTURE", &folder, "folder of the capture", false);
+  options.Add("print", &print, "only say where the page is");
+  return glint::RunProgram(
+      argc, argv,
+      {"glint-view", "Opens the page of a capture's result, where its material can be relit.",
+       GLINT_VERSION, "Example: glint view wood"},
+      &options, [&](const glint::CommonOptions&) { return View(folder, print); });
+}
