@@ -105,11 +105,25 @@ Json ToJson(const Calibration& calibration) {
   return data;
 }
 
+namespace {
+
+const Json& RequireList(const std::filesystem::path& file, const Json& data,
+                        const std::string& field) {
+  const Json& list = RequireField(file, data, "data", field);
+  if (!list.is_array()) {
+    throw UserError(file, "data." + field, list.dump(),
+                    "a list is expected; run glint-calib again");
+  }
+  return list;
+}
+
+}  // namespace
+
 Calibration ReadCalibration(const std::filesystem::path& manifest_file) {
   const Manifest manifest = ReadManifest(manifest_file, "calib");
   VerifyOutputs(manifest_file, manifest);
   Calibration calibration;
-  const Json& cameras = RequireField(manifest_file, manifest.data, "data", "cameras");
+  const Json& cameras = RequireList(manifest_file, manifest.data, "cameras");
   for (size_t i = 0; i < cameras.size(); ++i) {
     calibration.cameras.push_back(
         ReadCamera(manifest_file, cameras[i], "data.cameras[" + std::to_string(i) + "]"));
@@ -126,7 +140,7 @@ Calibration ReadCalibration(const std::filesystem::path& manifest_file) {
     const auto ambient = RequireNumbers(manifest_file, manifest.data, "data", "ambient_rgb", 3);
     calibration.ambient_rgb = Eigen::Map<const Eigen::Vector3d>(ambient.data());
   }
-  const Json& photos = RequireField(manifest_file, manifest.data, "data", "photos");
+  const Json& photos = RequireList(manifest_file, manifest.data, "photos");
   for (size_t i = 0; i < photos.size(); ++i) {
     calibration.photos.push_back(ReadPhoto(manifest_file, photos[i],
                                            "data.photos[" + std::to_string(i) + "]",

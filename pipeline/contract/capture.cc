@@ -170,6 +170,14 @@ class TableReader {
   std::vector<std::string> known_;
 };
 
+// What a directory's entry is that is no file.
+std::string WhatElse(const fs::directory_entry& entry) {
+  std::error_code error;
+  if (entry.is_symlink(error) && !entry.exists(error)) return "a link to nothing";
+  if (entry.is_directory(error)) return "a folder";
+  return "no regular file (a pipe, a device)";
+}
+
 // Files of `folder` that match "some/folder/*.jpg", sorted by name, relative to `folder`. Patterns
 // with * or ? may match none; a plain name must exist. Case is folded: phones write .JPG.
 std::vector<std::string> Match(const fs::path& folder, const std::string& pattern,
@@ -189,9 +197,14 @@ std::vector<std::string> Match(const fs::path& folder, const std::string& patter
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(where, error)) {
     const std::string name = entry.path().filename();
-    if (!entry.is_regular_file() || name[0] == '.') continue;
-    if (fnmatch(relative.filename().c_str(), name.c_str(), FNM_CASEFOLD) == 0) {
+    if (name[0] == '.') continue;
+    if (fnmatch(relative.filename().c_str(), name.c_str(), FNM_CASEFOLD) != 0) continue;
+    std::error_code missing;
+    if (entry.is_regular_file(missing)) {
       found.push_back((relative.parent_path() / name).generic_string());
+    } else {
+      spdlog::warn("{}: left out: it matches '{}', but is {}", entry.path().string(), pattern,
+                   WhatElse(entry));
     }
   }
   std::sort(found.begin(), found.end());

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <new>
@@ -36,6 +37,8 @@ int PrintResult(const ProgramInfo& info, const ProgramResult& result, bool json)
   std::string text = json ? result.json.dump(2) : result.text;
   if (!text.empty() && text.back() != '\n') text += '\n';
   if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+    // Whoever read has gone (glint run | head): what was asked for is done all the same.
+    if (errno == EPIPE) return kExitDone;
     return Report(info, kExitEnvironment, "cannot write the result to stdout; is the disk full?");
   }
   return kExitDone;
@@ -68,6 +71,7 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info, OptionSet* option
                const std::function<ProgramResult(const CommonOptions&)>& body) {
   // A write past a file-size limit is an error to report, not a reason to die.
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
   CommonOptions common;
   CLI::App app(info.description, info.name);
   app.set_version_flag("--version", info.name + " " + info.version);

@@ -36,7 +36,7 @@ constexpr KnownVerb kKnownVerbs[] = {
     {"view", "open the page of a result"},
     {"eval", "compare maps or re-rendered views with the truth"},
     {"synth", "make synthetic materials and captures"},
-    {"train", "train the auto-encoder"},
+    {"train", "train the auto-encoder and the estimator"},
 };
 
 std::vector<fs::path> ProgramFolders() {

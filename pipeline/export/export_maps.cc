@@ -79,13 +79,12 @@ void AddExportOptions(OptionSet* set, ExportOptions* options) {
                  "bits a channel of the pictures; the height always has 16");
   set->AddRange(
       "height-longest", &options->height_longest, 0, 100,
-      "longest waves that the height map keeps, of the sample's shorter side; small errors "
-      "that normals share make bowls of longer ones; 0: all");
+      "longest waves that the height map keeps, of the sample's shorter side; longer ones are "
+      "mostly bowls from shared errors of normals; 0: all");
   set->AddRange("occlusion-reach", &options->occlusion_reach, 0.001, 1,
                 "how far relief hides the sky from ambient occlusion, of the shorter side");
-  set->AddRange(
-      "metal-radius", &options->metal.radius, 0, 64,
-      "texels about one that decide its metalness with it, as far as their colour is its");
+  set->AddRange("metal-radius", &options->metal.radius, 0, 64,
+                "radius, in texels, of like-coloured neighbours that decide metalness together");
   set->AddRange("metal-colour-width", &options->metal.colour_width, 0.001, 10,
                 "by how much colours (square roots of albedos) may differ for that");
   set->AddRange("metal-blend-cost", &options->metal.blend_cost, 0, 1,

@@ -1,5 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
 
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/errors.h"
@@ -90,6 +93,21 @@ TEST_F(CaptureTest, WrongTypesAndUnitsAreNamed) {
 TEST_F(CaptureTest, NoPhotographsIsAnError) {
   EXPECT_THAT(Complaint(Replaced("photos/*.jpg", "photos/*.png")),
               AllOf(HasSubstr("photos.files"), HasSubstr("no photograph")));
+}
+
+// A pattern's matches that cannot be read are named rather than passed over.
+TEST_F(CaptureTest, WhatMatchesAndIsNoFileIsLeftOutWithAWarning) {
+  std::filesystem::create_symlink("nowhere", folder_.path() / "photos/c.jpg");
+  std::filesystem::create_directory(folder_.path() / "photos/d.jpg");
+  ASSERT_EQ(::mkfifo((folder_.path() / "photos/e.jpg").c_str(), 0600), 0);
+  testing::internal::CaptureStdout();  // where the library's log goes outside of programs
+  const Capture capture = Read(kGood);
+  const std::string log = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(capture.photos, ElementsAre("photos/a.jpg", "photos/b.JPG"));
+  EXPECT_THAT(log, HasSubstr("c.jpg: left out: it matches 'photos/*.jpg', but is a link to "
+                                   "nothing"));
+  EXPECT_THAT(log, HasSubstr("d.jpg: left out: it matches 'photos/*.jpg', but is a folder"));
+  EXPECT_THAT(log, HasSubstr("e.jpg: left out"));
 }
 
 TEST_F(CaptureTest, PatternsCannotLeaveTheFolder) {

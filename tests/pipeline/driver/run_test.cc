@@ -335,7 +335,7 @@ TEST_F(RunTest, WithoutNinjaSaysHowToInstallIt) {
 
 TEST_F(RunTest, AwkwardFileNamesAreFine) {
   for (const char* name :
-       {"a b.jpg", "c$d.jpg", "e:f.jpg", "g'h\"i.jpg", "k#l.jpg", "Wäsche.jpg"}) {
+       {"a b.jpg", "c$d.jpg", "e:f.jpg", "g'h\"i.jpg", "k#l.jpg", "Wäsche.jpg", "it's $x;y.jpg"}) {
     test::WriteAll(capture() / "photos" / name, name);
   }
   EXPECT_EQ(RunJson({"--exclude", "it's $x;y"}).computed.size(), 6u);
