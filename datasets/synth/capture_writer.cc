@@ -81,6 +81,7 @@ std::string CaptureToml(const CapturePlan& plan, const SyntheticCaptureOptions& 
   }
   text += fmt::format("[radiometry]\nencoding = \"{}\"\n\n",
                       options.format == "exr" ? "linear" : options.encoding);
+  text += "[export]\nname = \"synthetic\"\n\n";
   if (!options.tell_flash) return text;
   text += "[light]\noffset_mm = " + List(plan.options.flash_offset_mm) + "\n";
   return text;
