@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
@@ -222,8 +223,22 @@ Json KeyOf(const std::vector<ColmapPhoto>& photos, const ColmapRunOptions& optio
   return key;
 }
 
-bool Kept(const fs::path& work, const Json& key) {
+// Of the model's files, by name.
+Json ModelHashes(const fs::path& work) {
+  std::map<std::string, std::string> hashes;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(work / "model", error)) {
+    if (entry.is_regular_file(error)) {
+      hashes[entry.path().filename().string()] = HashFile(entry.path());
+    }
+  }
+  return hashes;
+}
+
+// Whether the model in the folder is of these photographs, and as COLMAP wrote it.
+bool Kept(const fs::path& work, Json key) {
   if (!fs::exists(work / "key.json") || !fs::is_directory(work / "model")) return false;
+  key["model"] = ModelHashes(work);
   return Json::parse(ReadTextFile(work / "key.json"), nullptr, false) == key;
 }
 
@@ -235,7 +250,7 @@ fs::path FindColmap() {
 
 ColmapRun RunColmap(const std::vector<ColmapPhoto>& photos, const ColmapRunOptions& options,
                     const fs::path& work) {
-  const Json key = KeyOf(photos, options);
+  Json key = KeyOf(photos, options);
   ColmapRun run;
   run.reused = !options.force && Kept(work, key);
   if (run.reused) {
@@ -255,7 +270,10 @@ ColmapRun RunColmap(const std::vector<ColmapPhoto>& photos, const ColmapRunOptio
     }
   }
   for (const ColmapPhoto& photo : photos) run.upright.push_back(!ColmapReads(photo.file));
-  if (!run.reused) WriteFileAtomically(work / "key.json", key.dump(1) + "\n");
+  if (!run.reused) {
+    key["model"] = ModelHashes(work);
+    WriteFileAtomically(work / "key.json", key.dump(1) + "\n");
+  }
   return run;
 }
 
