@@ -3,6 +3,8 @@
 #include <cstring>
 #include <vector>
 
+#include "base/cpu/instruction_set.h"
+
 namespace glint {
 namespace {
 
@@ -91,11 +93,6 @@ Tensor PhaseKernels(const Tensor& kernel) {
   return torch::cat(phases, 0);
 }
 
-torch::Dtype FastComputeType() {
-  __builtin_cpu_init();
-  const bool native = __builtin_cpu_supports("avx512bf16") && __builtin_cpu_supports("avx512bw") &&
-                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
-  return native ? torch::kBFloat16 : torch::kFloat32;
-}
+torch::Dtype FastComputeType() { return NativeBfloat16() ? torch::kBFloat16 : torch::kFloat32; }
 
 }  // namespace glint

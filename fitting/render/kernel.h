@@ -4,9 +4,9 @@
 
 #include <cstddef>
 
-namespace glint::kernel {
+#include "base/cpu/instruction_set.h"
 
-enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
+namespace glint::kernel {
 
 enum class Mode {
   kRender,        // radiance into View::rendered
@@ -84,12 +84,5 @@ template <>
 RunRowsFunction<float> RunRows<float>(InstructionSet set);
 template <>
 RunRowsFunction<double> RunRows<double>(InstructionSet set);
-
-bool Available(InstructionSet set);  // on this processor
-// The best set of this processor, or the one that the environment variable GLINT_KERNEL names (one
-// of Name's), read once. Sets differ in the last bits of results. Throws std::runtime_error for a
-// name that is none, or of a set that this processor lacks.
-InstructionSet BestInstructionSet();
-const char* Name(InstructionSet set);
 
 }  // namespace glint::kernel

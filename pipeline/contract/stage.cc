@@ -13,6 +13,7 @@
 #include <ctime>
 #include <map>
 
+#include "base/cpu/instruction_set.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
 #include "pipeline/contract/image.h"
@@ -206,9 +207,13 @@ void Stage::WriteRunFacts() const {
   std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &utc);
   char host[256] = "";
   gethostname(host, sizeof(host) - 1);
-  const Json facts = {
-      {"started", text},     {"seconds", finished_s - started_s_}, {"host", host},
-      {"threads", threads_}, {"outside", outside_inputs_},         {"options", run_options_}};
+  const Json facts = {{"started", text},
+                      {"seconds", finished_s - started_s_},
+                      {"host", host},
+                      {"instruction_sets", InstructionSetNames()},
+                      {"threads", threads_},
+                      {"outside", outside_inputs_},
+                      {"options", run_options_}};
   WriteFileAtomically(staging() / "run.json", facts.dump(2) + "\n");
 }
 

@@ -1,7 +1,11 @@
 // Same inputs, same bytes; and nothing is computed twice.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstdlib>
+
 #include "pipeline/contract/json.h"
+#include "pipeline/contract/svbrdf_file.h"
 #include "tests/e2e/capture_fixture.h"
 
 namespace glint::test {
@@ -45,6 +49,31 @@ TEST_F(DeterminismTest, OneAndTwoThreadsInTwoFoldersGiveTheSameBytes) {
   EXPECT_GE(results.size(), 12u);
   EXPECT_EQ(Differences(results, Results(other)), "");
   EXPECT_EQ(Differences(results, Results(finished())), "");
+}
+
+double RootMeanSquareDifference(const SvbrdfMaps& a, const SvbrdfMaps& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.planes.size(); ++i) sum += std::pow(a.planes[i] - b.planes[i], 2);
+  return std::sqrt(sum / static_cast<double>(a.planes.size()));
+}
+
+// docs/conventions.md, "Same inputs, same bytes", states the tolerance.
+TEST_F(DeterminismTest, OtherInstructionSetsGiveTheSameMapsWithinTheStatedTolerance) {
+  fs::remove_all(capture() / "glint");
+  const Outcome plain = RunProgram({Program("glint"), "run", capture().string()}, [] {
+    ::setenv("GLINT_KERNEL", "baseline", 1);
+    ::setenv("ATEN_CPU_CAPABILITY", "default", 1);
+    ::setenv("DNNL_MAX_CPU_ISA", "SSE41", 1);
+  });
+  ASSERT_EQ(plain.code, 0) << plain.err;
+  const Json facts = Json::parse(ReadAll(capture() / "glint/fit/run.json"));
+  EXPECT_EQ(facts["instruction_sets"], Json({"baseline"}));
+  for (const char* stage : {"fit", "refine"}) {
+    const fs::path maps = fs::path("glint") / stage / "svbrdf.exr";
+    EXPECT_LT(RootMeanSquareDifference(ReadSvbrdf(capture() / maps), ReadSvbrdf(finished() / maps)),
+              0.01)
+        << stage;
+  }
 }
 
 TEST_F(DeterminismTest, EveryManifestKeepsTheSchema) {

@@ -16,14 +16,13 @@
 namespace glint {
 namespace {
 
-using kernel::InstructionSet;
 using kernel::Mode;
 
 std::vector<InstructionSet> AvailableSets() {
   std::vector<InstructionSet> sets;
   for (const auto set :
        {InstructionSet::kBaseline, InstructionSet::kAvx2, InstructionSet::kAvx512}) {
-    if (kernel::Available(set)) sets.push_back(set);
+    if (Available(set)) sets.push_back(set);
   }
   return sets;
 }
@@ -122,7 +121,7 @@ void ForEachTexel(const Scene<double>& scene, const CheckTexel& check) {
 class KernelTest : public testing::TestWithParam<InstructionSet> {};
 
 INSTANTIATE_TEST_SUITE_P(Sets, KernelTest, testing::ValuesIn(AvailableSets()),
-                         [](const auto& param_info) { return kernel::Name(param_info.param); });
+                         [](const auto& param_info) { return Name(param_info.param); });
 
 TEST_P(KernelTest, RendersTheReflectanceModel) {
   for (const ReflectanceConvention& convention : AllConventions()) {
