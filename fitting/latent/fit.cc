@@ -239,7 +239,8 @@ FitResult Fit(const PhotographSet& set, const SvbrdfMaps& start, const FitOption
   for (const std::string& wrong : {set.Check(), options.Check()}) {
     if (!wrong.empty()) throw std::invalid_argument("fit: " + wrong);
   }
-  const auto sizes = LevelSizes(set.plane.width, set.plane.height, options.coarse_size);
+  const auto sizes = LevelSizes(set.plane.width, set.plane.height, options.coarse_size,
+                                options.finest_size);
   Run run{&set, &options, &progress, 0,
           options.coarse_iterations + static_cast<int>(sizes.size() - 1) * options.fine_iterations +
               (network == nullptr ? 0 : options.tune_iterations)};
@@ -248,7 +249,8 @@ FitResult Fit(const PhotographSet& set, const SvbrdfMaps& start, const FitOption
   EncodedMaps maps = EncodeMaps(start);
   for (size_t k = 0; k < sizes.size(); ++k) {
     const auto [width, height] = sizes[k];
-    const bool full = k + 1 == sizes.size();
+    const bool last_level = k + 1 == sizes.size();
+    const bool full = width == set.plane.width && height == set.plane.height;
     const PhotographSet small =
         full ? PhotographSet{} : Downsampled(set, width, height, options.threads);
     const PhotographSet& level_set = full ? set : small;
@@ -264,7 +266,7 @@ FitResult Fit(const PhotographSet& set, const SvbrdfMaps& start, const FitOption
     if (const auto* code = dynamic_cast<const CodeParameters*>(parameters.get())) {
       result.code = code->code();
       result.levels.push_back(std::move(level));
-      if (full && options.tune_iterations > 0) {
+      if (last_level && options.tune_iterations > 0) {
         TunedParameters tuned(*network, code->code(), width, height, options);
         FitLevel last{width, height, true, {}, false};
         maps = FitOneLevel(level_set, &tuned, maps, false, options.tune_iterations, &light, &run,
@@ -275,6 +277,7 @@ FitResult Fit(const PhotographSet& set, const SvbrdfMaps& start, const FitOption
       result.levels.push_back(std::move(level));
     }
   }
+  maps = Resized(maps, set.plane.width, set.plane.height);
   const FitLossValue last = FitLoss(set, options.threads).Evaluate(maps, light.value(), false);
   result.final_loss = last.loss;
   result.view_loss = last.view_loss;
@@ -297,6 +300,7 @@ std::string FitOptions::Check() const {
     return "iterations must be 0 or more";
   }
   if (coarse_size < 1) return "the coarse size must be at least 1 texel";
+  if (finest_size < coarse_size) return "the finest size must be the coarse size or more";
   if (!(tune_rate > 0)) return "the tuning rate must be above 0";
   if (!(learning_rate > 0)) return "the learning rate must be above 0";
   if (!(tolerance >= 0) || patience < 1) return "tolerance must be 0 or more, patience 1 or more";

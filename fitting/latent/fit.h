@@ -25,6 +25,7 @@ struct FitOptions {
   int coarse_iterations = 300;  // most at the first level
   int fine_iterations = 80;     // most at each later level
   int coarse_size = 256;        // texels along the longer side at the first level
+  int finest_size = 1 << 20;    // texels along the longer side at the last level, at most
   double learning_rate = 0.03;  // Adam's, at the start of a level; falls as progress ends
   double tolerance = 0.003;     // relative fall of the loss over `patience` iterations that counts
   int patience = 25;

@@ -35,6 +35,9 @@ FitOptions Resolved(const FitStageOptions& options, size_t photographs, int thre
   if (options.fine_iterations > 0) fit.fine_iterations = options.fine_iterations;
   if (options.tune_iterations >= 0) fit.tune_iterations = options.tune_iterations;
   if (options.tune_rate > 0) fit.tune_rate = options.tune_rate;
+  if (IsLatent(options) && options.finest_size > 0) {
+    fit.finest_size = std::max(options.finest_size, fit.coarse_size);
+  }
   if (options.learning_rate > 0) fit.learning_rate = options.learning_rate;
   if (options.code_prior >= 0) fit.code_prior = options.code_prior;
   fit.threads = threads;
@@ -149,6 +152,9 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
                 "most steps at the first, coarse level; 0: the method's own");
   set->AddRange("fine-iterations", &options->fine_iterations, 0, 1e6,
                 "most steps at each later level; 0: the method's own");
+  set->AddRange("finest-size", &options->finest_size, 0, 1 << 20,
+                "latent: texels along the longer side of the finest level; what is finer is left to "
+                "refinement, which finds it as well from any start; 0: the photographs'");
   set->AddRange("learning-rate", &options->learning_rate, 0, 1,
                 "Adam's rate at the start of a level; 0: the method's own");
   set->AddRange(

@@ -25,6 +25,7 @@ struct FitStageOptions {
   FitOptions classic = FitOptions::Classic();
   int iterations = 0;                // at the first level; 0: the method's own (few from one photo)
   int fine_iterations = 0;           // at each later level; 0: the method's own
+  int finest_size = 256;             // latent: of the last level, texels; 0: the photographs'
   double learning_rate = 0;          // 0: the method's own
   int tune_iterations = -1;          // below 0: the method's own
   double tune_rate = 0;              // 0: the method's own

@@ -5,10 +5,14 @@
 #include "base/resampling/resampling.h"
 
 namespace glint {
-std::vector<std::pair<int, int>> LevelSizes(int width, int height, int coarse_size) {
+std::vector<std::pair<int, int>> LevelSizes(int width, int height, int coarse_size,
+                                            int finest_size) {
   std::vector<std::pair<int, int>> sizes{{width, height}};
   while (std::max(sizes.back().first, sizes.back().second) > coarse_size) {
     sizes.emplace_back((sizes.back().first + 1) / 2, (sizes.back().second + 1) / 2);
+  }
+  while (sizes.size() > 1 && std::max(sizes.front().first, sizes.front().second) > finest_size) {
+    sizes.erase(sizes.begin());
   }
   std::reverse(sizes.begin(), sizes.end());
   return sizes;

@@ -9,9 +9,11 @@
 
 namespace glint {
 
-// Sizes (width, height) from coarse to the full one; each is half the next, rounded up, and the
-// first has no side above `coarse_size` (if the full size allows).
-std::vector<std::pair<int, int>> LevelSizes(int width, int height, int coarse_size);
+// Sizes (width, height) from coarse to fine; each is half the next, rounded up, and the first has
+// no side above `coarse_size` (if the full size allows). The last is the full size, or the first
+// below it without a side above `finest_size`.
+std::vector<std::pair<int, int>> LevelSizes(int width, int height, int coarse_size,
+                                            int finest_size);
 
 // Encoded maps at another size: bilinear where larger, tent-averaged where smaller (slopes
 // average as they should; a normal's length plays no part).

@@ -103,6 +103,9 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
   const std::string& method = choices.method;
   if (!method.empty()) {
     steps.back().arguments = {"--method", method == "refined" ? "latent" : method};
+    // Nothing comes after it that finds what is finer.
+    if (method == "latent")
+      steps.back().arguments.insert(steps.back().arguments.end(), {"--finest-size", "0"});
   }
   AddSelection(choices, &steps.back());
   if (choices.refines()) {

@@ -85,6 +85,21 @@ TEST(FitLatent, LowersTheLossEvenWithoutTraining) {
   EXPECT_EQ(result.code.channels, 24);
 }
 
+TEST(FitLatent, MapsAreOfThePhotographsSizeWhereverTheLevelsEnd) {
+  const PhotographSet set = PhotographMaps(ToyMaterial(3, 60, 44), 3);
+  FitOptions options = Short({}, 5);
+  options.coarse_size = 20;
+  options.finest_size = 40;
+  const FitResult result =
+      FitLatent(set, UniformMaps(8, 0.3f, 0.1f, 0.5f), SmallNetwork(), options);
+  ASSERT_EQ(result.levels.size(), 2u);
+  EXPECT_EQ(result.levels[1].width, 30);
+  EXPECT_EQ(result.maps.width, 60);
+  EXPECT_EQ(result.maps.height, 44);
+  options.finest_size = 10;
+  EXPECT_NE(options.Check(), "");
+}
+
 TEST(KeepStart, ChangesNoTexelOfAStartOfAnySize) {
   // Larger than the first level of a fit, which would take detail away.
   const SvbrdfMaps start = ToyMaterial(9, 300, 280);
@@ -229,9 +244,11 @@ TEST(Descent, ALossThatIsNotFiniteIsReported) {
 
 TEST(Levels, HalveDownToTheCoarseSize) {
   using Sizes = std::vector<std::pair<int, int>>;
-  EXPECT_EQ(LevelSizes(256, 256, 256), (Sizes{{256, 256}}));
-  EXPECT_EQ(LevelSizes(1000, 401, 256), (Sizes{{250, 101}, {500, 201}, {1000, 401}}));
-  EXPECT_EQ(LevelSizes(7, 5, 256), (Sizes{{7, 5}}));
+  EXPECT_EQ(LevelSizes(256, 256, 256, 1 << 20), (Sizes{{256, 256}}));
+  EXPECT_EQ(LevelSizes(1000, 401, 256, 1 << 20), (Sizes{{250, 101}, {500, 201}, {1000, 401}}));
+  EXPECT_EQ(LevelSizes(7, 5, 256, 1 << 20), (Sizes{{7, 5}}));
+  EXPECT_EQ(LevelSizes(1000, 401, 256, 600), (Sizes{{250, 101}, {500, 201}}));
+  EXPECT_EQ(LevelSizes(1000, 401, 256, 256), (Sizes{{250, 101}}));
 }
 
 TEST(Levels, EnlargedMapsShowTheSame) {
