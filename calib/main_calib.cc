@@ -77,18 +77,19 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOpti
   Json json = {{"stage", "calib"},
                {"up_to_date", stage.UpToDate()},
                {"manifest", stage.manifest_file().string()}};
-  std::string text = stage.UpToDateText();
+  std::string text = stage.UpToDateText(), brief = "up to date";
   if (!stage.UpToDate()) {
     const CalibSummary summary = CalibrateCapture(capture, *options, common, &stage);
     json["metrics"] = MetricsOf(summary);
     text = TextOf(summary);
+    brief = BriefTextOf(summary);
   }
   if (options->write == "colmap") {
     const std::string exported = ExportColmap(capture, stage.manifest_file()).string();
     json["exported"] = exported;
     text += (text.ends_with("\n") ? "COLMAP model: " : "\nCOLMAP model: ") + exported;
   }
-  return {text, json};
+  return {text, json, brief};
 }
 
 }  // namespace

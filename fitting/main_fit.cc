@@ -14,6 +14,8 @@ ProgramResult Summarise(const Stage& stage, const FitStageOptions& options,
   result.text = fmt::format("fit ({}): {}x{} texels from {} views in {:.1f} s\n  {}\n",
                             options.method, done.width, done.height, done.fit.view_loss.size(),
                             done.seconds, done.fit.BriefReport());
+  result.summary = fmt::format("{}, {} views, log-L1 {:.3g} -> {:.3g}", options.method,
+                               done.fit.view_loss.size(), done.fit.start_loss, done.fit.final_loss);
   result.json = {{"stage", "fit"},
                  {"up_to_date", false},
                  {"manifest", stage.manifest_file().string()},
@@ -31,10 +33,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, FitStageO
   std::vector<std::filesystem::path> inputs = {rectify_manifest};
   for (const auto& input : FitInputs(*options)) inputs.push_back(input);
   Stage stage(capture.work() / "fit", {"fit", kFitVersion}, *set, common, inputs);
-  if (stage.UpToDate()) {
-    return {stage.UpToDateText(),
-            {{"stage", "fit"}, {"up_to_date", true}, {"manifest", stage.manifest_file().string()}}};
-  }
+  if (stage.UpToDate()) return stage.UpToDateResult();
   return Summarise(stage, *options,
                    RunFitStage(rectify_manifest, *options, common.threads, &stage));
 }

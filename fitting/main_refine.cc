@@ -15,6 +15,8 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined) {
       fmt::format("refine: {}x{} texels from {} views in {:.1f} s ({:.0f} texels/s)\n  {}\n",
                   refined.width, refined.height, refined.views.size(), refined.seconds,
                   texels / refined.seconds, refined.summary.BriefReport());
+  result.summary = fmt::format("{} views, residuals {:.3g} %, {} substances", refined.views.size(),
+                               100 * refined.summary.residual_sigma, refined.summary.substances);
   const Json& correction = refined.metrics["correction"];
   if (refined.correction.taken && !correction["views_moved"].get<bool>()) {
     result.text += fmt::format(
@@ -29,8 +31,8 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined) {
         100 * correction["ambient_of_flash"].get<double>());
   }
   for (const Json& view : refined.metrics["views"]) {
-    result.text += fmt::format("  {}  {:<28} loss {}\n", view["name"].get<std::string>(),
-                               view["photo"].get<std::string>(), view["log_l1"].dump());
+    result.text += fmt::format("  {}  {:<28} loss {:.3g}\n", view["name"].get<std::string>(),
+                               view["photo"].get<std::string>(), view["log_l1"].get<double>());
   }
   result.json = {{"stage", "refine"},
                  {"up_to_date", false},
@@ -49,11 +51,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RefineSta
   std::vector<std::filesystem::path> inputs = {rectify_manifest};
   inputs.push_back(start.manifest_file.empty() ? start.maps_file : start.manifest_file);
   Stage stage(capture.work() / "refine", {"refine", kRefineVersion}, *set, common, inputs);
-  if (stage.UpToDate()) {
-    return {
-        stage.UpToDateText(),
-        {{"stage", "refine"}, {"up_to_date", true}, {"manifest", stage.manifest_file().string()}}};
-  }
+  if (stage.UpToDate()) return stage.UpToDateResult();
   return Summarise(stage,
                    RunRefineStage(rectify_manifest, start, *options, common.threads, &stage));
 }

@@ -1,4 +1,6 @@
 // glint-export: the material for other programs.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "fitting/relief/ambient_occlusion.h"
@@ -65,7 +67,7 @@ ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, Export
   const Manifest manifest = ReadManifest(source, options->from);
   Stage stage(capture.work() / "export", {"export", kExportVersion}, *set, common, {source});
   if (stage.UpToDate()) {
-    return {stage.UpToDateText(), {{"stage", "export"}, {"up_to_date", true}}};
+    return stage.UpToDateResult();
   }
   VerifyOutputs(source, manifest);
   ReflectanceConvention convention;
@@ -94,7 +96,8 @@ ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, Export
                Json::object());
   return {"export: " + std::to_string(files.size()) + " PNG files and " +
               std::to_string(materials.size()) + " material files in " + stage.folder().string(),
-          {{"stage", "export"}, {"up_to_date", false}, {"maps", files}, {"materials", materials}}};
+          {{"stage", "export"}, {"up_to_date", false}, {"maps", files}, {"materials", materials}},
+          fmt::format("{} maps, {} material files", files.size(), materials.size())};
 }
 
 }  // namespace

@@ -17,15 +17,15 @@ ProgramResult WriteReport(const std::filesystem::path& folder, OptionSet* set,
               ReportManifests(capture.work(), options->from));
   const std::string page = (capture.work() / "report" / "index.html").string();
   if (stage.UpToDate()) {
-    return {stage.UpToDateText(), {{"stage", "report"}, {"up_to_date", true}, {"page", page}}};
+    return stage.UpToDateResult({{"page", page}});
   }
   const ReportInput input = ReadReportInput(capture.work(), options->from);
   const Report report = MakeReport(input, *options, common.threads);
   WriteFileAtomically(stage.Output("index.html"), report.html);
   stage.Commit(Json::object(), report.metrics);
-  return {
-      "report: " + page,
-      {{"stage", "report"}, {"up_to_date", false}, {"page", page}, {"metrics", report.metrics}}};
+  return {"report: " + page,
+          {{"stage", "report"}, {"up_to_date", false}, {"page", page}, {"metrics", report.metrics}},
+          "page written"};
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ void AddOptions(glint::OptionSet* options, RunArguments* o) {
   options->Add("exclude", &o->run.choices.exclude,
                "photographs (file or view names) kept back from fit and refine");
   options->Add("views", &o->run.choices.views, "the only photographs that fit and refine see");
-  options->Add("verbose", &o->run.verbose, "Ninja's own lines as well");
+  options->Add("verbose,-v", &o->run.verbose, "all that the stages say, and Ninja's own lines");
 }
 
 glint::ProgramResult DryRun(const RunArguments& o) {

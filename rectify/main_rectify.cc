@@ -15,6 +15,9 @@ ProgramResult Summarise(const Stage& stage, const RectifySummary& summary) {
   result.text = fmt::format("rectify: {} views of {}x{} texels ({:.3f} mm a texel)\n",
                             summary.set.views.size(), plane.width, plane.height,
                             plane.width_mm / plane.width);
+  result.summary =
+      fmt::format("{} views of {} x {} texels, {:.3g} mm a texel", summary.set.views.size(),
+                  plane.width, plane.height, plane.width_mm / plane.width);
   for (size_t i = 0; i < summary.set.views.size(); ++i) {
     const Json& metrics = summary.metrics["views"][i];
     result.text += fmt::format(
@@ -49,11 +52,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RectifyOp
   for (const CalibratedPhoto& photo : calibration.photos) photos.push_back(photo.photo);
   for (const auto& file : capture.FilesBehind(photos)) inputs.push_back(file);
   Stage stage(capture.work() / "rectify", {"rectify", kRectifyVersion}, *set, common, inputs);
-  if (stage.UpToDate()) {
-    return {
-        stage.UpToDateText(),
-        {{"stage", "rectify"}, {"up_to_date", true}, {"manifest", stage.manifest_file().string()}}};
-  }
+  if (stage.UpToDate()) return stage.UpToDateResult();
   return Summarise(stage, RectifyCapture(capture, calibration, *options, task, common, &stage));
 }
 

@@ -63,5 +63,7 @@ void SolveCapture(const Capture& capture, const CalibOptions& options,
 Json MetricsOf(const CalibSummary& summary);
 Json ResidualsOf(const CalibSummary& summary);
 std::string TextOf(const CalibSummary& summary);
+// In one line, and those that a person should read at once: what was left out, what to do better.
+std::string BriefTextOf(const CalibSummary& summary);
 
 }  // namespace glint

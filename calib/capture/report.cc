@@ -151,4 +151,16 @@ std::string TextOf(const CalibSummary& summary) {
   return text + LightText(summary) + TextOf(summary.guidance);
 }
 
+std::string BriefTextOf(const CalibSummary& summary) {
+  const BundleResult& bundle = summary.bundle;
+  std::string text = fmt::format("{} photographs, reprojection error {:.3g} px",
+                                 summary.photos.size(), bundle.rms_px);
+  for (const RejectedPhoto& photo : summary.rejected) {
+    text += fmt::format("\n  left out: {}: {}", photo.name, photo.reason);
+  }
+  std::string guidance = TextOf(summary.guidance);
+  if (guidance.ends_with("\n")) guidance.pop_back();
+  return text + "\n  " + guidance;
+}
+
 }  // namespace glint

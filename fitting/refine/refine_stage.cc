@@ -24,6 +24,9 @@ const std::vector<std::string> kConfidenceChannels = {
     "normal.X",   "normal.Y",   "diffuse.R",  "diffuse.G",   "diffuse.B",
     "specular.R", "specular.G", "specular.B", "roughness.Y", "cost.Y"};
 
+// Of the stage's time, at the paper's twenty views: lights and pictures are found on a sample.
+constexpr double kViewsShare = 0.3;
+
 std::vector<RectifiedView> ChooseViews(const RectifiedSet& set, const RefineStart& start,
                                        const RefineStageOptions& options) {
   const std::vector<std::string>& only = options.views.empty() ? start.views : options.views;
@@ -147,11 +150,12 @@ void DescribeCorrection(const CorrectionResult& found, const RectifiedSet& set,
 CorrectionResult CorrectViewsWithBar(const PhotographSet& photographs, const SvbrdfMaps& maps,
                                      const RefineStageOptions& options, int threads) {
   std::unique_ptr<Progress> bar;
-  return FindCorrections(photographs, maps, options.refine, options.correction, threads,
-                         [&](std::int64_t done, std::int64_t total) {
-                           if (!bar) bar = std::make_unique<Progress>("views", total);
-                           bar->Set(done);
-                         });
+  return FindCorrections(
+      photographs, maps, options.refine, options.correction, threads,
+      [&](std::int64_t done, std::int64_t total) {
+        if (!bar) bar = std::make_unique<Progress>("views", total, Progress::Part{0, kViewsShare});
+        bar->Set(done);
+      });
 }
 
 Image ConfidenceImage(const RefineResult& result) {
@@ -251,11 +255,12 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
       refine.exposure_spread = options.exposure_spread;
       refine.light_spread = options.light_spread;
     }
-    refined = Refine(ProblemOf(photographs), maps, refine, threads,
-                     [&](std::int64_t done, std::int64_t total) {
-                       if (!bar) bar = std::make_unique<Progress>("refine", total);
-                       bar->Set(done);
-                     });
+    refined = Refine(
+        ProblemOf(photographs), maps, refine, threads, [&](std::int64_t done, std::int64_t total) {
+          if (!bar)
+            bar = std::make_unique<Progress>("refine", total, Progress::Part{kViewsShare, 1});
+          bar->Set(done);
+        });
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   result.summary = refined.summary;

@@ -1,6 +1,9 @@
 #include "pipeline/contract/options.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
+
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <limits>
@@ -106,6 +109,55 @@ void ReadInto(const toml::node& node, const TomlPlace& place, std::vector<T>* ta
   }
 }
 
+// "verbose" of "verbose,-v".
+std::string OneName(const std::string& names) { return names.substr(0, names.find(',')); }
+
+std::string KindOf(const OptionSet::Target& target) {
+  constexpr const char* kKinds[] = {"flag", "integer", "integer", "number",
+                                    "text", "path",    "texts",   "numbers"};
+  return kKinds[target.index()];  // in the order of OptionSet::Target
+}
+
+// Empty where there is none to tell a person: nothing chosen, or a flag that is off.
+std::string DefaultText(const OptionSet::Target& target) {
+  return std::visit(
+      [](const auto* value) -> std::string {
+        using T = std::remove_cv_t<std::remove_pointer_t<decltype(value)>>;
+        if constexpr (std::is_same_v<T, bool>) {
+          return *value ? "on" : "";
+        } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
+          return value->string();
+        } else if constexpr (IsList<T>::value) {
+          return "";
+        } else if constexpr (std::is_same_v<T, std::string>) {
+          return *value;
+        } else {
+          return fmt::format("{}", *value);
+        }
+      },
+      target);
+}
+
+// " (0 to 1000; default 8)"
+template <class Option>
+std::string Limits(const Option& option) {
+  std::vector<std::string> parts;
+  if (option.has_range) parts.push_back(fmt::format("{} to {}", option.low, option.high));
+  const std::string value = DefaultText(option.target);
+  if (!value.empty() && !option.positional) parts.push_back("default: " + value);
+  if (parts.empty()) return "";
+  return fmt::format(" ({})", fmt::join(parts, "; "));
+}
+
+// What stands after an option's name in the help.
+template <class Option>
+std::string Placeholder(const Option& option) {
+  if (!option.choices.empty()) return fmt::format("{}", fmt::join(option.choices, "|"));
+  constexpr const char* kWords[] = {"",     "N",    "N",        "NUMBER",
+                                    "TEXT", "PATH", "TEXT,...", "NUMBER,..."};
+  return kWords[option.target.index()];
+}
+
 }  // namespace
 
 void OptionSet::Add(const std::string& name, Target target, const std::string& help,
@@ -143,29 +195,26 @@ void OptionSet::AddPositional(const std::string& name, Target target, const std:
 void OptionSet::Register(CLI::App* app) {
   for (Option& option : options_) {
     const std::string flag = option.positional ? option.name : "--" + option.name;
+    const std::string help = option.help + Limits(option);
     CLI::Option* registered = std::visit(
         [&](auto* target) -> CLI::Option* {
           using T = std::remove_pointer_t<decltype(target)>;
           CLI::Option* added = nullptr;
           if constexpr (std::is_same_v<T, bool>) {
-            added = app->add_flag(flag + ",!--no-" + option.name, *target, option.help);
+            added = app->add_flag(flag + ",!--no-" + OneName(option.name), *target, help);
           } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
             added = app->add_option_function<std::string>(
-                flag, [target](const std::string& text) { *target = text; }, option.help);
-            added->type_name("PATH");
+                flag, [target](const std::string& text) { *target = text; }, help);
           } else if constexpr (std::is_same_v<T, std::vector<double>>) {
             const auto parse = [target](const std::vector<std::string>& words) {
               *target = NumbersIn(words);
             };
-            added = app->add_option_function<std::vector<std::string>>(flag, parse, option.help);
-            added->type_name("FLOAT");
+            added = app->add_option_function<std::vector<std::string>>(flag, parse, help);
             if (!option.positional) added->delimiter(',');
           } else {
-            added = app->add_option(flag, *target, option.help);
+            added = app->add_option(flag, *target, help);
             if constexpr (IsList<T>::value) {
               if (!option.positional) added->delimiter(',');
-            } else {
-              added->capture_default_str();
             }
           }
           return added;
@@ -174,8 +223,28 @@ void OptionSet::Register(CLI::App* app) {
     if (option.required) registered->required();
     if (!option.choices.empty()) registered->check(CLI::IsMember(option.choices));
     if (option.has_range) registered->check(CLI::Range(option.low, option.high));
+    if (!std::holds_alternative<bool*>(option.target) && !option.positional) {
+      registered->option_text(Placeholder(option));
+    }
     option.set_on_command_line = [registered] { return registered->count() > 0; };
   }
+}
+
+Json OptionSet::Describe() const {
+  Json list = Json::array();
+  for (const Option& option : options_) {
+    Json described = {{"name", OneName(option.name)},
+                      {"help", option.help},
+                      {"kind", KindOf(option.target)},
+                      {"positional", option.positional}};
+    if (!option.choices.empty()) described["choices"] = option.choices;
+    if (option.has_range) described.update({{"low", option.low}, {"high", option.high}});
+    if (const std::string text = DefaultText(option.target); !text.empty()) {
+      described["default"] = text;
+    }
+    list.push_back(std::move(described));
+  }
+  return list;
 }
 
 void OptionSet::LoadToml(const std::filesystem::path& file, const std::string& table) {

@@ -49,6 +49,11 @@ class OptionSet {
 
   void Register(CLI::App* app);
 
+  // For shells' completion and manual pages: a list of {name, help, kind, default?, choices?,
+  // low?, high?, positional}; kinds are "flag", "integer", "number", "text", "path", "texts" and
+  // "numbers".
+  Json Describe() const;
+
   Json ManifestEcho() const;  // every invalidating option with its resolved value
   Json RunEcho() const;       // the others
 

@@ -1,17 +1,22 @@
 #include "pipeline/contract/program.h"
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <new>
 #include <system_error>
 #include <thread>
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/help_formatter.h"
 #include "pipeline/contract/stage.h"
 
 namespace glint {
@@ -33,8 +38,23 @@ int Report(const ProgramInfo& info, int code, const std::string& message) {
   return code;
 }
 
-int PrintResult(const ProgramInfo& info, const ProgramResult& result, bool json) {
+// "fit        latent, 380 iterations, log-L1 0.129 -> 0.0729            20.3 s"; further lines of
+// the summary follow.
+std::string OneLine(const std::string& program, const std::string& summary, double seconds) {
+  constexpr size_t kPrefix = sizeof("glint-") - 1;
+  const size_t end = std::min(summary.find('\n'), summary.size());
+  return fmt::format("{:<9} {:<58} {:>6.1f} s", program.substr(kPrefix), summary.substr(0, end),
+                     seconds) +
+         summary.substr(end);
+}
+
+bool OneLineWanted() { return std::getenv(kOneLineVariable) != nullptr; }
+
+int PrintResult(const ProgramInfo& info, const ProgramResult& result, bool json, double seconds) {
   std::string text = json ? result.json.dump(2) : result.text;
+  if (!json && !result.summary.empty() && OneLineWanted()) {
+    text = OneLine(info.name, result.summary, seconds);
+  }
   if (!text.empty() && text.back() != '\n') text += '\n';
   if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
     // Whoever read has gone (glint run | head): what was asked for is done all the same.
@@ -44,12 +64,25 @@ int PrintResult(const ProgramInfo& info, const ProgramResult& result, bool json)
   return kExitDone;
 }
 
+Json DescriptionOf(const ProgramInfo& info, const OptionSet& options) {
+  return {{"program", info.name},
+          {"description", info.description},
+          {"footer", info.footer},
+          {"version", info.version},
+          {"options", options.Describe()}};
+}
+
 int RunBody(const ProgramInfo& info, const CommonOptions& common,
             const std::function<ProgramResult(const CommonOptions&)>& body) {
+  const auto began = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  };
   try {
-    return PrintResult(info, body(common), common.json);
+    const ProgramResult result = body(common);
+    return PrintResult(info, result, common.json, seconds());
   } catch (const StageCheck& check) {
-    return PrintResult(info, {ToText(check), ToJson(check)}, common.json);
+    return PrintResult(info, {ToText(check), ToJson(check), ""}, common.json, seconds());
   } catch (const Error& error) {
     return Report(info, error.code(), error.what());
   } catch (const std::filesystem::filesystem_error& error) {
@@ -72,22 +105,26 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info, OptionSet* option
   // A write past a file-size limit is an error to report, not a reason to die.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
+  if (argc == 2 && std::strcmp(argv[1], kDescribeFlag) == 0) {
+    return PrintResult(info, {"", DescriptionOf(info, *options)}, true, 0);
+  }
   CommonOptions common;
   CLI::App app(info.description, info.name);
+  app.formatter(std::make_shared<HelpFormatter>());
   app.set_version_flag("--version", info.name + " " + info.version);
   if (!info.footer.empty()) app.footer(info.footer);
   options->Register(&app);
   app.add_option("--threads", common.threads,
-                 "threads to use; 0: one a core. Never changes a result")
+                 "threads to use; 0: one a core; never changes a result (default: 0)")
       ->check(CLI::Range(0, kMaxThreads))
-      ->capture_default_str()
+      ->option_text("N")
       ->group("Common");
-  app.add_option("--seed", common.seed, "seed of everything random")
-      ->capture_default_str()
+  app.add_option("--seed", common.seed, "seed of everything random (default: 0)")
+      ->option_text("N")
       ->group("Common");
-  app.add_option("--log-level", common.log_level, "what is said on stderr")
+  app.add_option("--log-level", common.log_level, "what is said on stderr (default: info)")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
-      ->capture_default_str()
+      ->option_text("debug|info|warning|error|off")
       ->group("Common");
   app.add_flag("--json", common.json, "write the result to stdout as JSON")->group("Common");
   app.add_flag("--force", common.force, "compute although the result is up to date")

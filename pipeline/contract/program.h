@@ -20,11 +20,20 @@ struct CommonOptions {
   bool force = false, check = false;
 };
 
-// What a program leaves on stdout: `text` for a person, or `json` with --json.
+// What a program leaves on stdout: `text` for a person, or `json` with --json. A stage also sums up
+// its result in a few words, which are all that `glint run` shows of it.
 struct ProgramResult {
   std::string text;
   Json json;
+  std::string summary = {};
 };
+
+// Alone on the command line: the program's description and options as JSON (OptionSet::Describe),
+// for shells' completion and manual pages. Not in the help.
+inline constexpr char kDescribeFlag[] = "--describe";
+
+// Set by `glint run`: the stage prints one line, "fit  latent, 380 iterations  20.3 s".
+inline constexpr char kOneLineVariable[] = "GLINT_ONE_LINE";
 
 struct ProgramInfo {
   std::string name;         // "glint-calib"

@@ -244,4 +244,11 @@ std::string Stage::UpToDateText() const {
   return info_.name + ": up to date (" + manifest_file().string() + ")";
 }
 
+ProgramResult Stage::UpToDateResult(const Json& more) const {
+  Json json = {
+      {"stage", info_.name}, {"up_to_date", true}, {"manifest", manifest_file().string()}};
+  json.update(more);
+  return {UpToDateText(), json, "up to date"};
+}
+
 }  // namespace glint

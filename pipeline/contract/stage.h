@@ -57,6 +57,8 @@ class Stage {
   const std::filesystem::path& folder() const { return folder_; }
   // The line a program prints when UpToDate().
   std::string UpToDateText() const;
+  // What a stage's program says then. `more`: further fields of the JSON.
+  ProgramResult UpToDateResult(const Json& more = Json::object()) const;
 
  private:
   std::filesystem::path staging() const;

@@ -33,6 +33,18 @@ inline int RunVerb(int argc, char** argv, const ProgramInfo& program,
     std::printf("%s %s\n", program.name.c_str(), program.version.c_str());
     return kExitDone;
   }
+  if (wanted == kDescribeFlag) {
+    Json list = Json::array();
+    for (const Verb& verb : verbs) {
+      list.push_back({{"verb", verb.name}, {"description", verb.description}});
+    }
+    const Json all = {{"program", program.name},
+                      {"description", program.description},
+                      {"version", program.version},
+                      {"verbs", list}};
+    std::printf("%s\n", all.dump(2).c_str());
+    return kExitDone;
+  }
   const bool asked = wanted == "--help" || wanted == "-h";
   FILE* out = asked ? stdout : stderr;
   if (!asked) {

@@ -42,6 +42,10 @@ void LetOpenMpWaitPassively() { ::setenv("OMP_WAIT_POLICY", "passive", 0); }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(kCannotStart);  // the parent died before the line above
   if (stdout_descriptor >= 0) ::dup2(stdout_descriptor, STDOUT_FILENO);
+  if (child.quiet_stderr) {
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+  }
   for (const int descriptor : child.kept_descriptors) ::fcntl(descriptor, F_SETFD, 0);
   ::execvp(arguments->front(), arguments->data());
   const int error = errno;

@@ -15,6 +15,7 @@ struct ChildProcess {
   std::vector<int> kept_descriptors;               // stay open in the child and its children
   // Called for each line of the child's stdout (without the newline); empty: stdout is shared.
   std::function<void(const std::string&)> on_line;
+  bool quiet_stderr = false;  // what it says there goes nowhere
 };
 
 // How a child ended, as a shell says it: its exit code, or 128 + the signal that killed it.

@@ -41,7 +41,7 @@ int UnknownVerb(const std::string& verb) {
 int Dispatch(int argc, char** argv, const std::string& version) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.empty()) return PrintHelp(stderr, kExitUser);
-  if (words[0] == "--version") {
+  if (words[0] == "--version" || words[0] == "version") {
     std::printf("glint %s\n", version.c_str());
     return kExitDone;
   }

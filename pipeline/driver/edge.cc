@@ -1,5 +1,6 @@
 #include "pipeline/driver/edge.h"
 
+#include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
@@ -9,9 +10,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <locale>
 #include <sstream>
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/run_progress.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/stage_graph.h"
 
@@ -55,6 +58,26 @@ void Note(const EdgeOutcome& outcome) {
 
 }  // namespace
 
+std::string ToText(const RunPlan& plan) {
+  std::string text = fmt::format("{}", plan.began_s);
+  for (const auto& [stage, seconds] : plan.stages) text += fmt::format(" {} {}", stage, seconds);
+  return text;
+}
+
+std::string ProgressOf(const std::string& plan, const std::string& stage) {
+  std::istringstream stream(plan);
+  stream.imbue(std::locale::classic());
+  RunProgress progress;
+  if (!(stream >> progress.began_s)) return "";
+  bool found = false;
+  std::string name;
+  for (double seconds = 0; stream >> name >> seconds;) {
+    (name == stage ? progress.stage_s : found ? progress.after_s : progress.before_s) += seconds;
+    found |= name == stage;
+  }
+  return found ? ToText(progress) : "";
+}
+
 int RunEdge(const std::vector<std::string>& words) {
   if (words.size() < 2) {
     std::fprintf(stderr, "glint: error: %s needs a stage and a program\n", kEdgeFlag);
@@ -71,6 +94,8 @@ int RunEdge(const std::vector<std::string>& words) {
   const int result_descriptor = DescriptorVariable(kRunStdoutVariable);
   if (result_descriptor >= 0) ::dup2(result_descriptor, STDOUT_FILENO);
 
+  child.environment = {
+      {kRunProgressVariable, ProgressOf(Variable(kRunPlanVariable, ""), words[0])}};
   const fs::path manifest = fs::absolute(ManifestPath(words[0]));
   const FileStamp before(manifest);
   EdgeOutcome outcome;

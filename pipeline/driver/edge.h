@@ -8,12 +8,14 @@
 //   GLINT_RUN_CAPTURE    the capture as the person named it, so that messages do too
 //   GLINT_RUN_ARGUMENTS  further arguments, one a line (threads, log level)
 //   GLINT_RUN_OUTCOMES   number of the descriptor to note outcomes on
+//   GLINT_RUN_PLAN       when the run began and how long its stages will take, for progress bars
 //   GLINT_RUN_STDOUT     number of the descriptor for the program's stdout: Ninja's own has its
 //   remarks
 // Without them the program runs on the current folder and nothing is noted.
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -23,6 +25,7 @@ inline constexpr char kRunFolderVariable[] = "GLINT_RUN_FOLDER";
 inline constexpr char kRunCaptureVariable[] = "GLINT_RUN_CAPTURE";
 inline constexpr char kRunArgumentsVariable[] = "GLINT_RUN_ARGUMENTS";
 inline constexpr char kRunOutcomesVariable[] = "GLINT_RUN_OUTCOMES";
+inline constexpr char kRunPlanVariable[] = "GLINT_RUN_PLAN";
 inline constexpr char kRunStdoutVariable[] = "GLINT_RUN_STDOUT";
 
 struct EdgeOutcome {
@@ -30,6 +33,15 @@ struct EdgeOutcome {
   int code = 0;          // exit code, or 128 + signal
   bool changed = false;  // the stage's manifest was written anew
 };
+
+// The stages that a run will probably go through, with their seconds as predicted.
+struct RunPlan {
+  double began_s = 0;  // since 1970
+  std::vector<std::pair<std::string, double>> stages;
+};
+std::string ToText(const RunPlan& plan);
+// Where `stage` stands in a plan's text; "" where the text is none, or without the stage.
+std::string ProgressOf(const std::string& plan, const std::string& stage);
 
 // Returns the program's exit code. `words` are STAGE PROGRAM [ARGUMENTS].
 int RunEdge(const std::vector<std::string>& words);

@@ -34,6 +34,8 @@ constexpr KnownVerb kKnownVerbs[] = {
     {"export", "stage: maps and materials for other programs"},
     {"report", "stage: one HTML page of the whole result"},
     {"view", "open the page of a result"},
+    {"completion", "print a script by which a shell completes Glint's commands"},
+    {"manual", "write manual pages"},
     {"eval", "compare maps or re-rendered views with the truth"},
     {"synth", "make synthetic materials and captures"},
     {"train", "train the auto-encoder and the estimator"},

@@ -8,13 +8,16 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/hash_cache.h"
 #include "pipeline/contract/manifest.h"
+#include "pipeline/contract/program.h"
 #include "pipeline/driver/child_process.h"
+#include "pipeline/driver/cost_model.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/programs.h"
 
@@ -144,6 +147,25 @@ std::vector<NinjaEdge> Edges(const Capture& capture, const std::vector<StageStep
   return edges;
 }
 
+// The stages that will run, as far as can be told before they are asked: those without a sound
+// result, and those that read what these write.
+RunPlan PlanOf(const Capture& capture, const std::vector<NinjaEdge>& edges) {
+  const CaptureSize size = SizeOf(capture);
+  RunPlan plan;
+  plan.began_s =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  std::set<std::string> running;
+  for (const NinjaEdge& edge : edges) {
+    const StageStep& step = edge.step;
+    bool runs = edge.always || !fs::exists(capture.folder / step.manifest);
+    for (const std::string& earlier : step.waits_for) runs |= running.count(earlier) > 0;
+    if (!runs) continue;
+    running.insert(step.stage);
+    plan.stages.emplace_back(step.stage, PredictedSeconds(step.stage, size));
+  }
+  return plan;
+}
+
 // Where the stages' results go: to this program's stdout, or nowhere.
 class ResultDescriptor {
  public:
@@ -162,7 +184,8 @@ class ResultDescriptor {
 };
 
 ChildProcess NinjaProcess(const fs::path& ninja, const Capture& capture, const RunOptions& options,
-                          const std::vector<StageStep>& steps, int outcomes, int results) {
+                          const std::vector<StageStep>& steps, const RunPlan& plan, int outcomes,
+                          int results) {
   ChildProcess child;
   child.arguments = {ninja.string(), "-C", capture.folder.string(), "-f", "glint/build.ninja"};
   if (options.verbose) {
@@ -179,7 +202,9 @@ ChildProcess NinjaProcess(const fs::path& ninja, const Capture& capture, const R
                        {kRunCaptureVariable, capture.folder.string()},
                        {kRunArgumentsVariable, more},
                        {kRunOutcomesVariable, std::to_string(outcomes)},
+                       {kRunPlanVariable, ToText(plan)},
                        {kRunStdoutVariable, std::to_string(results)}};
+  if (!options.verbose) child.environment[kOneLineVariable] = "1";
   child.kept_descriptors = {outcomes, results};
   // On stdout Ninja makes remarks, and repeats what a failing stage has said; errors of its own go
   // to stderr.
@@ -240,26 +265,29 @@ bool RunSummary::Changed(const std::string& stage) const {
 }
 
 std::string RunSummary::BriefReport() const {
-  std::string computed, kept;
+  std::string kept;
   for (const std::string& stage : stages) {
-    std::string& list = Changed(stage) ? computed : kept;
-    list += (list.empty() ? "" : ", ") + stage;
+    if (!Changed(stage)) kept += (kept.empty() ? "" : ", ") + stage;
   }
-  std::string text = capture.string() + ": ";
-  if (!computed.empty()) text += "computed " + computed;
-  if (!computed.empty() && !kept.empty()) text += "; ";
-  if (!kept.empty()) text += "up to date: " + kept;
-  if (stages.back() == "report") {
-    text += "\nreport: " + (capture / "glint/report/index.html").string();
+  std::string text;
+  if (!kept.empty()) text += "up to date: " + kept + "\n";
+  for (const std::string& stage : stages) {
+    const fs::path folder = capture / "glint" / stage;
+    if (stage == "export") text += "maps and materials: " + folder.string() + "\n";
+    if (stage == "report") {
+      text += "page: " + (folder / "index.html").string() + "   (glint view " + capture.string() +
+              " opens it)\n";
+    }
   }
   return text;
 }
 
 Json RunSummary::ToJson() const {
-  Json stages_json = Json::object();
+  Json stages_json = Json::array();
   for (const std::string& stage : stages) {
-    stages_json[stage] = {{"computed", Changed(stage)},
-                          {"manifest", (capture / ManifestPath(stage)).generic_string()}};
+    stages_json.push_back({{"stage", stage},
+                           {"state", Changed(stage) ? "computed" : "up to date"},
+                           {"manifest", (capture / ManifestPath(stage)).generic_string()}});
   }
   Json started = Json::array();
   for (const EdgeOutcome& outcome : outcomes) started.push_back(outcome.stage);
@@ -279,8 +307,8 @@ RunSummary RunCapture(const RunOptions& options) {
                       NinjaText(edges, RequireGlintProgram("glint"), options.choices));
   const OutcomeFile outcomes;
   const ResultDescriptor results(options.quiet_stdout);
-  ChildProcess child =
-      NinjaProcess(ninja, capture, options, steps, outcomes.descriptor(), results.get());
+  ChildProcess child = NinjaProcess(ninja, capture, options, steps, PlanOf(capture, edges),
+                                    outcomes.descriptor(), results.get());
   child.kept_descriptors.push_back(lock->descriptor());
   const int code = RunChild(child);
   RunSummary summary;

@@ -27,8 +27,8 @@ class DeterminismTest : public CaptureTest {
     Ran ran;
     if (outcome.code != 0) return ran;
     const Json json = Json::parse(outcome.out);
-    for (const auto& [stage, entry] : json["stages"].items()) {
-      if (entry["computed"] == true) ran.computed.push_back(stage);
+    for (const Json& stage : json["stages"]) {
+      if (stage["state"] == "computed") ran.computed.push_back(stage["stage"]);
     }
     ran.started = json["started"].get<std::vector<std::string>>();
     return ran;

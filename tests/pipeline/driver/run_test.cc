@@ -66,8 +66,8 @@ class RunTest : public testing::Test {
       ADD_FAILURE() << outcome.out << outcome.err;
       return ran;
     }
-    for (const auto& [stage, entry] : json["stages"].items()) {
-      if (entry["computed"] == true) ran.computed.push_back(stage);
+    for (const Json& stage : json["stages"]) {
+      if (stage["state"] == "computed") ran.computed.push_back(stage["stage"]);
     }
     ran.started = json["started"].get<std::vector<std::string>>();
     return ran;
