@@ -41,15 +41,26 @@ Json WriteMaterials(const ExportedMaterial& material, const std::vector<Material
   return files;
 }
 
-ExportedMaterial MaterialOf(const Capture& capture, SvbrdfMaps maps,
+// Of the maps: the sample's, or the piece's that repeats.
+std::array<double, 2> SizeOf(const Capture& capture, const Manifest& manifest,
+                             const std::filesystem::path& file) {
+  if (manifest.stage != "tile") return capture.sample_size_mm;
+  const auto size = manifest.data.value("size_mm", std::vector<double>());
+  if (size.size() != 2 || !(size[0] > 0) || !(size[1] > 0)) {
+    throw UserError(file, "data.size_mm", "not two lengths", "run glint tile again");
+  }
+  return {size[0], size[1]};
+}
+
+ExportedMaterial MaterialOf(const std::array<double, 2>& size_mm, SvbrdfMaps maps,
                             const ReflectanceConvention& convention, const ExportOptions& options,
                             int threads) {
   ExportedMaterial material;
   material.name = options.name;
   material.maps = std::move(maps);
   material.diffuse_weight = convention.diffuse_weight;
-  material.width_mm = capture.sample_size_mm[0];
-  material.height_mm = capture.sample_size_mm[1];
+  material.width_mm = size_mm[0];
+  material.height_mm = size_mm[1];
   material.metal = ToMetalRoughness(material.maps, material.diffuse_weight, options.metal, threads);
   return material;
 }
@@ -72,13 +83,14 @@ ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, Export
   VerifyOutputs(source, manifest);
   ReflectanceConvention convention;
   SvbrdfMaps maps = ReadSvbrdf(source.parent_path() / "svbrdf.exr", &convention);
-  const SamplePlane plane{maps.width, maps.height, capture.sample_size_mm[0],
-                          capture.sample_size_mm[1], convention.sampling};
+  const std::array<double, 2> size_mm = SizeOf(capture, manifest, source);
+  const bool repeats = manifest.stage == "tile";
+  const SamplePlane plane{maps.width, maps.height, size_mm[0], size_mm[1], convention.sampling};
   const double shorter_mm = std::min(plane.width_mm, plane.height_mm);
   ExportedMaterial material =
-      MaterialOf(capture, std::move(maps), convention, *options, common.threads);
-  const HeightField relief =
-      IntegrateNormals(material.maps, plane, options->height_longest * shorter_mm);
+      MaterialOf(size_mm, std::move(maps), convention, *options, common.threads);
+  const HeightField relief = (repeats ? IntegrateRepeatingNormals : IntegrateNormals)(
+      material.maps, plane, options->height_longest * shorter_mm);
   material.height_range_mm = HeightRange(relief);
   OcclusionOptions occlusion;
   occlusion.reach_mm = options->occlusion_reach * shorter_mm;
@@ -89,7 +101,8 @@ ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, Export
   const double error = MetalRoughnessError(material.metal, material.maps, material.diffuse_weight);
   stage.Commit({{"convention", ToString(convention)},
                 {"name", material.name},
-                {"size_mm", capture.sample_size_mm},
+                {"size_mm", size_mm},
+                {"repeats", repeats},
                 {"maps", files},
                 {"metal_roughness", {{"log_l1", error}}},
                 {"materials", materials}},

@@ -239,8 +239,8 @@ FitResult Fit(const PhotographSet& set, const SvbrdfMaps& start, const FitOption
   for (const std::string& wrong : {set.Check(), options.Check()}) {
     if (!wrong.empty()) throw std::invalid_argument("fit: " + wrong);
   }
-  const auto sizes = LevelSizes(set.plane.width, set.plane.height, options.coarse_size,
-                                options.finest_size);
+  const auto sizes =
+      LevelSizes(set.plane.width, set.plane.height, options.coarse_size, options.finest_size);
   Run run{&set, &options, &progress, 0,
           options.coarse_iterations + static_cast<int>(sizes.size() - 1) * options.fine_iterations +
               (network == nullptr ? 0 : options.tune_iterations)};
@@ -308,12 +308,17 @@ std::string FitOptions::Check() const {
   return "";
 }
 
+double FitResult::fitted_loss() const {
+  if (levels.empty() || levels.back().loss.empty()) return final_loss;
+  return *std::min_element(levels.back().loss.begin(), levels.back().loss.end());
+}
+
 std::string FitResult::BriefReport() const {
   char text[200];
   int iterations = 0;
   for (const FitLevel& level : levels) iterations += static_cast<int>(level.loss.size());
   std::snprintf(text, sizeof text, "%dx%d texels, %zu levels, %d iterations, loss %.4f -> %.4f",
-                maps.width, maps.height, levels.size(), iterations, start_loss, final_loss);
+                maps.width, maps.height, levels.size(), iterations, start_loss, fitted_loss());
   std::string report = text;
   if (light_scale != 1) {
     std::snprintf(text, sizeof text, ", light x %.3f", light_scale);

@@ -59,6 +59,9 @@ struct FitResult {
   double light_scale = 1;         // what every light_rgb is to be multiplied with
   LatentCode code;                // latent only
 
+  // The least that the last level reached, which start_loss can be compared with; final_loss
+  // without levels.
+  double fitted_loss() const;
   std::string BriefReport() const;
 };
 

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 
+#include "fitting/relief/torus_poisson.h"
+
 namespace glint {
 namespace {
 
@@ -27,12 +29,26 @@ int Even(int n) { return n + n % 2; }
 }  // namespace
 
 double HeightField::Lookup(double row, double column) const {
+  if (repeats) return LookupRepeating(row, column);
   const double r = std::clamp(row, 0.0, static_cast<double>(height - 1));
   const double c = std::clamp(column, 0.0, static_cast<double>(width - 1));
   const int r0 = std::min(static_cast<int>(r), std::max(height - 2, 0));
   const int c0 = std::min(static_cast<int>(c), std::max(width - 2, 0));
   const int r1 = std::min(r0 + 1, height - 1), c1 = std::min(c0 + 1, width - 1);
   const double u = c - c0, v = r - r0;
+  return (1 - v) * ((1 - u) * at(r0, c0) + u * at(r0, c1)) +
+         v * ((1 - u) * at(r1, c0) + u * at(r1, c1));
+}
+
+double HeightField::LookupRepeating(double row, double column) const {
+  const double r = std::floor(row), c = std::floor(column);
+  const double u = column - c, v = row - r;
+  const auto wrapped = [](double i, int size) {
+    const int k = static_cast<int>(std::fmod(i, size));
+    return k < 0 ? k + size : k;
+  };
+  const int r0 = wrapped(r, height), r1 = wrapped(r + 1, height);
+  const int c0 = wrapped(c, width), c1 = wrapped(c + 1, width);
   return (1 - v) * ((1 - u) * at(r0, c0) + u * at(r0, c1)) +
          v * ((1 - u) * at(r1, c0) + u * at(r1, c1));
 }
@@ -90,6 +106,38 @@ HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane, d
       field.height_mm.push_back(static_cast<float>(solved.at<double>(row, column) - mean));
     }
   }
+  return field;
+}
+
+HeightField IntegrateRepeatingNormals(const SvbrdfMaps& maps, const SamplePlane& plane,
+                                      double longest_mm) {
+  HeightField field;
+  field.width = maps.width;
+  field.height = maps.height;
+  field.repeats = true;
+  field.texel_x_mm = plane.width_mm / maps.width;
+  field.texel_y_mm = plane.height_mm / maps.height;
+  const auto slope = [&](int row, int column) {
+    return SlopeOf(maps, static_cast<size_t>(row % maps.height) * maps.width + column % maps.width);
+  };
+  std::vector<double> across, down;
+  for (int row = 0; row < maps.height; ++row) {
+    for (int column = 0; column < maps.width; ++column) {
+      const Slope here = slope(row, column);
+      across.push_back(0.5 * (here.x + slope(row, column + 1).x) * field.texel_x_mm);
+      down.push_back(-0.5 * (here.y + slope(row + 1, column).y) * field.texel_y_mm);
+    }
+  }
+  // What rises all the way round cannot repeat: SolveTorusPoisson leaves the mean slope out by
+  // itself, since its sums over the torus vanish.
+  const double screening =
+      longest_mm > 0 ? std::pow(2 * std::numbers::pi *
+                                    std::sqrt(field.texel_x_mm * field.texel_y_mm) / longest_mm,
+                                2)
+                     : 0;
+  const std::vector<double> heights =
+      SolveTorusPoisson(maps.width, maps.height, across, down, {}, screening);
+  field.height_mm.assign(heights.begin(), heights.end());
   return field;
 }
 

@@ -13,12 +13,16 @@ struct HeightField {
   int width = 0, height = 0;
   double texel_x_mm = 0, texel_y_mm = 0;  // distance between neighbouring texels
   std::vector<float> height_mm;           // H·W, mean 0
+  bool repeats = false;  // the texel right of the last column is that of the first, and so on
 
   float at(int row, int column) const {
     return height_mm[static_cast<size_t>(row) * width + column];
   }
-  // Bilinear between texels' centres; border texels continue.
+  // Bilinear between texels' centres; border texels continue, or the field repeats.
   double Lookup(double row, double column) const;
+
+ private:
+  double LookupRepeating(double row, double column) const;
 };
 
 // The height whose differences between neighbouring texels are nearest, in least squares, to those
@@ -33,6 +37,9 @@ struct HeightField {
 inline constexpr double kMostReliefSlope = 5;  // 79°: a normal beyond says little about height
 HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane,
                              double longest_mm = 0);
+// The same of maps that repeat (fitting/tiling): so do the heights.
+HeightField IntegrateRepeatingNormals(const SvbrdfMaps& maps, const SamplePlane& plane,
+                                      double longest_mm = 0);
 
 // Normals of a height field, by central differences: [3·H·W], planar.
 std::vector<float> NormalsOf(const HeightField& field);

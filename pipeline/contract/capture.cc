@@ -437,8 +437,8 @@ void ReadPoses(const fs::path& file, const toml::table& document, Capture* captu
 
 void RejectUnknownTables(const fs::path& file, const toml::table& document) {
   static const std::set<std::string, std::less<>> known = {
-      "sample", "photos",  "poses", "board",  "radiometry", "light",
-      "calib",  "rectify", "fit",   "refine", "export",     "report"};
+      "sample",  "photos", "poses",  "board", "radiometry", "light", "calib",
+      "rectify", "fit",    "refine", "tile",  "export",     "report"};
   for (const auto& [key, node] : document) {
     if (known.count(std::string(key.str())) > 0) continue;
     std::string list;
@@ -482,6 +482,7 @@ Capture ReadCapture(const fs::path& folder) {
   capture.photos = ReadPhotos(capture.folder, "files", &photos, capture.file);
   photos.RejectUnknown();
   ReadBoard(capture.file, *document, &capture);
+  capture.tiles = document->contains("tile");
   ReadPoses(capture.file, *document, &capture);
   ReadRadiometry(capture.file, *document, &capture);
   if (photos.present() && capture.photos.empty()) {

@@ -52,6 +52,8 @@ struct Capture {
   std::array<double, 3> light_power{0, 0, 0};      // [light] power, radiance·mm²; zeros: estimate
   std::array<double, 3> ambient{0, 0, 0};          // [light] ambient
 
+  bool tiles = false;  // there is a table [tile]: maps are made to repeat before export
+
   // Rectified by another program: nothing to calibrate or rectify.
   bool imported() const { return !has_board && photos.empty(); }
   std::filesystem::path work() const { return folder / "glint"; }

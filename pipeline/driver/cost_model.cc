@@ -16,8 +16,9 @@ struct StageCost {
 };
 
 constexpr StageCost kCosts[] = {
-    {"calib", 0.3, 0.060, 0, 0},  {"rectify", 0.2, 0.025, 0, 0.30}, {"fit", 6.0, 0, 10, 0},
-    {"refine", 0.5, 0, 6.0, 0.8}, {"export", 0.3, 0, 12, 0},        {"report", 0.3, 0, 2.0, 0.25},
+    {"calib", 0.3, 0.060, 0, 0},   {"rectify", 0.2, 0.025, 0, 0.30}, {"fit", 6.0, 0, 10, 0},
+    {"refine", 0.5, 0, 6.0, 0.8},  {"tile", 0.2, 0, 8.0, 0},         {"export", 0.3, 0, 12, 0},
+    {"report", 0.3, 0, 2.0, 0.25},
 };
 
 }  // namespace

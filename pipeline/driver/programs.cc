@@ -31,6 +31,7 @@ constexpr KnownVerb kKnownVerbs[] = {
     {"import", "take over photographs that other programs have rectified"},
     {"fit", "stage: material maps by latent or classic fitting"},
     {"refine", "stage: material maps per texel"},
+    {"tile", "stage: maps that repeat without visible borders ([tile] in capture.toml)"},
     {"export", "stage: maps and materials for other programs"},
     {"report", "stage: one HTML page of the whole result"},
     {"view", "open the page of a result"},

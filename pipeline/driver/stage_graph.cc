@@ -72,8 +72,8 @@ RunChoices RunChoicesFromJson(const Json& json) {
 }
 
 const std::vector<std::string>& StageNames() {
-  static const std::vector<std::string> names = {"calib",  "rectify", "fit",
-                                                 "refine", "export",  "report"};
+  static const std::vector<std::string> names = {"calib", "rectify", "fit",   "refine",
+                                                 "tile",  "export",  "report"};
   return names;
 }
 
@@ -113,7 +113,12 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
     AddSelection(choices, &steps.back());
   }
   const std::string last = choices.refines() ? "refine" : "fit";
-  steps.push_back(Step("export", {}, {last}));
+  if (capture.tiles) {
+    steps.push_back(Step("tile", {}, {last}));
+    steps.back().arguments = {"--from", last};
+  }
+  const std::string exported = capture.tiles ? "tile" : last;
+  steps.push_back(Step("export", {}, {exported}));
   std::vector<std::string> all_stages;
   for (const StageStep& step : steps) {
     if (step.stage != "export") all_stages.push_back(step.stage);
@@ -121,7 +126,10 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
   if (imported) all_stages.insert(all_stages.begin(), "rectify");
   steps.push_back(Step("report", {}, all_stages));
   for (StageStep& step : steps) {
-    if (step.stage == "export" || step.stage == "report") {
+    if (step.stage == "export") {
+      step.arguments.insert(step.arguments.end(), {"--from", exported});
+    }
+    if (step.stage == "report") {
       step.arguments.insert(step.arguments.end(), {"--from", last});
     }
     if (choices.seed != 0) {

@@ -74,7 +74,7 @@ MapPicture PackedPicture(const std::string& name, int width, int height, const R
 
 void AddExportOptions(OptionSet* set, ExportOptions* options) {
   set->Add("name", &options->name, "what the files' names begin with");
-  set->AddChoice("from", &options->from, {"refine", "fit"}, "stage whose maps are exported");
+  set->AddChoice("from", &options->from, {"refine", "fit", "tile"}, "stage whose maps are exported");
   set->AddChoice("bits", &options->bits, {"8", "16", "both"},
                  "bits a channel of the pictures; the height always has 16");
   set->AddRange(

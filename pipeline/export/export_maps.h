@@ -32,7 +32,7 @@ inline constexpr int kExportVersion = 4;
 
 struct ExportOptions {
   std::string name = "material";  // of the files; letters, digits, - _ .
-  std::string from = "refine";    // stage whose maps are taken: refine, fit
+  std::string from = "refine";    // stage whose maps are taken: refine, fit, tile
   std::string bits = "8";         // 8, 16, both; the height has 16
   // Longest waves of the relief that are kept, of the sample's shorter side (height_field.h).
   double height_longest = 0.25;

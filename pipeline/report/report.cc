@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 std::vector<std::string> StagesShown(const std::string& from) {
   std::vector<std::string> stages = {"calib", "rectify", "fit"};
   if (from == "refine") stages.push_back("refine");
+  stages.push_back("tile");
   return stages;
 }
 
@@ -75,6 +76,7 @@ Report MakeReport(const ReportInput& input, const ReportOptions& options, int th
   std::string body = TitleSection(input);
   body += ViewerSection(input, options);
   body += MapsSection(input, options);
+  body += TileSection(input, options);
   body += OverviewSection(input, report.metrics);
   body += GuidanceSection(input);
   std::string details = CorrectionsSection(input);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/hash.h"
 #include "pipeline/report/figure.h"
 #include "pipeline/report/guidance_section.h"
 #include "pipeline/report/html.h"
@@ -164,6 +165,26 @@ std::string MapsSection(const ReportInput& input, const ReportOptions& options) 
   }
   body += "</div>\n";
   return Section("Maps (" + options.from + ")", ManifestLink(options.from), body);
+}
+
+std::string TileSection(const ReportInput& input, const ReportOptions& options) {
+  if (!input.Has("tile")) return "";
+  const Manifest& manifest = input.manifests.at("tile");
+  const std::string maps = HashFile(input.work / options.from / "manifest.json");
+  const bool of_these_maps = std::any_of(manifest.inputs.begin(), manifest.inputs.end(),
+                                         [&](const ManifestInput& in) { return in.hash == maps; });
+  if (!of_these_maps) return "";
+  const Trace data{ManifestLink("tile"), "data"}, metrics{ManifestLink("tile"), "metrics"};
+  const Image preview = ReadPhoto(input.work / "tile" / "preview.png").image;
+  return Section("Repeated", ManifestLink("tile"),
+                 "<p>A piece of " +
+                     FigureHtml(manifest.data["size_mm"][0], data.Field("size_mm[0]")) + " × " +
+                     FigureHtml(manifest.data["size_mm"][1], data.Field("size_mm[1]")) +
+                     " mm repeats without visible borders; across its seams maps change " +
+                     FigureHtml(manifest.metrics["seam"]["worst"], metrics.Field("seam.worst")) +
+                     " times as much as elsewhere. The material files hold this piece.</p>\n" +
+                     Figure(JpegUri(Shrunk(preview, options.picture_px), 90),
+                            "three by three pieces, lit", "wide"));
 }
 
 std::string ViewsSection(const ReportInput& input, const ReportOptions& options, int threads,

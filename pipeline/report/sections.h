@@ -14,6 +14,8 @@ std::string Folded(const std::string& title, const std::string& body);
 
 std::string OverviewSection(const ReportInput& input, const Json& own_metrics);
 std::string MapsSection(const ReportInput& input, const ReportOptions& options);
+// Three by three repetitions; "" where the stage tile has not run on these maps.
+std::string TileSection(const ReportInput& input, const ReportOptions& options);
 // Renders every view; adds the errors to `own_metrics`.
 std::string ViewsSection(const ReportInput& input, const ReportOptions& options, int threads,
                          Json* own_metrics);

@@ -24,7 +24,7 @@ namespace {
 struct FakeOptions {
   fs::path folder;
   double gain = 1, sleep_s = 0;
-  int fail = 0;
+  int fail = 0, finest_size = 256;
   bool die = false;
   std::string method = "latent", from = "refine";
   std::vector<std::string> exclude, views;
@@ -48,7 +48,7 @@ std::vector<fs::path> Inputs(const FakeOptions& o, const std::string& stage) {
   if (stage == "rectify") add_stage("calib");
   if (stage == "fit" || stage == "refine") add_stage("rectify");
   if (stage == "refine") add_stage("fit");
-  if (stage == "export" || stage == "report") add_stage(o.from);
+  if (stage == "tile" || stage == "export" || stage == "report") add_stage(o.from);
   if (stage == "fit" && fs::exists(o.folder / "weights")) files.push_back(o.folder / "weights");
   return files;
 }
@@ -115,6 +115,7 @@ int main(int argc, char** argv) {
   options.Add("gain", &o.gain, "enters the result");
   options.Add("method", &o.method, "enters the result");
   options.Add("from", &o.from, "which maps");
+  options.Add("finest-size", &o.finest_size, "enters the result");
   options.Add("exclude", &o.exclude, "enters the result");
   options.Add("views", &o.views, "enters the result");
   options.Add("fail", &o.fail, "exit code", glint::Invalidates::kNo);

@@ -33,7 +33,7 @@ class RunTest : public testing::Test {
          {"glint", "glint-run", "glint-status", "glint-init", "glint-verify", "glint-view"}) {
       fs::copy_file(fs::path(GLINT_BIN_DIR) / name, bin / name);
     }
-    for (const char* stage : {"calib", "rectify", "fit", "refine", "export", "report"}) {
+    for (const char* stage : {"calib", "rectify", "fit", "refine", "tile", "export", "report"}) {
       fs::copy_file(fs::path(GLINT_BIN_DIR) / "fake_stage", bin / ("glint-" + std::string(stage)));
     }
     SetToml("");
@@ -75,6 +75,32 @@ class RunTest : public testing::Test {
 
   test::TemporaryFolder folder_;
 };
+
+TEST_F(RunTest, ATableTileMakesExportTakeTheRepeatingMaps) {
+  SetToml("[tile]\n");
+  EXPECT_THAT(RunJson().computed,
+              ElementsAre("calib", "rectify", "fit", "refine", "tile", "export", "report"));
+  const auto from = [&](const char* stage) {
+    return Json::parse(test::ReadAll(manifest(stage)))["options"]["from"];
+  };
+  EXPECT_EQ(from("tile"), "refine");
+  EXPECT_EQ(from("export"), "tile");
+  EXPECT_EQ(from("report"), "refine");
+  EXPECT_THAT(RunJson().started, testing::IsEmpty());
+  SetToml("");
+  EXPECT_THAT(RunJson().computed, ElementsAre("export"));
+  EXPECT_EQ(from("export"), "refine");
+}
+
+TEST_F(RunTest, OneLineAStageAndWhereThingsAre) {
+  const Outcome outcome = Glint({"run", capture().string()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::HasSubstr("maps and materials: " + capture().string()));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("glint view"));
+  EXPECT_THAT(Glint({"run", capture().string()}).out,
+              testing::HasSubstr("up to date: calib, rectify, fit, refine, export, report\n"));
+  EXPECT_THAT(Glint({"version"}).out, testing::HasSubstr("glint "));
+}
 
 TEST_F(RunTest, ASecondRunStartsNoStage) {
   EXPECT_THAT(RunJson().computed,

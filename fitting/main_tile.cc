@@ -1,0 +1,55 @@
+// glint-tile: a piece of the material that repeats without visible borders.
+#include <fmt/format.h>
+
+#include "fitting/tiling/tile_stage.h"
+#include "pipeline/contract/program.h"
+
+namespace glint {
+namespace {
+
+ProgramResult Summarise(const Stage& stage, const TileStageResult& result) {
+  const SvbrdfMaps& maps = result.tile.maps;
+  const std::string facts =
+      fmt::format("{} x {} texels repeat, seams {:.3g} x the texture's change", maps.width,
+                  maps.height, result.tile.seam.worst());
+  return {fmt::format("tile: {} ({:.3g} x {:.3g} mm)\npreview: {}\n", facts, result.width_mm,
+                      result.height_mm, (stage.folder() / "preview.png").string()),
+          {{"stage", "tile"},
+           {"up_to_date", false},
+           {"manifest", stage.manifest_file().string()},
+           {"metrics", result.metrics}},
+          facts};
+}
+
+ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, TileStageOptions* options,
+                  const CommonOptions& common) {
+  const Capture capture = ReadCapture(folder);
+  set->LoadToml(capture.file, "tile");
+  const auto source = capture.work() / options->from / "manifest.json";
+  ReadManifest(source, options->from);
+  Stage stage(capture.work() / "tile", {"tile", kTileVersion}, *set, common, {source});
+  if (stage.UpToDate()) return stage.UpToDateResult();
+  return Summarise(stage, RunTileStage(capture, *options, common.threads, &stage));
+}
+
+}  // namespace
+}  // namespace glint
+
+int main(int argc, char** argv) {
+  std::filesystem::path folder = ".";
+  glint::TileStageOptions options;
+  glint::OptionSet set;
+  set.AddPositional("capture", &folder, "the capture's folder", false);
+  glint::AddTileOptions(&set, &options);
+  const glint::ProgramInfo info{
+      "glint-tile",
+      "Makes maps that repeat without visible borders: takes slow changes out, chooses the piece "
+      "whose ends fit best, and joins them. A table [tile] in capture.toml makes glint run do it "
+      "before export.",
+      GLINT_VERSION,
+      "Examples:\n  glint tile wood && glint export wood --from tile\n"
+      "  glint tile wood --least-share 0.8 --flatten 0"};
+  return glint::RunProgram(argc, argv, info, &set, [&](const glint::CommonOptions& common) {
+    return glint::Run(folder, &set, &options, common);
+  });
+}

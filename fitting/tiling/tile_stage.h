@@ -1,0 +1,36 @@
+// The stage `tile`: maps that repeat, from those of refine or fit.
+//
+// Writes svbrdf.exr, and preview.png: three by three repetitions, lit from the upper left. data:
+// size_mm of the piece, its texels in the sample; metrics: seam (SeamScore).
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "fitting/tiling/tile_maps.h"
+#include "pipeline/contract/capture.h"
+#include "pipeline/contract/options.h"
+#include "pipeline/contract/stage.h"
+
+namespace glint {
+
+inline constexpr int kTileVersion = 1;
+
+struct TileStageOptions {
+  std::string from = "refine";
+  TileOptions tile;
+};
+
+void AddTileOptions(OptionSet* set, TileStageOptions* options);
+
+struct TileStageResult {
+  TileResult tile;
+  double width_mm = 0, height_mm = 0;
+  Json metrics;
+};
+
+// Throws UserError: no such maps, or too few texels.
+TileStageResult RunTileStage(const Capture& capture, const TileStageOptions& options, int threads,
+                             Stage* stage);
+
+}  // namespace glint
