@@ -14,9 +14,9 @@ ProgramResult Summarise(const Stage& stage, const FitStageOptions& options,
   result.text = fmt::format("fit ({}): {}x{} texels from {} views in {:.1f} s\n  {}\n",
                             options.method, done.width, done.height, done.fit.view_loss.size(),
                             done.seconds, done.fit.BriefReport());
-  result.summary =
-      fmt::format("{}, {} views, log-L1 {:.3g} -> {:.3g}", options.method,
-                  done.fit.view_loss.size(), done.fit.start_loss, done.fit.fitted_loss());
+  const size_t views = done.fit.view_loss.size();
+  result.summary = fmt::format("{}, {} view{}, log-L1 {:.3g}", options.method, views,
+                               views == 1 ? "" : "s", done.fit.fitted_loss());
   result.json = {{"stage", "fit"},
                  {"up_to_date", false},
                  {"manifest", stage.manifest_file().string()},

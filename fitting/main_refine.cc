@@ -15,7 +15,8 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined) {
       fmt::format("refine: {}x{} texels from {} views in {:.1f} s ({:.0f} texels/s)\n  {}\n",
                   refined.width, refined.height, refined.views.size(), refined.seconds,
                   texels / refined.seconds, refined.summary.BriefReport());
-  result.summary = fmt::format("{} views, residuals {:.3g} %, {} substances", refined.views.size(),
+  result.summary = fmt::format("{} view{}, residuals {:.3g} %, {} substances", refined.views.size(),
+                               refined.views.size() == 1 ? "" : "s",
                                100 * refined.summary.residual_sigma, refined.summary.substances);
   const Json& correction = refined.metrics["correction"];
   if (refined.correction.taken && !correction["views_moved"].get<bool>()) {

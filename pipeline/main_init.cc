@@ -24,6 +24,13 @@ void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
                "response curve (glint-response writes one)");
   options->AddRange("every", &o->every, 1, 1000000,
                     "one frame in so many of a video becomes a photograph");
+  options->Add("single", &o->single,
+               "one photograph from straight above, without a board; with --width-mm or "
+               "--distance-mm");
+  options->AddRange("width-mm", &o->width_mm, 0, 1e5,
+                    "with --single: how much of the sample the picture's width shows");
+  options->AddRange("distance-mm", &o->distance_mm, 0, 1e5,
+                    "with --single: how far the lens was from the sample");
   options->Add("light-offset-mm", &o->light_offset_mm,
                "X,Y,Z of the flash in the camera frame: x right, y down, z forward");
 }
@@ -44,6 +51,7 @@ int main(int argc, char** argv) {
        "A board.json in the folder (glint board) is taken for the board; else the options describe "
        "it, or say that there is none.\nExamples:\n  glint init wood --squares 12,12 --square-mm "
        "15 --sample-mm 100,100\n"
+       "  glint init wood --single --width-mm 120\n"
        "  glint init wood --list"},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         if (list) {

@@ -15,9 +15,9 @@ ProgramResult Summarise(const Stage& stage, const RectifySummary& summary) {
   result.text = fmt::format("rectify: {} views of {}x{} texels ({:.3f} mm a texel)\n",
                             summary.set.views.size(), plane.width, plane.height,
                             plane.width_mm / plane.width);
-  result.summary =
-      fmt::format("{} views of {} x {} texels, {:.3g} mm a texel", summary.set.views.size(),
-                  plane.width, plane.height, plane.width_mm / plane.width);
+  result.summary = fmt::format("{} view{} of {} x {} texels, {:.3g} mm a texel",
+                               summary.set.views.size(), summary.set.views.size() == 1 ? "" : "s",
+                               plane.width, plane.height, plane.width_mm / plane.width);
   for (size_t i = 0; i < summary.set.views.size(); ++i) {
     const Json& metrics = summary.metrics["views"][i];
     result.text += fmt::format(

@@ -28,10 +28,10 @@ std::string PosesInOneLine(const Capture& capture) {
   const PosesTable& poses = capture.poses;
   return fmt::format(
       "size {} x {} mm, photo '{}', corners [{}], points [{}] {} mm, cameras [{}] {} mm, height {} "
-      "mm, origin [{}], x axis [{}]",
+      "mm, picture {} mm, origin [{}], x axis [{}]",
       capture.sample_size_mm[0], capture.sample_size_mm[1], poses.photo,
       fmt::join(poses.corners_px, " "), fmt::join(poses.points_px, " "), poses.points_mm,
-      fmt::join(poses.cameras, " "), poses.cameras_mm, poses.height_mm,
+      fmt::join(poses.cameras, " "), poses.cameras_mm, poses.height_mm, poses.picture_width_mm,
       fmt::join(poses.origin_px, " "), fmt::join(poses.x_axis_px, " "));
 }
 
@@ -42,7 +42,7 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   // which is in the task; the place of the folder tells nothing.
   set->Add("poses", &options->poses,
            "where poses and intrinsics come from: board; colmap (runs the program); colmap:DIR (a "
-           "COLMAP model)",
+           "COLMAP model); above (one photograph, straight from above, no board)",
            Invalidates::kNo);
   set->AddChoice("export", &options->write, {"none", "colmap"},
                  "also write the calibration for another program: colmap, to glint/colmap",

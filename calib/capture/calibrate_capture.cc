@@ -10,6 +10,8 @@
 
 #include "calib/bundle/residual_picture.h"
 #include "calib/camera/orientation.h"
+#include "calib/capture/above_pose.h"
+#include "calib/capture/assumed_camera.h"
 #include "calib/capture/capture_light.h"
 #include "calib/capture/colmap_poses.h"
 #include "calib/capture/guide_capture.h"
@@ -265,12 +267,55 @@ void SolveCapture(const Capture& capture, const CalibOptions& options,
   FinishCapture(capture, options, !assumed.empty(), summary);
 }
 
+void SolveWithAssumedCameras(const Capture& capture, const CalibOptions& options,
+                             CalibSummary* summary) {
+  const CameraModel model = CameraModelFromName(options.model).value_or(CameraModel::kOpenCv);
+  std::vector<Camera> assumed;
+  for (const CameraGroup& group : summary->groups.groups) {
+    assumed.push_back(AssumedCamera(summary->photos, group, model));
+  }
+  summary->calibration = Calibration();
+  summary->rejected.clear();
+  SolveCapture(capture, options, assumed, summary);
+}
+
+namespace {
+
+// One photograph seldom tells its focal length: EXIF then does, or what phones have.
+void SolveOnePhotograph(const Capture& capture, const CalibOptions& options,
+                        CalibSummary* summary) {
+  try {
+    SolveCapture(capture, options, {}, summary);
+  } catch (const Error& error) {
+    const CameraGroup& group = summary->groups.groups[0];
+    spdlog::warn(
+        "one photograph does not tell its focal length; {} is taken, which may be off by some "
+        "percent, and distances with it. Two more, tilted by 20 to 40 degrees, mend that",
+        FocalTold(summary->photos, group) ? "EXIF's 35 mm equivalent"
+                                          : "that of a phone's main camera (26 mm equivalent)");
+    spdlog::debug("{}", error.what());
+    SolveWithAssumedCameras(capture, options, summary);
+  }
+}
+
+}  // namespace
+
 CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& options,
                               const CommonOptions& common, Stage* stage) {
   CalibSummary summary;
-  if (PoseSourceOf(options) == PoseSource::kBoard) {
+  const PoseSource source = PoseSourceOf(options);
+  if (source == PoseSource::kBoard) {
     summary = DetectCapture(capture, options, common.threads);
-    SolveCapture(capture, options, {}, &summary);
+    const bool told = !options.fix_intrinsics.empty() || !options.library.empty();
+    if (summary.photos.size() == 1 && !told) {
+      SolveOnePhotograph(capture, options, &summary);
+    } else {
+      SolveCapture(capture, options, {}, &summary);
+    }
+  } else if (source == PoseSource::kAbove) {
+    summary.photos = DetectPhotos(capture, options, common.threads);
+    PoseFromAbove(capture, options, &summary);
+    FinishCapture(capture, options, true, &summary);
   } else {
     summary.photos = DetectPhotos(capture, options, common.threads);
     PosesFromColmap(capture, options, common, stage, &summary);

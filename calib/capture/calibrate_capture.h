@@ -19,7 +19,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 9;
+inline constexpr int kCalibVersion = 10;
 
 struct RejectedPhoto {
   std::string name, reason;
@@ -58,6 +58,9 @@ CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& option
 CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, int threads);
 void SolveCapture(const Capture& capture, const CalibOptions& options,
                   const std::vector<Camera>& assumed, CalibSummary* summary);
+// With intrinsics as assumed_camera.h has them, after a detection or a failed SolveCapture.
+void SolveWithAssumedCameras(const Capture& capture, const CalibOptions& options,
+                             CalibSummary* summary);
 
 // report.cc
 Json MetricsOf(const CalibSummary& summary);

@@ -5,35 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/camera/orientation.h"
 #include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {
 
-constexpr int kQuick_px = 2100;           // 12 megapixels at half, 50 at a quarter of their size
-constexpr double kPhoneFocal_mm = 26;     // 35 mm equivalent
-constexpr double kFullFrame_mm = 43.267;  // diagonal
+constexpr int kQuick_px = 2100;  // 12 megapixels at half, 50 at a quarter of their size
 
 const DetectedPhoto& FindPhoto(const CalibSummary& summary, const std::string& name) {
   return *std::find_if(summary.photos.begin(), summary.photos.end(),
                        [&](const DetectedPhoto& photo) { return photo.name == name; });
-}
-
-// Of a picture with the stored size of the group, without distortion.
-Camera AssumedCamera(const CalibSummary& summary, const CameraGroup& group, CameraModel model) {
-  double focal_mm = summary.photos[group.photos.front()].focal_length_35mm;
-  if (!(focal_mm > 0)) focal_mm = kPhoneFocal_mm;
-  const double focal_px = focal_mm / kFullFrame_mm * std::hypot(group.width_px, group.height_px);
-  Camera camera{model, group.width_px, group.height_px, {}};
-  for (const std::string& name : CameraParameterNames(model)) {
-    const double value = name[0] == 'f' ? focal_px
-                         : name == "cx" ? 0.5 * group.width_px
-                         : name == "cy" ? 0.5 * group.height_px
-                                        : 0;
-    camera.parameters.push_back(value);
-  }
-  return camera;
 }
 
 }  // namespace
@@ -78,14 +59,7 @@ CalibSummary CheckCapture(const Capture& capture, const CalibOptions& given,
     if (!options.fix_intrinsics.empty()) throw;
     spdlog::debug("assuming the focal length: {}", error.what());
   }
-  const CameraModel model = CameraModelFromName(options.model).value_or(CameraModel::kOpenCv);
-  std::vector<Camera> assumed;
-  for (const CameraGroup& group : summary.groups.groups) {
-    assumed.push_back(AssumedCamera(summary, group, model));
-  }
-  summary.calibration = Calibration();
-  summary.rejected.clear();
-  SolveCapture(capture, options, assumed, &summary);
+  SolveWithAssumedCameras(capture, options, &summary);
   return summary;
 }
 

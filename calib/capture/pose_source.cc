@@ -19,12 +19,15 @@ constexpr char kPrefix[] = "colmap:";
 
 PoseSource PoseSourceOf(const CalibOptions& options) {
   if (options.poses == "board") return PoseSource::kBoard;
+  if (options.poses == "above") return PoseSource::kAbove;
   if (options.poses == "colmap") return PoseSource::kColmapProgram;
   if (options.poses.starts_with(kPrefix) && options.poses.size() > sizeof(kPrefix) - 1) {
     return PoseSource::kColmapModel;
   }
-  throw UserError("--poses: found '" + options.poses +
-                  "'; use board, colmap (the program is run), or colmap:DIR (a model is read)");
+  throw UserError(
+      "--poses: found '" + options.poses +
+      "'; use board, colmap (the program is run), colmap:DIR (a model is read), or above (one "
+      "photograph from straight above)");
 }
 
 fs::path PosesFolder(const Capture& capture, const CalibOptions& options) {
@@ -34,6 +37,12 @@ fs::path PosesFolder(const Capture& capture, const CalibOptions& options) {
 
 void CheckPoses(const Capture& capture, const CalibOptions& options) {
   const PosesTable& poses = capture.poses;
+  if (PoseSourceOf(options) == PoseSource::kAbove) {
+    if (poses.picture_width_mm > 0 || poses.height_mm > 0) return;
+    throw UserError(capture.file, "poses", "no length",
+                    "a photograph without a board knows no millimetres: give picture_width_mm (how "
+                    "much of the sample its width shows) or height_mm (of the lens) in [poses]");
+  }
   const bool scale = !poses.corners_px.empty() || poses.points_mm > 0 || poses.cameras_mm > 0 ||
                      poses.height_mm > 0;
   if (!scale && !capture.has_board) {

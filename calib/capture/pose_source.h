@@ -11,9 +11,9 @@
 
 namespace glint {
 
-// --poses: "board", "colmap" (the program is run) or "colmap:DIR" (a model is read). Throws
-// UserError for another text.
-enum class PoseSource { kBoard, kColmapProgram, kColmapModel };
+// --poses: "board", "colmap" (the program is run), "colmap:DIR" (a model is read) or "above" (one
+// photograph from straight above). Throws UserError for another text.
+enum class PoseSource { kBoard, kColmapProgram, kColmapModel, kAbove };
 PoseSource PoseSourceOf(const CalibOptions& options);
 // The folder after "colmap:", from the working folder or else from the capture's.
 std::filesystem::path PosesFolder(const Capture& capture, const CalibOptions& options);

@@ -121,6 +121,10 @@ Json ResidualsOf(const CalibSummary& summary) {
 // What COLMAP's model gave; "" where the board gave the poses.
 std::string PosesText(const Json& poses) {
   if (poses.is_null()) return "";
+  if (poses["source"] == "above") {
+    return fmt::format("pose as stated: from {:.4g} mm straight above, {:.4g} mm across\n",
+                       poses["height_mm"].get<double>(), poses["picture_width_mm"].get<double>());
+  }
   return fmt::format(
       "poses from COLMAP: {} of {} images; plane through {} of {} points ({:.0f} % by weight), "
       "{:.3f} mm RMS; scale from {}, {:.5g} mm a unit\n",

@@ -405,6 +405,7 @@ void ReadPoses(const fs::path& file, const toml::table& document, Capture* captu
   poses.cameras = table.Texts("cameras", "give the names of two photographs");
   poses.cameras_mm = table.Number("cameras_mm", 0, 1e-3, 1e6, unit);
   poses.height_mm = table.Number("height_mm", 0, 1e-3, 1e6, unit);
+  poses.picture_width_mm = table.Number("picture_width_mm", 0, 1e-3, 1e6, unit);
   poses.origin_px = table.Points("origin_px", 1, "give a point [x, y] of `photo`");
   poses.x_axis_px = table.Points("x_axis_px", 2, "give two points [[x, y], [x, y]] of `photo`");
   table.RejectUnknown();
@@ -428,10 +429,10 @@ void ReadPoses(const fs::path& file, const toml::table& document, Capture* captu
                     "give the names of two photographs");
   }
   const int scales = !poses.corners_px.empty() + !poses.points_px.empty() + !poses.cameras.empty() +
-                     (poses.height_mm > 0);
+                     (poses.height_mm > 0) + (poses.picture_width_mm > 0);
   if (scales > 1) {
     throw UserError(file, "poses", std::to_string(scales) + " lengths",
-                    "give one of corners_px, points_px, cameras and height_mm");
+                    "give one of corners_px, points_px, cameras, height_mm and picture_width_mm");
   }
 }
 

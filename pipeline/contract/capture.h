@@ -20,6 +20,7 @@ struct PosesTable {
   double points_mm = 0;              // … and their distance
   std::vector<std::string> cameras;  // two photographs …
   double cameras_mm = 0;             // … and the distance of the lens between them
+  double picture_width_mm = 0;    // of the sample's plane, shown by the one photograph from above
   double height_mm = 0;           // of the lens above the sample in `photo` (none: median of all)
   std::vector<double> origin_px;  // x y of the sample's centre
   std::vector<double> x_axis_px;  // x y of two points, from left to right along the sample

@@ -11,6 +11,7 @@
 #include "pipeline/contract/board_file.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
+#include "pipeline/contract/image.h"
 #include "pipeline/contract/photo_name.h"
 
 namespace glint {
@@ -259,6 +260,50 @@ Surroundings WithoutBoard() {
       {}};
 }
 
+// The one photograph's file.
+fs::path OnlyPhoto(const InitOptions& options) {
+  const fs::path folder = options.folder / PhotoFolder(options.folder);
+  std::vector<fs::path> photos;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.is_regular_file() && IsPhoto(entry.path())) photos.push_back(entry.path());
+  }
+  if (photos.size() == 1) return photos[0];
+  throw UserError(folder, "", std::to_string(photos.size()) + " photographs",
+                  "--single is for one photograph; for several lay a board round the sample (glint "
+                  "board), or let COLMAP find the cameras (--board none)");
+}
+
+// The largest square that stays clear of the picture's borders.
+Surroundings FromAbove(const InitOptions& options) {
+  constexpr double kOfShorterSide = 0.9;
+  constexpr double kPhoneAngle = 26 / 43.267;  // focal length over diagonal, for the size alone
+  if ((options.width_mm > 0) == (options.distance_mm > 0)) {
+    throw UserError(
+        "--single: found neither or both of --width-mm and --distance-mm; give one: how much of "
+        "the sample the picture's width shows, or how far the lens was from it");
+  }
+  const auto [width_px, height_px] = PhotoSize(OnlyPhoto(options));
+  const double width_mm =
+      options.width_mm > 0
+          ? options.width_mm
+          : options.distance_mm * width_px / (kPhoneAngle * std::hypot(width_px, height_px));
+  const double side_mm =
+      std::floor(kOfShorterSide * width_mm * std::min(width_px, height_px) / width_px);
+  const std::string length = options.width_mm > 0
+                                 ? "picture_width_mm = " + NumberText(options.width_mm) +
+                                       "           # how much of the sample its width shows\n"
+                                 : "height_mm = " + NumberText(options.distance_mm) +
+                                       "                  # of the lens above the sample\n";
+  return {
+      "[calib]\nposes = \"above\"                  # one photograph from straight above, no "
+      "board\n\n[poses]\n" +
+          length,
+      {std::max(1.0, side_mm), std::max(1.0, side_mm)},
+      "the picture's middle",
+      {}};
+}
+
 void CheckEncoding(const std::string& encoding) {
   constexpr std::array kNames = {"auto", "srgb", "gamma2.2", "linear"};
   if (std::find(kNames.begin(), kNames.end(), encoding) != kNames.end()) return;
@@ -294,7 +339,8 @@ std::string InitResult::BriefReport() const {
   if (photos == 0) {
     text += "put the photographs into " + (file.parent_path() / "photos").string() + "\n";
   }
-  text += has_board ? "check the measures in it" : "say in [poses] how large the sample is";
+  text +=
+      has_board || single ? "check the measures in it" : "say in [poses] how large the sample is";
   return text + ", then: glint run " + folder + "\n";
 }
 
@@ -309,12 +355,15 @@ std::string MaterialName(const fs::path& folder) {
 std::string CaptureText(const InitOptions& options, InitResult* result) {
   RequireCount(options.light_offset_mm, 3, "light-offset-mm", "X,Y,Z");
   CheckEncoding(options.encoding);
-  result->has_board = options.board != "none";
+  result->has_board = options.board != "none" && !options.single;
+  result->single = options.single;
   std::string board_photos;
   if (result->has_board) {
     board_photos = Patterns(options.folder, "board", IsPhoto, &result->board_photos);
   }
-  const Surroundings around = result->has_board ? WithBoard(options, board_photos) : WithoutBoard();
+  const Surroundings around = result->has_board ? WithBoard(options, board_photos)
+                              : options.single  ? FromAbove(options)
+                                                : WithoutBoard();
   if (!options.sample_mm.empty()) CheckSampleSize(options.sample_mm);
   const std::vector<double>& size_mm =
       options.sample_mm.empty() ? around.sample_mm : options.sample_mm;

@@ -25,12 +25,16 @@ struct InitOptions {
   std::string encoding = "auto";  // or a response curve's file (.json)
   int every = 15;                 // of a video's frames, one in so many
   std::vector<double> light_offset_mm = {0, 0, 0};
+  // One photograph from straight above, without a board.
+  bool single = false;
+  double width_mm = 0;     // how much of the sample's plane the picture's width shows, or …
+  double distance_mm = 0;  // … the lens's height above it
 };
 
 struct InitResult {
   std::filesystem::path file;
   size_t photos = 0, board_photos = 0;
-  bool has_board = true;
+  bool has_board = true, single = false;
   std::string BriefReport() const;
 };
 

@@ -213,6 +213,48 @@ TEST_F(CalibProgram, LeavesOutAPhotoWithoutTheBoardAndSaysSo) {
   EXPECT_EQ(ReadCalibration(capture / "glint/calib/manifest.json").photos.size(), 5u);
 }
 
+TEST_F(CalibProgram, OnePhotographTakesItsFocalLengthFromElsewhereAndSaysSo) {
+  const fs::path capture = Copy("one");
+  for (int i = 1; i < 6; ++i) fs::remove(capture / "photos" / ("p" + std::to_string(i) + ".png"));
+  const Result result = Calibrate(capture);
+  EXPECT_EQ(result.code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("one photograph does not tell its focal length"));
+  EXPECT_THAT(result.output, HasSubstr("26 mm equivalent"));
+  const Calibration calibration = ReadCalibration(capture / "glint/calib/manifest.json");
+  ASSERT_EQ(calibration.photos.size(), 1u);
+  const double diagonal_px = std::hypot(640, 480);
+  EXPECT_NEAR(calibration.cameras[0].focal_length_x(), 26 / 43.267 * diagonal_px, 1e-6);
+}
+
+TEST_F(CalibProgram, OnePhotographWithoutABoardIsTakenFromStraightAbove) {
+  const fs::path capture = Copy("above");
+  for (int i = 1; i < 6; ++i) fs::remove(capture / "photos" / ("p" + std::to_string(i) + ".png"));
+  const auto with = [&](const std::string& poses) {
+    WriteText(capture / "capture.toml",
+              "[sample]\nsize_mm = [40, 40]\n[photos]\nfiles = [\"photos/*.png\"]\n"
+              "[calib]\nposes = \"above\"\n" +
+                  poses);
+  };
+  with("");
+  ExpectUserError(capture, {"poses: found no length", "picture_width_mm"});
+  with("[poses]\npicture_width_mm = 30\n");
+  ExpectUserError(capture, {"sample.size_mm: found 40 x 40 mm", "shows 30 x 22.5 mm"});
+  with("[poses]\npicture_width_mm = 128\n");
+  const Result result = Calibrate(capture);
+  EXPECT_EQ(result.code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("straight above, 128 mm across"));
+  const Calibration calibration = ReadCalibration(capture / "glint/calib/manifest.json");
+  ASSERT_EQ(calibration.photos.size(), 1u);
+  // 64 mm right of the middle is the picture's right border; up is up.
+  const Eigen::Vector2d right =
+      ImageFromCamera(calibration.cameras[0],
+                      calibration.photos[0].camera_from_sample * Eigen::Vector3d(64, 12.8, 0));
+  EXPECT_NEAR(right.x(), 640, 1e-6);
+  EXPECT_NEAR(right.y(), 240 - 64, 1e-6);
+  fs::copy_file(capture / "photos/p0.png", capture / "photos/p1.png");
+  ExpectUserError(capture, {"photos.files: found 2 photographs", "is for one photograph"});
+}
+
 TEST_F(CalibProgram, SaysThatTheBoardIsAnother) {
   const fs::path capture = Copy("otherboard", true);
   const auto with = [&](const std::string& from, const std::string& to) {

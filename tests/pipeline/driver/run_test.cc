@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "pipeline/contract/image.h"
 #include "pipeline/contract/json.h"
 #include "tests/support/process.h"
 
@@ -75,6 +76,29 @@ class RunTest : public testing::Test {
 
   test::TemporaryFolder folder_;
 };
+
+TEST_F(RunTest, InitDescribesOnePhotographFromAbove) {
+  const fs::path folder = folder_.path() / "single";
+  fs::create_directories(folder);
+  WritePng(folder / "a.png", Image(4, 3, {"R", "G", "B"}));
+  const Outcome vague = Glint({"init", folder.string(), "--single"});
+  EXPECT_EQ(vague.code, 2);
+  EXPECT_THAT(vague.err, testing::HasSubstr("--width-mm"));
+  const Outcome outcome = Glint({"init", folder.string(), "--single", "--width-mm", "120"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string text = test::ReadAll(folder / "capture.toml");
+  EXPECT_THAT(text, testing::HasSubstr("size_mm = [81, 81]"));
+  EXPECT_THAT(text, testing::HasSubstr("poses = \"above\""));
+  EXPECT_THAT(text, testing::HasSubstr("picture_width_mm = 120"));
+  const fs::path several = folder_.path() / "several";
+  fs::create_directories(several);
+  for (const char* name : {"a.png", "b.png"}) {
+    WritePng(several / name, Image(4, 3, {"R", "G", "B"}));
+  }
+  const Outcome two = Glint({"init", several.string(), "--single", "--width-mm", "120"});
+  EXPECT_EQ(two.code, 2);
+  EXPECT_THAT(two.err, testing::HasSubstr("found 2 photographs"));
+}
 
 TEST_F(RunTest, ATableTileMakesExportTakeTheRepeatingMaps) {
   SetToml("[tile]\n");

@@ -1,0 +1,33 @@
+#include "calib/capture/assumed_camera.h"
+
+#include <cmath>
+
+namespace glint {
+namespace {
+
+constexpr double kPhoneFocal_mm = 26;     // 35 mm equivalent
+constexpr double kFullFrame_mm = 43.267;  // diagonal
+
+}  // namespace
+
+bool FocalTold(const std::vector<DetectedPhoto>& photos, const CameraGroup& group) {
+  return photos[group.photos.front()].focal_length_35mm > 0;
+}
+
+Camera AssumedCamera(const std::vector<DetectedPhoto>& photos, const CameraGroup& group,
+                     CameraModel model) {
+  const double focal_mm =
+      FocalTold(photos, group) ? photos[group.photos.front()].focal_length_35mm : kPhoneFocal_mm;
+  const double focal_px = focal_mm / kFullFrame_mm * std::hypot(group.width_px, group.height_px);
+  Camera camera{model, group.width_px, group.height_px, {}};
+  for (const std::string& name : CameraParameterNames(model)) {
+    const double value = name[0] == 'f' ? focal_px
+                         : name == "cx" ? 0.5 * group.width_px
+                         : name == "cy" ? 0.5 * group.height_px
+                                        : 0;
+    camera.parameters.push_back(value);
+  }
+  return camera;
+}
+
+}  // namespace glint
