@@ -22,6 +22,7 @@ function(glint_program name)
   target_link_libraries(${name} PRIVATE glint_compile_options ${ARG_DEPENDS})
   target_compile_definitions(${name} PRIVATE GLINT_VERSION="${PROJECT_VERSION}")
   add_dependencies(programs ${name})
+  install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
 
 # glint_test(test_x SOURCES … DEPENDS …): one GoogleTest binary, its cases known to ctest.

@@ -224,6 +224,18 @@ std::vector<std::string> FramesOf(const fs::path& folder, const std::string& vid
 }
 
 // Photographs of the table's `key` (patterns) and `video` (patterns too), each once.
+// Manifests name photographs, and JSON is UTF-8.
+void RequireUtf8(const fs::path& file, const std::string& field, const std::string& name) {
+  try {
+    (void)Json(name).dump();
+  } catch (const nlohmann::json::exception&) {
+    throw UserError(file, field,
+                    "'" + Json(name).dump(-1, ' ', true, Json::error_handler_t::replace) +
+                        "', a name whose bytes are no UTF-8",
+                    "rename the file, or convert names with: convmv -f latin1 -t utf8 --notest");
+  }
+}
+
 std::vector<std::string> ReadPhotos(const fs::path& folder, const std::string& key,
                                     TableReader* table, const fs::path& file) {
   const auto patterns = table->Texts(key, "give a list of patterns such as [\"photos/*.jpg\"]");
@@ -233,6 +245,7 @@ std::vector<std::string> ReadPhotos(const fs::path& folder, const std::string& k
   std::vector<std::string> all;
   std::set<std::string> seen;
   const auto add = [&](const std::string& name) {
+    RequireUtf8(file, table->name() + "." + key, name);
     if (seen.insert(name).second) all.push_back(name);
   };
   for (const std::string& pattern : patterns) {

@@ -51,7 +51,8 @@ std::string OneLine(const std::string& program, const std::string& summary, doub
 bool OneLineWanted() { return std::getenv(kOneLineVariable) != nullptr; }
 
 int PrintResult(const ProgramInfo& info, const ProgramResult& result, bool json, double seconds) {
-  std::string text = json ? result.json.dump(2) : result.text;
+  std::string text =
+      json ? result.json.dump(2, ' ', false, Json::error_handler_t::replace) : result.text;
   if (!json && !result.summary.empty() && OneLineWanted()) {
     text = OneLine(info.name, result.summary, seconds);
   }

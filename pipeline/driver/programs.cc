@@ -21,6 +21,7 @@ struct KnownVerb {
 
 // In the order in which a person meets them.
 constexpr KnownVerb kKnownVerbs[] = {
+    {"demo", "make a synthetic capture and run everything on it"},
     {"board", "print a calibration board"},
     {"init", "write a capture.toml for a folder of photographs"},
     {"run", "run every stage that is not up to date"},

@@ -49,6 +49,19 @@ std::unique_ptr<FileLock> LockRun(const fs::path& work) {
   }
 }
 
+// Temporary files of runs that were killed while they wrote; under the run's lock nobody is.
+void RemoveLeftovers(const fs::path& work) {
+  std::error_code error;
+  std::vector<fs::path> leftovers;
+  for (const auto& entry : fs::directory_iterator(work, error)) {
+    const std::string name = entry.path().filename();
+    for (const char* file : {"build.ninja.tmp", ".hashes.json.tmp"}) {
+      if (name.rfind(file, 0) == 0) leftovers.push_back(entry.path());
+    }
+  }
+  for (const fs::path& file : leftovers) fs::remove(file, error);
+}
+
 fs::path RequireNinja() {
   const fs::path ninja = FindProgram("ninja");
   if (!ninja.empty()) return ninja;
@@ -302,6 +315,7 @@ RunSummary RunCapture(const RunOptions& options) {
   RequireEarlierResults(capture, steps);
   const fs::path ninja = RequireNinja();
   const auto lock = LockRun(capture.work());
+  RemoveLeftovers(capture.work());
   const std::vector<NinjaEdge> edges = Edges(capture, steps, options.force);
   WriteFileAtomically(capture.work() / "build.ninja",
                       NinjaText(edges, RequireGlintProgram("glint"), options.choices));

@@ -116,6 +116,24 @@ TEST_F(RunTest, ATableTileMakesExportTakeTheRepeatingMaps) {
   EXPECT_EQ(from("export"), "refine");
 }
 
+TEST_F(RunTest, LeftoversOfAKilledRunAreRemoved) {
+  ASSERT_EQ(Glint({"run", capture().string()}).code, 0);
+  test::WriteAll(capture() / "glint/build.ninja.tmp1234", "half");
+  test::WriteAll(capture() / "glint/.hashes.json.tmp99", "half");
+  ASSERT_EQ(Glint({"run", capture().string()}).code, 0);
+  EXPECT_FALSE(fs::exists(capture() / "glint/build.ninja.tmp1234"));
+  EXPECT_FALSE(fs::exists(capture() / "glint/.hashes.json.tmp99"));
+}
+
+TEST_F(RunTest, ANameThatIsNoUtf8IsRefusedAtOnce) {
+  test::WriteAll(capture() / "photos" / "caf\xe9.jpg", "photograph");
+  const Outcome outcome = Glint({"run", capture().string()});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("photos.files"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("no UTF-8"));
+  EXPECT_FALSE(fs::exists(manifest("calib")));
+}
+
 TEST_F(RunTest, OneLineAStageAndWhereThingsAre) {
   const Outcome outcome = Glint({"run", capture().string()});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
