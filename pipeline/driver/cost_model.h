@@ -1,7 +1,7 @@
 // How long stages take, relative to each other: what `glint run` derives its remaining time from.
 //
-// Seconds are those of the two cores docs/performance.md was measured on. On another machine all
-// are off by about one factor, which the time that a run has taken so far shows.
+// Seconds are those of two cores with AVX-512 and bfloat16. On another machine all are off by about
+// one factor, which the time that a run has taken so far shows.
 #pragma once
 
 #include <string>
