@@ -75,6 +75,10 @@ ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, Export
   }
   const std::vector<MaterialFormat> formats = ChosenFormats(options->formats);
   const auto source = capture.work() / options->from / "manifest.json";
+  if (!std::filesystem::exists(source)) {
+    throw UserError(source, "", "no such file",
+                    "run first: glint " + options->from + " " + folder.string());
+  }
   const Manifest manifest = ReadManifest(source, options->from);
   Stage stage(capture.work() / "export", {"export", kExportVersion}, *set, common, {source});
   if (stage.UpToDate()) {

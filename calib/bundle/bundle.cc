@@ -159,6 +159,7 @@ std::string BundleResult::BriefReport() const {
                   photos.size(), inliers, corners, rms_px);
   for (size_t c = 0; c < cameras.size(); ++c) {
     const CameraEstimate& estimate = cameras[c];
+    if (estimate.photos == 0) continue;
     text +=
         fmt::format("camera {}: {} {}x{}, {} photos\n", c, CameraModelName(estimate.camera.model),
                     estimate.camera.width_px, estimate.camera.height_px, estimate.photos);

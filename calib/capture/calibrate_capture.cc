@@ -252,6 +252,7 @@ CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, 
   summary.photos = DetectPhotos(capture, options, threads);
   summary.remarks = TriagePhotos(options, &summary.photos);
   summary.groups = GroupCameras(capture.file, options.cameras, summary.photos);
+  if (options.cameras == "auto") LeaveOutStrays(summary.groups, &summary.photos);
   RequireBoard(capture, options, summary.photos);
   return summary;
 }

@@ -29,33 +29,23 @@ std::string Size(const CameraGroup& group) {
   return fmt::format("{}x{} pixels", group.width_px, group.height_px);
 }
 
-// Photographs that stand alone beside a larger group are mistakes, not cameras.
-void RefuseStrays(const std::filesystem::path& capture_file,
-                  const std::vector<DetectedPhoto>& photos, const CameraGroups& groups) {
-  const auto largest = std::max_element(
-      groups.groups.begin(), groups.groups.end(),
-      [](const CameraGroup& a, const CameraGroup& b) { return a.photos.size() < b.photos.size(); });
-  if (largest == groups.groups.end() || largest->photos.size() <= kSmallGroup) return;
-  for (const CameraGroup& group : groups.groups) {
-    if (group.photos.size() > kSmallGroup) continue;
-    const DetectedPhoto& photo = photos[group.photos[0]];
-    const bool same_size =
-        group.width_px == largest->width_px && group.height_px == largest->height_px;
-    const DetectedPhoto& other = photos[largest->photos[0]];
-    const std::string mend =
-        "take it out, take at least three such photographs, or give --cameras each";
-    if (!same_size) {
-      throw UserError(capture_file.parent_path() / photo.name, "size",
-                      fmt::format("{}, while {} other photographs have {}", Size(group),
-                                  largest->photos.size(), Size(*largest)),
-                      mend);
-    }
-    throw UserError(capture_file.parent_path() / photo.name, "EXIF camera and focal length",
-                    fmt::format("'{}' at {} mm, while {} other photographs have '{}' at {} mm",
-                                photo.camera_model, photo.focal_length_35mm, largest->photos.size(),
-                                other.camera_model, other.focal_length_35mm),
-                    mend);
+// What the strays of a group have and the others have not.
+std::string StrayReason(const std::vector<DetectedPhoto>& photos, const CameraGroup& group,
+                        const CameraGroup& largest) {
+  const std::string mend =
+      "; a screenshot, a crop or another camera? To use it, take at least three such photographs "
+      "or give --cameras each";
+  if (group.width_px != largest.width_px || group.height_px != largest.height_px) {
+    return fmt::format("it has {}, while {} other photographs have {}", Size(group),
+                       largest.photos.size(), Size(largest)) +
+           mend;
   }
+  const DetectedPhoto& photo = photos[group.photos[0]];
+  const DetectedPhoto& other = photos[largest.photos[0]];
+  return fmt::format("EXIF says '{}' at {} mm, while {} other photographs have '{}' at {} mm",
+                     photo.camera_model, photo.focal_length_35mm, largest.photos.size(),
+                     other.camera_model, other.focal_length_35mm) +
+         mend;
 }
 
 }  // namespace
@@ -88,8 +78,25 @@ CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::
     groups.group.push_back(static_cast<int>(at));
     groups.groups[at].photos.push_back(i);
   }
-  if (cameras == "auto") RefuseStrays(capture_file, photos, groups);
   return groups;
+}
+
+void LeaveOutStrays(const CameraGroups& groups, std::vector<DetectedPhoto>* photos) {
+  const auto largest = std::max_element(
+      groups.groups.begin(), groups.groups.end(),
+      [](const CameraGroup& a, const CameraGroup& b) { return a.photos.size() < b.photos.size(); });
+  if (largest == groups.groups.end() || largest->photos.size() <= kSmallGroup) return;
+  for (const CameraGroup& group : groups.groups) {
+    if (group.photos.size() > kSmallGroup) continue;
+    const std::string reason = StrayReason(*photos, group, *largest);
+    for (const size_t i : group.photos) {
+      DetectedPhoto& photo = (*photos)[i];
+      photo.detection.corners.clear();
+      photo.detection.problem = reason;
+      photo.detection.mismatch = false;
+      photo.paper.clear();
+    }
+  }
 }
 
 double ToldFocal_px(const std::vector<DetectedPhoto>& photos, const CameraGroup& group) {

@@ -24,10 +24,14 @@ struct CameraGroups {
 };
 
 // cameras = "auto": one group per stored size, EXIF camera and focal length; "one": a single group;
-// "each": a group per photograph. Throws UserError naming the photograph whose size or focal length
-// stands alone ("auto": a group of one or two beside larger ones; "one": any other size).
+// "each": a group per photograph. Throws UserError naming the photograph of another size where
+// there is to be one camera.
 CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::string& cameras,
                           const std::vector<DetectedPhoto>& photos);
+
+// Photographs whose size or focal length stands alone (a group of one or two beside larger ones)
+// are mistakes, not cameras: their corners are taken from them, and detection.problem says why.
+void LeaveOutStrays(const CameraGroups& groups, std::vector<DetectedPhoto>* photos);
 
 // Focal length in pixels by EXIF's 35 mm equivalent, which is about the diagonal (CIPA DCG-001); 0:
 // no photograph of the group tells it, or they were cropped or zoomed.

@@ -160,9 +160,12 @@ TEST_F(BadInputTest, APhotographWithNan) {
   ExpectRefusal({Photos()[1].string(), "pixel (", "found a value that is not a number"});
 }
 
-TEST_F(BadInputTest, APhotographOfAnotherSize) {
+TEST_F(BadInputTest, APhotographOfAnotherSizeIsLeftOutWithAWord) {
   ReplaceByColor(Photos()[1], 0.5f, 800, 600);
-  ExpectRefusal({Photos()[1].string(), "size", "found 800x600 pixels", "take it out"});
+  const Outcome outcome = RunCapture({"--until", "calib"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::HasSubstr(Photos()[1].filename().string() + " is left out"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("800x600 pixels, while"));
 }
 
 // --- board ---

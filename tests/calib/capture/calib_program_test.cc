@@ -272,13 +272,17 @@ TEST_F(CalibProgram, SaysThatTheBoardIsAnother) {
   ExpectUserError(capture, {"found the board in none", "markers of DICT_5X5"});
 }
 
-TEST_F(CalibProgram, NamesAPhotoOfAnotherSize) {
-  const fs::path capture = Copy("othersize", true);
+TEST_F(CalibProgram, LeavesOutAPhotoOfAnotherSizeAndSaysSo) {
+  const fs::path capture = Copy("othersize");
   GrayImage small = TakePhoto(3);
   int factor = 1;
   small = Reduced(small, 320, &factor);
   testing::WritePhoto(capture / "photos/p3.png", small);
-  ExpectUserError(capture, {"photos/p3.png: size: found 320x240 pixels", "640x480"});
+  const Result result = Calibrate(capture);
+  EXPECT_EQ(result.code, 0) << result.output.substr(0, 500);
+  EXPECT_THAT(result.output, HasSubstr("photos/p3.png is left out: it has 320x240 pixels, while 5"));
+  EXPECT_EQ(result.output.find("camera 1: OPENCV"), std::string::npos);
+  EXPECT_EQ(ReadCalibration(capture / "glint/calib/manifest.json").photos.size(), 5u);
 }
 
 TEST_F(CalibProgram, RefusesPhotosThatAllLookStraightDown) {
