@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "fitting/tiling/tile_stage.h"
+#include "pipeline/contract/cost_model.h"
 #include "pipeline/contract/program.h"
 
 namespace glint {
@@ -29,6 +30,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, TileStage
   ReadManifest(source, options->from);
   Stage stage(capture.work() / "tile", {"tile", kTileVersion}, *set, common, {source});
   if (stage.UpToDate()) return stage.UpToDateResult();
+  RequireMemoryForStage("tile", capture, common.threads);
   return Summarise(stage, RunTileStage(capture, *options, common.threads, &stage));
 }
 
@@ -43,9 +45,9 @@ int main(int argc, char** argv) {
   glint::AddTileOptions(&set, &options);
   const glint::ProgramInfo info{
       "glint-tile",
-      "Makes maps that repeat without visible borders: takes slow changes out, chooses the piece "
-      "whose ends fit best, and joins them. A table [tile] in capture.toml makes glint run do it "
-      "before export.",
+      "Makes maps that tile seamlessly: removes low-frequency variation, selects the region whose "
+      "opposite edges match best, and blends it with its copies. With a section [tile] in "
+      "capture.toml, glint run does it before export.",
       GLINT_VERSION,
       "Examples:\n  glint tile wood && glint export wood --from tile\n"
       "  glint tile wood --least-share 0.8 --flatten 0"};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fitting/reflectance/border.h"
 #include "fitting/render/renderer.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
@@ -59,14 +60,18 @@ Json IntervalJson(const Interval& interval) { return {interval.begin, interval.l
 
 void AddTileOptions(OptionSet* set, TileStageOptions* options) {
   set->AddChoice("from", &options->from, {"refine", "fit"}, "stage whose maps are tiled");
+  set->AddRange(
+      "border", &options->border, 0, kMostBorderRings,
+      "outermost rings of texels, which may include the sample's surroundings, to replace by the "
+      "nearest inner texels; 0: none");
   set->AddRange("least-share", &options->tile.least_share, 0.1, 0.95,
-                "sides of the piece that repeats, at least, of the sample's");
+                "minimum side of the tile, as a fraction of the sample's");
   set->AddRange("overlap", &options->tile.overlap, 0.02, 0.4,
-                "how far copies overlap where they are joined, of the sample's side");
+                "overlap of the copies at a seam, as a fraction of the sample's side");
   set->AddRange("flatten", &options->tile.flatten, 0, 1,
-                "share of slow changes over the sample that is taken out before; 0: none");
+                "share of low-frequency variation to remove; 0: none");
   set->AddRange("flatten-scale", &options->tile.flatten_scale, 0.05, 1,
-                "what counts as slow: changes over more than this share of the sample's side");
+                "wavelengths that count as low frequency, from this fraction of the sample's side");
 }
 
 TileStageResult RunTileStage(const Capture& capture, const TileStageOptions& options, int threads,
@@ -74,7 +79,8 @@ TileStageResult RunTileStage(const Capture& capture, const TileStageOptions& opt
   const auto source = capture.work() / options.from / "manifest.json";
   VerifyOutputs(source, ReadManifest(source, options.from));
   ReflectanceConvention convention;
-  const SvbrdfMaps maps = ReadSvbrdf(source.parent_path() / "svbrdf.exr", &convention);
+  SvbrdfMaps maps = ReadSvbrdf(source.parent_path() / "svbrdf.exr", &convention);
+  ContinueBorder(&maps, options.border);
   TileStageResult result;
   try {
     result.tile = TileMaps(maps, options.tile, threads);

@@ -14,10 +14,11 @@
 
 namespace glint {
 
-inline constexpr int kTileVersion = 1;
+inline constexpr int kTileVersion = 2;
 
 struct TileStageOptions {
   std::string from = "refine";
+  int border = 1;  // rings of texels that mix with the sample's surroundings
   TileOptions tile;
 };
 
