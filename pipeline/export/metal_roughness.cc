@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "base/parallel/parallel.h"
@@ -13,7 +14,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kLogOffset = 0.01;
-constexpr int kMetalnesses = 13;  // that are tried, denser near 0, where F0 is a little above 0.04
+// That are tried: denser near 0, where F0 is a little above 0.04, and near 1, where a metal has a
+// little diffuse light.
+constexpr int kMetalnesses = 17;
 constexpr double kLeastRoughness = 0.03;
 constexpr int kRoughnessBins = 64;
 constexpr size_t kMostPairs = 64;
@@ -21,7 +24,7 @@ constexpr size_t kMostPairs = 64;
 // Of a label, or of a place between two.
 double Metalness(double label) {
   const double t = std::clamp(label / (kMetalnesses - 1), 0.0, 1.0);
-  return t * t;
+  return t * t * (3 - 2 * t);
 }
 
 // One pair's part of the target that does not depend on the texel's colour.
@@ -142,6 +145,74 @@ std::array<float, 6> ColourOf(const SvbrdfMaps& maps, size_t i) {
 
 using Costs = std::array<float, kMetalnesses>;
 
+// What each metalness costs a channel, by its diffuse and specular albedo in steps of their roots
+// and by roughness. Of a large map most texels share a cell, so each is computed once.
+class CostTable {
+ public:
+  CostTable(const std::vector<std::vector<PairTerms>>& terms,
+            const std::vector<std::uint32_t>& cells, int threads)
+      : index_(kCells, kNone) {
+    for (const std::uint32_t cell : cells) index_[cell] = 0;
+    for (std::uint32_t cell = 0; cell < kCells; ++cell) {
+      if (index_[cell] == kNone) continue;
+      index_[cell] = static_cast<std::uint32_t>(used_.size());
+      used_.push_back(cell);
+    }
+    costs_.resize(used_.size());
+    ForEachBlock(static_cast<int>(used_.size()), 256, threads, [&](int begin, int end) {
+      for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+        costs_[i] = CostsOf(terms, used_[i]);
+      }
+    });
+  }
+
+  static std::uint32_t CellOf(double diffuse, double specular, double roughness) {
+    return static_cast<std::uint32_t>((Bin(roughness) * kSteps + StepOf(diffuse)) * kSteps +
+                                      StepOf(specular));
+  }
+  const Costs& at(std::uint32_t cell) const { return costs_[index_[cell]]; }
+
+ private:
+  static constexpr size_t kSteps = 128;  // off by at most 1.6 % at an albedo of 0.25
+  static constexpr size_t kCells = kRoughnessBins * kSteps * kSteps;
+  static constexpr std::uint32_t kNone = 0xffffffff;
+
+  static size_t Bin(double roughness) {
+    return static_cast<size_t>(
+        std::clamp(static_cast<int>(roughness * kRoughnessBins), 0, kRoughnessBins - 1));
+  }
+  static size_t StepOf(double albedo) {
+    return static_cast<size_t>(std::lround(std::sqrt(std::clamp(albedo, 0.0, 1.0)) * (kSteps - 1)));
+  }
+  static double AlbedoOf(size_t step) {
+    const double root = static_cast<double>(step) / (kSteps - 1);
+    return root * root;
+  }
+  static Costs CostsOf(const std::vector<std::vector<PairTerms>>& terms, size_t cell) {
+    const double specular = AlbedoOf(cell % kSteps), diffuse = AlbedoOf(cell / kSteps % kSteps);
+    const std::vector<PairTerms>& pairs = terms[cell / (kSteps * kSteps)];
+    Costs costs;
+    for (int label = 0; label < kMetalnesses; ++label) {
+      costs[static_cast<size_t>(label)] =
+          static_cast<float>(BestBase(pairs, Metalness(label), diffuse, specular).error);
+    }
+    return costs;
+  }
+
+  std::vector<std::uint32_t> used_;
+  std::vector<std::uint32_t> index_;  // of a cell among those used
+  std::vector<Costs> costs_;
+};
+
+// Those of a texel's three channels.
+std::array<std::uint32_t, 3> CellsOf(const Texel& texel) {
+  std::array<std::uint32_t, 3> cells;
+  for (size_t c = 0; c < 3; ++c) {
+    cells[c] = CostTable::CellOf(texel.diffuse[c], texel.specular[c], texel.roughness);
+  }
+  return cells;
+}
+
 // Where a parabola through the least cost and its neighbours is least.
 double BestMetalness(const Costs& costs) {
   const int best = static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());
@@ -164,20 +235,26 @@ MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, DiffuseWeight weight,
                                 const MetalRoughnessOptions& options, int threads) {
   const auto table = TermsByRoughness();
   const size_t texels = maps.texels();
-  std::vector<Costs> costs(texels);
   std::vector<std::array<float, 6>> colours(texels);
+  std::vector<std::uint32_t> cells(3 * texels);
   ForEachBlock(static_cast<int>(texels), 4096, threads, [&](int begin, int end) {
     for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
-      const Texel texel = TexelOf(maps, weight, i);
-      const auto& pairs = PairsOf(table, texel.roughness);
       colours[i] = ColourOf(maps, i);
-      for (int label = 0; label < kMetalnesses; ++label) {
-        const double m = Metalness(label);
-        double cost = 4 * options.blend_cost * m * (1 - m);
-        for (size_t c = 0; c < 3; ++c) {
-          cost += BestBase(pairs, m, texel.diffuse[c], texel.specular[c]).error / 3;
-        }
-        costs[i][static_cast<size_t>(label)] = static_cast<float>(cost);
+      const std::array<std::uint32_t, 3> own = CellsOf(TexelOf(maps, weight, i));
+      std::copy(own.begin(), own.end(), cells.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    }
+  });
+  const CostTable channel_costs(table, cells, threads);
+  std::vector<Costs> costs(texels);
+  ForEachBlock(static_cast<int>(texels), 4096, threads, [&](int begin, int end) {
+    for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+      const auto of = [&](size_t c, size_t label) {
+        return channel_costs.at(cells[3 * i + c])[label];
+      };
+      for (size_t label = 0; label < kMetalnesses; ++label) {
+        const double m = Metalness(static_cast<double>(label));
+        costs[i][label] = static_cast<float>(4 * options.blend_cost * m * (1 - m)) +
+                          (of(0, label) + of(1, label) + of(2, label)) / 3;
       }
     }
   });

@@ -48,6 +48,17 @@ TEST(MetalRoughnessTest, RecoversWhatItCanBe) {
   EXPECT_NEAR(gold.ColorAt(5)[2], 0.3, 0.03);
 }
 
+// All there is beside its highlight: without it the metal would be black there.
+TEST(MetalRoughnessTest, AMetalKeepsItsLittleDiffuseLight) {
+  for (const float diffuse : {0.007f, 0.1f}) {
+    const SvbrdfMaps maps =
+        UniformMaps({0, 0, 1, diffuse, diffuse, diffuse, 0.45f, 0.45f, 0.45f, 0.25f});
+    const auto found = ToMetalRoughness(maps, DiffuseWeight::kOneMinusSpecular, {}, 1);
+    EXPECT_LT(found.metallic[5], 1.0f);
+    EXPECT_LT(MetalRoughnessError(found, maps, DiffuseWeight::kOneMinusSpecular), 0.05);
+  }
+}
+
 TEST(MetalRoughnessTest, MetalnessIsOfSubstancesNotOfTexels) {
   const SvbrdfMaps maps = Foils(48);
   const auto found = ToMetalRoughness(maps, DiffuseWeight::kOne, {}, 2);
