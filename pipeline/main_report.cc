@@ -1,5 +1,6 @@
 // glint-report: one HTML page of the whole result.
 #include "pipeline/contract/capture.h"
+#include "pipeline/contract/cost_model.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/contract/stage.h"
@@ -19,6 +20,7 @@ ProgramResult WriteReport(const std::filesystem::path& folder, OptionSet* set,
   if (stage.UpToDate()) {
     return stage.UpToDateResult({{"page", page}});
   }
+  RequireMemoryForStage("report", capture, common.threads);
   const ReportInput input = ReadReportInput(capture.work(), options->from);
   const Report report = MakeReport(input, *options, common.threads);
   WriteFileAtomically(stage.Output("index.html"), report.html);

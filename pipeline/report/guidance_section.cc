@@ -22,10 +22,11 @@ std::string PictureUri(const fs::path& file) {
 
 std::string Caption(const std::string& name) {
   if (name == "guidance_views.svg") {
-    return "where the sample was seen and lit from: tilt from the middle, right to the right";
+    return "directions of camera and flash: the distance from the centre is the tilt; the right of "
+           "the plot is the right of the maps";
   }
   if (name == "guidance_coverage.png") {
-    return "where a highlight fell on the sample: least angle of normal and half vector";
+    return "smallest angle between the surface normal and the half vector over all photographs";
   }
   return name;
 }

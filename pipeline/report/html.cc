@@ -23,6 +23,10 @@ a { color: var(--link); text-decoration: none; } a:hover { text-decoration: unde
 .figures div { min-width: 110px; }
 .figures b { display: block; font-size: 21px; font-weight: 600; font-variant-numeric: tabular-nums; }
 .figures > div > span { color: var(--soft); font-size: 12.5px; }
+.downloads { display: grid; grid-template-columns: repeat(auto-fit, minmax(220px, 1fr)); gap: 0 34px; }
+.downloads h3 { margin: 0; font-size: 14px; }
+.downloads ul { margin: 6px 0 0; padding: 0; list-style: none; }
+.downloads small { color: var(--soft); }
 .pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(250px, 1fr)); gap: 14px; }
 figure { margin: 0; } figure img { width: 100%; display: block; border-radius: 4px; background: #eceef1; image-rendering: auto; }
 figure.wide { margin-top: 14px; max-width: 900px; }

@@ -2,6 +2,7 @@
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/report/corrections_section.h"
+#include "pipeline/report/downloads_section.h"
 #include "pipeline/report/guidance_section.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/sections.h"
@@ -16,6 +17,12 @@ std::vector<std::string> StagesShown(const std::string& from) {
   std::vector<std::string> stages = {"calib", "rectify", "fit"};
   if (from == "refine") stages.push_back("refine");
   stages.push_back("tile");
+  return stages;
+}
+
+std::vector<std::string> StagesRead(const std::string& from) {
+  std::vector<std::string> stages = StagesShown(from);
+  stages.push_back("export");
   return stages;
 }
 
@@ -45,7 +52,7 @@ void AddReportOptions(OptionSet* set, ReportOptions* options) {
 
 std::vector<fs::path> ReportManifests(const fs::path& work, const std::string& from) {
   std::vector<fs::path> files;
-  for (const std::string& stage : StagesShown(from)) {
+  for (const std::string& stage : StagesRead(from)) {
     const fs::path file = work / stage / "manifest.json";
     if (fs::exists(file)) files.push_back(file);
   }
@@ -55,7 +62,7 @@ std::vector<fs::path> ReportManifests(const fs::path& work, const std::string& f
 ReportInput ReadReportInput(const fs::path& work, const std::string& from) {
   ReportInput input;
   input.work = work;
-  for (const std::string& stage : StagesShown(from)) {
+  for (const std::string& stage : StagesRead(from)) {
     const fs::path file = work / stage / "manifest.json";
     const bool needed = stage == "rectify" || stage == from;
     if (!needed && !fs::exists(file)) continue;
@@ -76,6 +83,7 @@ Report MakeReport(const ReportInput& input, const ReportOptions& options, int th
   std::string body = TitleSection(input);
   body += ViewerSection(input, options);
   body += MapsSection(input, options);
+  body += DownloadsSection(input, options);
   body += TileSection(input, options);
   body += OverviewSection(input, report.metrics);
   body += GuidanceSection(input);
@@ -86,7 +94,7 @@ Report MakeReport(const ReportInput& input, const ReportOptions& options, int th
     if (input.Has(stage)) details += StageSection(input, stage);
   }
   body += Folded("Photographs, cameras and every stage in detail", details);
-  report.html = HtmlPage("Glint: material report", body + ViewerScript());
+  report.html = HtmlPage(MaterialName(input) + ": material report", body + ViewerScript());
   return report;
 }
 

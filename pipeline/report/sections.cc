@@ -5,6 +5,7 @@
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
+#include "pipeline/report/downloads_section.h"
 #include "pipeline/report/figure.h"
 #include "pipeline/report/guidance_section.h"
 #include "pipeline/report/html.h"
@@ -97,36 +98,35 @@ std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
     }
     if (metrics.contains("sample_uncertainty") && metrics["sample_uncertainty"].is_object() &&
         metrics["sample_uncertainty"].contains("sigma_mm")) {
-      figures +=
-          HeadFigure("places on the sample known to ±", metrics["sample_uncertainty"]["sigma_mm"],
-                     {ManifestLink("calib"), "metrics.sample_uncertainty.sigma_mm"}, "mm");
+      figures += HeadFigure("position uncertainty on the sample (1σ)",
+                            metrics["sample_uncertainty"]["sigma_mm"],
+                            {ManifestLink("calib"), "metrics.sample_uncertainty.sigma_mm"}, "mm");
     }
   }
-  for (const auto& [name, label] : {std::pair{"fitted", "fitted photographs"},
-                                    std::pair{"kept_back", "photographs kept back"}}) {
+  for (const auto& [name, label] :
+       {std::pair{"fitted", "fitted photographs"}, std::pair{"held_out", "held-out photographs"}}) {
     if (!own_metrics.contains(name)) continue;
     const Trace trace = own.Field(name);
-    figures += HeadFigure(std::string("mean log-L1, ") + label, own_metrics[name]["log_l1"],
-                          trace.Field("log_l1"));
+    figures += HeadFigure(std::string("mean log error (0.02: 2 %), ") + label,
+                          own_metrics[name]["log_l1"], trace.Field("log_l1"));
     figures += HeadFigure(std::string("mean RMSE, ") + label, own_metrics[name]["rmse"],
                           trace.Field("rmse"));
   }
   figures +=
-      "</div>\n<p>Every number names the manifest and the field it comes from when the "
-      "pointer rests on it.</p>\n";
-  return Section("How well the maps explain the photographs", "", figures);
+      "</div>\n<p>Hover over a number to see the manifest and the field it comes "
+      "from.</p>\n";
+  return Section("Fit quality", "", figures);
 }
 
 std::string TitleSection(const ReportInput& input) {
   const Trace rectify{ManifestLink("rectify"), "data"};
-  return "<h1>Material</h1>\n<p>" +
+  return "<h1>" + HtmlText(MaterialName(input)) + "</h1>\n<p>" +
          FigureHtml(input.set.plane.width_mm, rectify.Field("width_mm")) + " × " +
          FigureHtml(input.set.plane.height_mm, rectify.Field("height_mm")) + " mm, " +
          FigureHtml(input.fit.maps.width, rectify.Field("width")) + " × " +
          FigureHtml(input.fit.maps.height, rectify.Field("height")) + " texels, from " +
          std::to_string(input.used_views.size()) +
-         (input.used_views.size() == 1 ? " photograph" : " photographs") +
-         ". For other programs: <a href=\"../export/\">maps and material files</a>.</p>\n";
+         (input.used_views.size() == 1 ? " photograph" : " photographs") + ".</p>\n";
 }
 
 std::string Folded(const std::string& title, const std::string& body) {
@@ -215,7 +215,7 @@ std::string ViewsSection(const ReportInput& input, const ReportOptions& options,
     }
     const Json& entry = views.back();
     rows += "<tr><td>" + HtmlText(view.name) + "<br><code>" + HtmlText(view.photo) + "</code>" +
-            (used ? "" : "<br><span class=\"kept\">kept back</span>") + "</td>" +
+            (used ? "" : "<br><span class=\"kept\">held out</span>") + "</td>" +
             PanelCells(photograph, rendered, view, options.picture_px / 2) +
             "<td class=\"number\">" + FigureHtml(entry["log_l1"], trace.Field("log_l1")) +
             "</td><td class=\"number\">" + FigureHtml(entry["rmse"], trace.Field("rmse")) +
@@ -224,9 +224,9 @@ std::string ViewsSection(const ReportInput& input, const ReportOptions& options,
   (*own_metrics)["views"] = views;
   for (const int i : {0, 1}) {
     if (means[i].count == 0) continue;
-    (*own_metrics)[i == 0 ? "fitted" : "kept_back"] = {{"photographs", means[i].count},
-                                                       {"log_l1", means[i].log_l1 / means[i].count},
-                                                       {"rmse", means[i].rmse / means[i].count}};
+    (*own_metrics)[i == 0 ? "fitted" : "held_out"] = {{"photographs", means[i].count},
+                                                      {"log_l1", means[i].log_l1 / means[i].count},
+                                                      {"rmse", means[i].rmse / means[i].count}};
   }
   const std::string body =
       "<p>Rectified photographs, the maps rendered under the same camera and light, and four times "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/colour/srgb.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/picture.h"
@@ -19,10 +20,7 @@ Image SrgbPicture(const SvbrdfMaps& maps, int first_plane) {
   Image image(maps.width, maps.height, kRgb);
   for (int c = 0; c < 3; ++c) {
     const auto from = maps.plane(first_plane + c);
-    std::transform(from.begin(), from.end(), image.channel(c).begin(), [](float linear) {
-      const float v = std::clamp(linear, 0.0f, 1.0f);
-      return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
-    });
+    std::transform(from.begin(), from.end(), image.channel(c).begin(), ClampedSrgb<float>);
   }
   return image;
 }
@@ -111,7 +109,7 @@ constexpr char kElements[] = R"(<div id="viewer" class="viewer">
 <label>Show <select id="viewer-view"></select></label>
 <label class="relight">Shape <select id="viewer-shape"></select></label>
 <label class="relight">Channel <select id="viewer-channel"></select></label>
-<label class="relight">Light <select id="viewer-light"><option value="point">Point light</option><option value="studio">Studio</option></select></label>
+<label class="relight">Light <select id="viewer-light"><option value="point">Point light</option><option value="environment">Environment</option></select></label>
 <label class="relight">Drag moves <select id="viewer-drag"><option value="light">the light</option><option value="camera">the camera</option></select></label>
 <label class="relight">Exposure <input id="viewer-exposure" type="range" min="-4" max="4" step="0.1" value="0"></label>
 <label class="compare">Photograph | rendering <input id="viewer-slider" type="range" min="0" max="100" value="50"></label>

@@ -1,6 +1,6 @@
-uniform int lighting;         // 0: a point light, 1: a studio
+uniform int lighting;         // 0: a point light, 1: an environment
 uniform vec3 lightPosition;   // in the scene
-uniform vec3 lightRadiance;   // E·d² of the point light, or the studio's scale
+uniform vec3 lightRadiance;   // E·d² of the point light, or the environment's scale
 uniform vec3 ambient;         // irradiance from everywhere, by π reflected
 uniform bool fallsOff;        // E = P/d², or P
 uniform float exposure;
@@ -12,31 +12,39 @@ in vec2 vUv;
 in vec3 vPosition, vTangent, vBitangent, vNormal;
 out vec4 colour;
 
-const int STUDIO_LIGHTS = 24;
+uniform samplerCube environmentMap;  // three.js's prefiltered mip levels
+uniform float environmentLods;       // the last of them
+uniform vec2 environmentTurn;        // cosine and sine of its turn around the sample's vertical
 
-// A window to one side, a panel opposite, and dim walls: radiance from direction d.
-vec3 studio(vec3 d) {
-  float window = smoothstep(0.55, 0.85, dot(d, normalize(vec3(-0.6, 0.5, 0.62))));
-  float panel = smoothstep(0.8, 0.95, dot(d, normalize(vec3(0.75, -0.1, 0.65))));
-  return vec3(0.18, 0.19, 0.21) + window * vec3(2.6, 2.7, 2.9) + panel * vec3(1.9, 1.7, 1.45);
+// What the environment, filtered for a lobe of `roughness`, sends from direction d. Its up is y.
+vec3 environment(vec3 d, float roughness) {
+  vec2 turned = vec2(environmentTurn.x * d.x + environmentTurn.y * d.y,
+                     environmentTurn.x * d.y - environmentTurn.y * d.x);
+  float sharp = 1.0 - roughness;  // level of a roughness: PMREMGenerator.getRoughness, inverted
+  return textureLod(environmentMap, vec3(turned.x, d.z, -turned.y),
+                    environmentLods * (1.0 - sharp * sharp)).rgb;
+}
+
+// Split sum (Karis, Physically Based Shading on Mobile, 2014): the lobe's share of the filtered
+// environment is F0·x + y.
+vec2 lobeShare(float roughness, float noV) {
+  vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+  float a = min(r.x * r.x, exp2(-9.28 * noV)) * r.x + r.y;
+  return vec2(-1.04, 1.04) * a + r.zw;
+}
+
+vec3 underEnvironment(Texel t, vec3 n, vec3 v) {
+  vec2 share = lobeShare(t.roughness, max(dot(n, v), 0.0));
+  return t.diffuse * environment(n, 1.0)
+         + (t.specular * share.x + share.y) * environment(reflect(-v, n), t.roughness);
 }
 
 vec3 radianceOf(Texel t, vec3 n, vec3 v) {
-  if (lighting == 1) {
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < STUDIO_LIGHTS; ++i) {  // evenly over the hemisphere, golden angle
-      float z = (float(i) + 0.5) / float(STUDIO_LIGHTS);
-      float azimuth = 2.39996323 * float(i), r = sqrt(1.0 - z * z);
-      vec3 l = vec3(r * cos(azimuth), r * sin(azimuth), z);
-      // Each stands for its share of the sky, so it is as wide as that.
-      sum += studio(l) * brdf(t, n, l, v, 0.06) * max(dot(n, l), 0.0);
-    }
-    return lightRadiance * sum * 6.2831853 / float(STUDIO_LIGHTS);
-  }
+  if (lighting == 1) return lightRadiance * underEnvironment(t, n, v);
   vec3 toLight = lightPosition - vPosition;
   vec3 l = normalize(toLight);
   vec3 received = fallsOff ? lightRadiance / dot(toLight, toLight) : lightRadiance;
-  vec3 reflected = brdf(t, n, l, v, 0.0) * max(dot(n, l), 1e-8);
+  vec3 reflected = brdf(t, n, l, v) * max(dot(n, l), 1e-8);
   return received * reflected + ambient * (t.diffuse + t.specular) / 3.14159265358979;
 }
 

@@ -2,6 +2,7 @@
 // saw it.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { roomEnvironment } from './environment.js';
 import fragment from './fragment.glsl';
 import shading from './shading.glsl';
 import { shapes } from './shapes.js';
@@ -11,6 +12,7 @@ import vertex from './vertex.glsl';
 export const channels = ['Rendering', 'Diffuse', 'Specular (F0)', 'Roughness', 'Normal'];
 
 const kLightDistance = 2.6;  // of half the width
+const kEnvironmentScale = 0.5; // a white plane below the room's lamps is just not overexposed
 const kMatteWhite = Math.PI; // radiance 1 of a white matte texel under it
 
 export class MaterialScene {
@@ -28,7 +30,7 @@ export class MaterialScene {
     this.lightAcross = [-0.45, 0.55];  // of the light's direction, x and y
     this.exposure = 1;
     this.channel = 0;
-    this.studio = false;
+    this.environment = false;
   }
 
   async load() {
@@ -49,6 +51,7 @@ export class MaterialScene {
       channel: { value: 0 }, tiles: { value: new THREE.Vector2(1, 1) },
       lightPosition: { value: new THREE.Vector3() }, lightRadiance: { value: new THREE.Vector3() },
       ambient: { value: new THREE.Vector3() }, eye: { value: new THREE.Vector3() },
+      environmentMap: { value: null }, environmentLods: { value: 0 }, environmentTurn: { value: new THREE.Vector2(1, 0) },
     };
     this.mesh = new THREE.Mesh(undefined, new THREE.ShaderMaterial({
       glslVersion: THREE.GLSL3, uniforms: this.uniforms, vertexShader: vertex,
@@ -56,6 +59,17 @@ export class MaterialScene {
     }));
     this.scene.add(this.mesh);
     this.wear('plane');
+  }
+
+  // A room's light instead of the point light. It is made when it is first asked for.
+  useEnvironment(used) {
+    if (used && !this.uniforms.environmentMap.value) {
+      const texture = roomEnvironment(this.renderer);
+      this.uniforms.environmentMap.value = texture;
+      this.uniforms.environmentLods.value = texture.mipmaps.length - 1;
+    }
+    this.environment = used;
+    this.draw();
   }
 
   wear(name) {
@@ -99,10 +113,12 @@ export class MaterialScene {
     const u = this.uniforms;
     const [x, y] = this.lightAcross;
     const z = Math.sqrt(Math.max(0, 1 - x * x - y * y));
-    u.lighting.value = this.studio ? 1 : 0;
+    u.lighting.value = this.environment ? 1 : 0;
+    const azimuth = Math.atan2(y, x);
+    u.environmentTurn.value.set(Math.cos(azimuth), Math.sin(azimuth));
     u.lightPosition.value.set(x, y, z).multiplyScalar(kLightDistance);
-    const power = this.studio ? 1 : kMatteWhite * kLightDistance * kLightDistance;
-    u.lightRadiance.value.setScalar(power);
+    u.lightRadiance.value.setScalar(
+      this.environment ? kEnvironmentScale : kMatteWhite * kLightDistance * kLightDistance);
     u.ambient.value.set(0, 0, 0);
     u.fallsOff.value = true;
     u.exposure.value = this.exposure;

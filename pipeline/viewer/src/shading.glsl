@@ -27,10 +27,10 @@ Texel texelAt(vec2 uv) {
 }
 
 // f of unit directions n, l, v.
-vec3 brdf(Texel t, vec3 n, vec3 l, vec3 v, float extraAlpha) {
+vec3 brdf(Texel t, vec3 n, vec3 l, vec3 v) {
   vec3 h = normalize(l + v);
   float noL = max(dot(n, l), 1e-8), noV = max(dot(n, v), 1e-8), voH = max(dot(v, h), 1e-8);
-  float alpha = min(1.0, t.roughness * t.roughness + extraAlpha);
+  float alpha = t.roughness * t.roughness;
   vec3 across = n - dot(n, h) * h;
   float noH = max(dot(n, h), 0.0);
   // noH²(α² − 1) + 1, without cancellation near the peak.

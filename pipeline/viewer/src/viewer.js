@@ -42,14 +42,13 @@ function connectRelighting(scene, canvas) {
   options(byId('viewer-shape'), Object.entries(shapes).map(([name, s]) => [name, s.label]));
   byId('viewer-shape').addEventListener('change', (event) => scene.wear(event.target.value));
   options(byId('viewer-channel'), channels.map((label, i) => [i, label]));
-  if (scene.material.maps.confidence) options(byId('viewer-channel'), [[5, 'Roughness, how sure']]);
+  if (scene.material.maps.confidence) options(byId('viewer-channel'), [[5, 'Roughness, standard deviation']]);
   byId('viewer-channel').addEventListener('change', (event) => {
     scene.channel = Number(event.target.value);
     scene.draw();
   });
   byId('viewer-light').addEventListener('change', (event) => {
-    scene.studio = event.target.value === 'studio';
-    scene.draw();
+    scene.useEnvironment(event.target.value === 'environment');
   });
   byId('viewer-exposure').addEventListener('input', (event) => {
     scene.exposure = 2 ** Number(event.target.value);
@@ -62,7 +61,7 @@ function connectComparison(scene, resize) {
   const select = byId('viewer-view'), photograph = byId('viewer-photograph');
   const slider = byId('viewer-slider');
   options(select, [['', 'Relight'], ...views.map((view, i) =>
-    [i, `${view.photo}${view.fitted ? '' : ' (kept back)'}`])]);
+    [i, `${view.photo}${view.fitted ? '' : ' (held out)'}`])]);
   const clip = () => { photograph.style.clipPath = `inset(0 ${100 - slider.value}% 0 0)`; };
   const show = () => {
     const view = select.value === '' ? null : views[Number(select.value)];

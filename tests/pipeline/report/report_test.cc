@@ -89,6 +89,18 @@ class ReportTest : public testing::Test {
                  {{"loss", curve}, {"seconds_per_step", 0.25}});
   }
 
+  void WriteExport() {
+    OptionSet options;
+    Stage stage(work() / "export", {"export", 1}, options, CommonOptions(),
+                {work() / "fit/manifest.json"}, true);
+    test::WriteAll(stage.Output("oak.glb"), std::string(2000, 'x'));
+    WritePng(stage.Output("oak_roughness.png"), Image(4, 4, {"Y"}));
+    stage.Commit({{"name", "oak"},
+                  {"materials", {{{"file", "oak.glb"}}}},
+                  {"maps", {{{"file", "oak_roughness.png"}}}}},
+                 Json::object());
+  }
+
   Report Make() const {
     ReportOptions options;
     options.from = "fit";
@@ -128,13 +140,26 @@ TEST_F(ReportTest, TheViewersDataIsJsonThatEndsWhereItShould) {
   EXPECT_EQ(material["size_texel"], Json({kSize, kSize}));
 }
 
-TEST_F(ReportTest, ViewsOfTheTruthHaveNoErrorAndKeptBackOnesAreMarked) {
+TEST_F(ReportTest, LinksToWhatWasExportedFromTheseMaps) {
+  EXPECT_THAT(Make().html, Not(HasSubstr("../export/")));
+  WriteExport();
+  const std::string html = Make().html;
+  EXPECT_THAT(html, HasSubstr("<h1>oak</h1>"));
+  EXPECT_THAT(html, HasSubstr("<a download href=\"../export/oak.glb\">oak.glb</a> <small>2 kB"));
+  EXPECT_THAT(html, HasSubstr("../export/oak_roughness.png"));
+  SvbrdfMaps other = Maps();
+  other.plane(kRoughness)[0] = 0.9f;
+  WriteFit(other);
+  EXPECT_THAT(Make().html, Not(HasSubstr("../export/")));
+}
+
+TEST_F(ReportTest, ViewsOfTheTruthHaveNoErrorAndHeldOutOnesAreMarked) {
   const Report report = Make();
   EXPECT_LT(report.metrics["fitted"]["log_l1"].get<double>(), 1e-6);
   EXPECT_EQ(report.metrics["fitted"]["photographs"], 2);
-  EXPECT_EQ(report.metrics["kept_back"]["photographs"], 1);
+  EXPECT_EQ(report.metrics["held_out"]["photographs"], 1);
   EXPECT_EQ(report.metrics["views"][2]["fitted"], false);
-  EXPECT_THAT(report.html, HasSubstr("kept back"));
+  EXPECT_THAT(report.html, HasSubstr("held out"));
 }
 
 TEST_F(ReportTest, WrongMapsShowAsErrors) {
@@ -181,7 +206,7 @@ TEST_F(ReportTest, ShowsWhatCalibAdvisesOnceWithItsPictures) {
               HasSubstr("metrics.guidance.advice[0].text\">take one &lt;straight&gt; from above<"));
   EXPECT_THAT(html, HasSubstr("metrics.guidance.views[0].tilt_deg\">12.5<"));
   EXPECT_THAT(html, HasSubstr("data:image/svg+xml;base64,PHN2Zy8+"));
-  const std::string caption = "where a highlight fell";
+  const std::string caption = "smallest angle between the surface normal and the half vector";
   ASSERT_THAT(html, HasSubstr(caption));
   EXPECT_THAT(html, Not(HasSubstr("<figcaption>guidance_coverage.png")));
   EXPECT_THAT(html, Not(HasSubstr("<h3>guidance")));
