@@ -3,8 +3,10 @@
 
 #include <algorithm>
 
+#include "fitting/reflectance/border.h"
 #include "fitting/relief/ambient_occlusion.h"
 #include "pipeline/contract/capture.h"
+#include "pipeline/contract/cost_model.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/program.h"
@@ -84,11 +86,13 @@ ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, Export
   if (stage.UpToDate()) {
     return stage.UpToDateResult();
   }
+  RequireMemoryForStage("export", capture, common.threads);
   VerifyOutputs(source, manifest);
   ReflectanceConvention convention;
   SvbrdfMaps maps = ReadSvbrdf(source.parent_path() / "svbrdf.exr", &convention);
   const std::array<double, 2> size_mm = SizeOf(capture, manifest, source);
   const bool repeats = manifest.stage == "tile";
+  if (!repeats) ContinueBorder(&maps, options->border);
   const SamplePlane plane{maps.width, maps.height, size_mm[0], size_mm[1], convention.sampling};
   const double shorter_mm = std::min(plane.width_mm, plane.height_mm);
   ExportedMaterial material =
@@ -100,7 +104,7 @@ ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, Export
   occlusion.reach_mm = options->occlusion_reach * shorter_mm;
   const Json files = WriteMapPictures(
       material, MapPictures(material, relief, AmbientOcclusion(relief, occlusion, common.threads)),
-      *options, &stage);
+      *options, common.threads, &stage);
   const Json materials = WriteMaterials(material, formats, files, &stage);
   const double error = MetalRoughnessError(material.metal, material.maps, material.diffuse_weight);
   stage.Commit({{"convention", ToString(convention)},

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/colour/srgb.h"
 #include "calib/board/dictionary.h"
 #include "pipeline/contract/errors.h"
 
@@ -221,16 +222,11 @@ Eigen::Vector2d PaperSize_mm(const std::string& paper, bool landscape) {
 
 int LevelOfReflectance(double reflectance, double paper_reflectance) {
   const double share = std::clamp(reflectance / paper_reflectance, 0.0, 1.0);
-  const double encoded =
-      share <= 0.0031308 ? 12.92 * share : 1.055 * std::pow(share, 1 / 2.4) - 0.055;
-  return static_cast<int>(std::lround(255 * encoded));
+  return static_cast<int>(std::lround(255 * SrgbFromLinear(share)));
 }
 
 double ReflectanceOfLevel(int level, double paper_reflectance) {
-  const double encoded = level / 255.0;
-  const double share =
-      encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-  return std::round(1e4 * paper_reflectance * share) / 1e4;
+  return std::round(1e4 * paper_reflectance * LinearFromSrgb(level / 255.0)) / 1e4;
 }
 
 void PlaceOnSheet(const SheetOptions& options, BoardFile* file) {

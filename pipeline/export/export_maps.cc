@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/colour/srgb.h"
+#include "base/parallel/parallel.h"
+#include "fitting/reflectance/border.h"
 #include "pipeline/export/material_formats.h"
 
 namespace glint {
@@ -16,7 +19,7 @@ MapPicture ColorPicture(const std::string& name, const SvbrdfMaps& maps, int fir
   MapPicture picture{name, "sRGB", Image(maps.width, maps.height, kRgb), folder};
   for (int c = 0; c < 3; ++c) {
     const auto from = maps.plane(first_plane + c);
-    std::transform(from.begin(), from.end(), picture.image.channel(c).begin(), SrgbFromLinear);
+    std::transform(from.begin(), from.end(), picture.image.channel(c).begin(), ClampedSrgb<float>);
   }
   return picture;
 }
@@ -27,8 +30,7 @@ MapPicture LayeredDiffusePicture(const ExportedMaterial& material) {
   for (size_t i = 0; i < material.maps.texels(); ++i) {
     const std::array<double, 3> albedo = LayeredDiffuse(material, i);
     for (int c = 0; c < 3; ++c) {
-      picture.image.channel(c)[i] =
-          SrgbFromLinear(static_cast<float>(albedo[static_cast<size_t>(c)]));
+      picture.image.channel(c)[i] = ClampedSrgb(static_cast<float>(albedo[static_cast<size_t>(c)]));
     }
   }
   return picture;
@@ -37,7 +39,7 @@ MapPicture LayeredDiffusePicture(const ExportedMaterial& material) {
 MapPicture BaseColorPicture(const MetalRoughness& metal) {
   MapPicture picture{"basecolor", "sRGB", Image(metal.width, metal.height, kRgb)};
   std::transform(metal.base_color.begin(), metal.base_color.end(), picture.image.samples.begin(),
-                 SrgbFromLinear);
+                 ClampedSrgb<float>);
   return picture;
 }
 
@@ -74,21 +76,27 @@ MapPicture PackedPicture(const std::string& name, int width, int height, const R
 
 void AddExportOptions(OptionSet* set, ExportOptions* options) {
   set->Add("name", &options->name, "what the files' names begin with");
-  set->AddChoice("from", &options->from, {"refine", "fit", "tile"}, "stage whose maps are exported");
-  set->AddChoice("bits", &options->bits, {"8", "16", "both"},
-                 "bits a channel of the pictures; the height always has 16");
+  set->AddChoice("from", &options->from, {"refine", "fit", "tile"},
+                 "stage whose maps are exported");
+  set->AddChoice("bits", &options->bits, {"8", "16", "both", "exr"},
+                 "bits per channel of the PNG files (the height always has 16); exr: 8, and "
+                 "linear float32 EXR files in the folder exr/");
+  set->AddRange(
+      "border", &options->border, 0, kMostBorderRings,
+      "outermost rings of texels, which may include the sample's surroundings, to replace by the "
+      "nearest inner texels; 0: none; ignored for tiles");
   set->AddRange(
       "height-longest", &options->height_longest, 0, 100,
-      "longest waves that the height map keeps, of the sample's shorter side; longer ones are "
-      "mostly bowls from shared errors of normals; 0: all");
+      "longest wavelength kept in the height map, as a fraction of the sample's shorter side; "
+      "longer ones are mostly spurious curvature from systematic errors of normals; 0: all");
   set->AddRange("occlusion-reach", &options->occlusion_reach, 0.001, 1,
-                "how far relief hides the sky from ambient occlusion, of the shorter side");
+                "search radius of ambient occlusion, as a fraction of the sample's shorter side");
   set->AddRange("metal-radius", &options->metal.radius, 0, 64,
                 "radius, in texels, of like-coloured neighbours that decide metalness together");
   set->AddRange("metal-colour-width", &options->metal.colour_width, 0.001, 10,
                 "by how much colours (square roots of albedos) may differ for that");
   set->AddRange("metal-blend-cost", &options->metal.blend_cost, 0, 1,
-                "what metalness 1/2 costs beside 0 and 1, of log radiance");
+                "penalty on intermediate metalness, largest at 1/2, in units of log radiance");
   set->Add("formats", &options->formats,
            "material files to write: " + MaterialFormatNames() + " (default: all)");
 }
@@ -104,11 +112,6 @@ MapPicture HeightPicture(const HeightField& field, const std::array<double, 2>& 
   std::transform(field.height_mm.begin(), field.height_mm.end(), picture.image.channel(0).begin(),
                  [&](float h) { return static_cast<float>((h - range_mm[0]) / range); });
   return picture;
-}
-
-float SrgbFromLinear(float linear) {
-  const float v = std::clamp(linear, 0.0f, 1.0f);
-  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
 }
 
 std::array<double, 3> LayeredDiffuse(const ExportedMaterial& material, size_t texel) {
@@ -148,27 +151,72 @@ std::string FileOf(const std::string& name, const MapPicture& picture) {
   return picture.folder + name + "_" + picture.map + ".png";
 }
 
+namespace {
+
+constexpr int kExrBits = 32;
+
+// One picture at one depth.
+struct MapFile {
+  const MapPicture* picture;
+  int bits;
+  std::filesystem::path path;
+};
+
+bool Wanted(const MapPicture& picture, int bits, const std::string& chosen) {
+  if (bits == kExrBits) return chosen == "exr";
+  if (picture.bits > 0) return picture.bits == bits;
+  return chosen == "both" || chosen == std::to_string(bits) || (chosen == "exr" && bits == 8);
+}
+
+std::string NameOf(const std::string& material, const MapPicture& picture, int bits, bool apart) {
+  const std::string png = FileOf(material, picture);
+  if (bits == kExrBits)
+    return "exr/" + std::filesystem::path(png).replace_extension(".exr").string();
+  return (apart ? "16bit/" : "") + png;
+}
+
+std::string EncodingOf(const MapPicture& picture, int bits) {
+  return bits == kExrBits && picture.encoding == "sRGB" ? "linear" : picture.encoding;
+}
+
+void WriteMapFile(const MapFile& file, double texels_per_m) {
+  const bool srgb = file.picture->encoding == "sRGB";
+  if (file.bits != kExrBits) {
+    WritePng(file.path, file.picture->image, file.bits,
+             {srgb ? PngTransfer::kSrgb : PngTransfer::kUntold, texels_per_m});
+    return;
+  }
+  Image image = file.picture->image;
+  if (srgb) {
+    std::transform(image.samples.begin(), image.samples.end(), image.samples.begin(),
+                   LinearFromSrgb<float>);
+  }
+  WriteExr(file.path, image);
+}
+
+}  // namespace
+
 Json WriteMapPictures(const ExportedMaterial& material, const std::vector<MapPicture>& pictures,
-                      const ExportOptions& options, Stage* stage) {
+                      const ExportOptions& options, int threads, Stage* stage) {
   const double texels_per_m = 1000 * material.maps.width / material.width_mm;
+  std::vector<MapFile> written;
   Json files = Json::array();
   for (const MapPicture& picture : pictures) {
-    for (const int bits : {8, 16}) {
-      const bool wanted = picture.bits > 0
-                              ? picture.bits == bits
-                              : options.bits == "both" || options.bits == std::to_string(bits);
-      if (!wanted) continue;
+    for (const int bits : {8, 16, kExrBits}) {
+      if (!Wanted(picture, bits, options.bits)) continue;
       const bool apart = bits == 16 && picture.bits == 0 && options.bits == "both";
-      const std::string file = (apart ? "16bit/" : "") + FileOf(material.name, picture);
-      WritePng(
-          stage->Output(file), picture.image, bits,
-          {picture.encoding == "sRGB" ? PngTransfer::kSrgb : PngTransfer::kUntold, texels_per_m});
-      Json entry = {
-          {"file", file}, {"map", picture.map}, {"encoding", picture.encoding}, {"bits", bits}};
+      const std::string name = NameOf(material.name, picture, bits, apart);
+      written.push_back({&picture, bits, stage->Output(name)});
+      Json entry = {{"file", name},
+                    {"map", picture.map},
+                    {"encoding", EncodingOf(picture, bits)},
+                    {"bits", bits}};
       if (picture.map == "height") entry["range_mm"] = material.height_range_mm;
       files.push_back(entry);
     }
   }
+  ForEachPiece(static_cast<int>(written.size()), threads,
+               [&](int i) { WriteMapFile(written[static_cast<size_t>(i)], texels_per_m); });
   return files;
 }
 

@@ -10,7 +10,8 @@
 //   exact/NAME_diffuse_layered                sRGB: albedo under a layer that lets 1 − F0 through,
 //                                             for programs whose diffuse lobe is weighted so
 //
-// 8-bit files lie in the stage's folder, 16-bit ones in its folder 16bit/.
+// 8-bit files lie in the stage's folder, 16-bit ones beside them in its folder 16bit/, linear EXR
+// files in exr/.
 #pragma once
 
 #include <array>
@@ -28,14 +29,15 @@
 
 namespace glint {
 
-inline constexpr int kExportVersion = 4;
+inline constexpr int kExportVersion = 6;
 
 struct ExportOptions {
   std::string name = "material";  // of the files; letters, digits, - _ .
   std::string from = "refine";    // stage whose maps are taken: refine, fit, tile
-  std::string bits = "8";         // 8, 16, both; the height has 16
+  std::string bits = "8";         // 8, 16, both, exr; the height has 16
   // Longest waves of the relief that are kept, of the sample's shorter side (height_field.h).
   double height_longest = 0.25;
+  int border = 1;                  // rings of texels that mix with the sample's surroundings
   double occlusion_reach = 0.125;  // how far walls hide the sky, of the sample's shorter side
   MetalRoughnessOptions metal;
   std::vector<std::string> formats;  // of material files; empty: all (material_formats.h)
@@ -74,14 +76,11 @@ MapPicture HeightPicture(const HeightField& field, const std::array<double, 2>& 
 // Lowest and highest point.
 std::array<double, 2> HeightRange(const HeightField& field);
 
-// sRGB's transfer function (IEC 61966-2-1), of a value clamped to [0, 1].
-float SrgbFromLinear(float linear);
-
 // "exact/wood_diffuse.png", of the material's name and the picture.
 std::string FileOf(const std::string& name, const MapPicture& picture);
 
 // Writes the files as outputs of `stage`; returns the manifest's data.maps.
 Json WriteMapPictures(const ExportedMaterial& material, const std::vector<MapPicture>& pictures,
-                      const ExportOptions& options, Stage* stage);
+                      const ExportOptions& options, int threads, Stage* stage);
 
 }  // namespace glint

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "base/colour/srgb.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/json.h"
 #include "pipeline/export/export_maps.h"
@@ -50,7 +51,7 @@ Image BaseColor(const ExportedMaterial& material) {
   for (size_t i = 0; i < material.maps.texels(); ++i) {
     const std::array<double, 3> base = GltfBaseColor(material, i);
     for (int c = 0; c < 3; ++c) {
-      image.channel(c)[i] = SrgbFromLinear(static_cast<float>(base[static_cast<size_t>(c)]));
+      image.channel(c)[i] = ClampedSrgb(static_cast<float>(base[static_cast<size_t>(c)]));
     }
   }
   return image;
@@ -79,7 +80,7 @@ Image SpecularColor(const SvbrdfMaps& maps, float largest) {
   for (int c = 0; c < 3; ++c) {
     std::transform(maps.plane(kSpecularR + c).begin(), maps.plane(kSpecularR + c).end(),
                    image.channel(c).begin(),
-                   [largest](float f0) { return SrgbFromLinear(f0 / largest); });
+                   [largest](float f0) { return ClampedSrgb(f0 / largest); });
   }
   return image;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/colour/srgb.h"
 #include "pipeline/contract/errors.h"
 
 namespace glint {
@@ -34,7 +35,7 @@ float LinearFromEncoded(const Encoding& encoding, float value, int channel) {
     case Encoding::kLinear:
       return static_cast<float>(v);
     case Encoding::kSrgb:
-      return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+      return static_cast<float>(LinearFromSrgb(v));
     case Encoding::kGamma22:
       return static_cast<float>(std::pow(v, 2.2));
     case Encoding::kResponse:
@@ -49,7 +50,7 @@ float EncodedFromLinear(const Encoding& encoding, float value, int channel) {
     case Encoding::kLinear:
       return static_cast<float>(v);
     case Encoding::kSrgb:
-      return static_cast<float>(v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+      return static_cast<float>(SrgbFromLinear(v));
     case Encoding::kGamma22:
       return static_cast<float>(std::pow(v, 1 / 2.2));
     case Encoding::kResponse:

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "base/colour/srgb.h"
 #include "tests/pipeline/export/exported_material.h"
 #include "tests/support/process.h"
 
@@ -34,14 +35,6 @@ HeightField Slope() {
 
 std::vector<MapPicture> Pictures() {
   return MapPictures(Uniform(), Slope(), std::vector<float>(kSize * kSize, 0.7f));
-}
-
-// Values of IEC 61966-2-1: 0.5 encoded is 0.21404114 linear.
-TEST(SrgbTest, AgreesWithTheStandard) {
-  EXPECT_NEAR(SrgbFromLinear(0.21404114f), 0.5, 1e-6);
-  EXPECT_NEAR(SrgbFromLinear(0.001f), 0.01292, 1e-7);
-  EXPECT_EQ(SrgbFromLinear(-1.0f), 0.0f);
-  EXPECT_NEAR(SrgbFromLinear(2.0f), 1.0f, 1e-6);
 }
 
 TEST(ExportTest, EncodesEachMapAsItsNameSays) {
@@ -87,20 +80,33 @@ TEST(ExportTest, DirectXMirrorsGreenOnly) {
   EXPECT_EQ(Named(pictures, "normal_dx").encoding, "normal -Y");
 }
 
+// The pictures of the uniform material in a folder of their own.
+struct Written {
+  explicit Written(const std::string& bits) {
+    const auto input = folder.path() / "input";
+    std::ofstream(input) << "x";
+    ExportOptions options;
+    OptionSet set;
+    AddExportOptions(&set, &options);
+    options.bits = bits;
+    Stage stage(folder.path() / "export", {"export", 1}, set, CommonOptions(), {input});
+    files = WriteMapPictures(Uniform(), Pictures(), options, 2, &stage);
+    stage.Commit({{"maps", files}}, {});
+  }
+  std::filesystem::path path(const std::string& file) const {
+    return folder.path() / "export" / file;
+  }
+  Photo Read(const Json& entry) const { return ReadPhoto(path(entry["file"].get<std::string>())); }
+
+  test::TemporaryFolder folder;
+  Json files;
+};
+
 TEST(ExportTest, WritesBothDepthsWithinHalfAStep) {
-  const test::TemporaryFolder folder;
-  const auto input = folder.path() / "input";
-  std::ofstream(input) << "x";
-  ExportOptions options;
-  OptionSet set;
-  AddExportOptions(&set, &options);
-  options.bits = "both";
-  Stage stage(folder.path() / "export", {"export", 1}, set, CommonOptions(), {input});
-  const Json files = WriteMapPictures(Uniform(), Pictures(), options, &stage);
-  stage.Commit({{"maps", files}}, {});
-  EXPECT_EQ(files.size(), 21u);  // the height has 16 bits alone
-  for (const Json& entry : files) {
-    const Photo photo = ReadPhoto(folder.path() / "export" / entry["file"].get<std::string>());
+  const Written written("both");
+  EXPECT_EQ(written.files.size(), 21u);  // the height has 16 bits alone
+  for (const Json& entry : written.files) {
+    const Photo photo = written.Read(entry);
     EXPECT_EQ(photo.bits, entry["bits"].get<int>());
     if (entry["map"] == "height") {
       EXPECT_EQ(entry["range_mm"], Json({-0.5, 0.75}));
@@ -110,18 +116,25 @@ TEST(ExportTest, WritesBothDepthsWithinHalfAStep) {
   }
 }
 
+TEST(ExportTest, ExrFilesAreLinear) {
+  const Written written("exr");
+  EXPECT_EQ(written.files.size(), 22u);
+  for (const Json& entry : written.files) {
+    if (entry["map"] != "diffuse") continue;
+    const Photo photo = written.Read(entry);
+    const float stored = photo.image.samples[0];
+    const float albedo = Uniform().maps.plane(kDiffuseR)[0];
+    const bool exr = entry["bits"] == 32;
+    EXPECT_EQ(entry["encoding"], exr ? "linear" : "sRGB");
+    EXPECT_NEAR(exr ? stored : LinearFromSrgb(stored), albedo, exr ? 1e-5 : 0.01);
+  }
+}
+
 // Chunks of the PNG specification: sRGB where the values are, pHYs in pixels per metre.
 TEST(ExportTest, PicturesSayTheirTransferAndTheirScale) {
-  const test::TemporaryFolder folder;
-  const auto input = folder.path() / "input";
-  std::ofstream(input) << "x";
-  ExportOptions options;
-  OptionSet set;
-  AddExportOptions(&set, &options);
-  Stage stage(folder.path() / "export", {"export", 1}, set, CommonOptions(), {input});
-  stage.Commit({{"maps", WriteMapPictures(Uniform(), Pictures(), options, &stage)}}, {});
-  const std::string base = test::ReadAll(folder.path() / "export/wood_basecolor.png");
-  const std::string rough = test::ReadAll(folder.path() / "export/wood_roughness.png");
+  const Written written("8");
+  const std::string base = test::ReadAll(written.path("wood_basecolor.png"));
+  const std::string rough = test::ReadAll(written.path("wood_roughness.png"));
   EXPECT_NE(base.find("sRGB"), std::string::npos);
   EXPECT_EQ(rough.find("sRGB"), std::string::npos);
   for (const std::string& png : {base, rough}) {
