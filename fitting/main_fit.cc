@@ -3,6 +3,7 @@
 
 #include "fitting/latent/fit_stage.h"
 #include "pipeline/contract/capture.h"
+#include "pipeline/contract/cost_model.h"
 #include "pipeline/contract/program.h"
 
 namespace glint {
@@ -35,6 +36,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, FitStageO
   for (const auto& input : FitInputs(*options)) inputs.push_back(input);
   Stage stage(capture.work() / "fit", {"fit", kFitVersion}, *set, common, inputs);
   if (stage.UpToDate()) return stage.UpToDateResult();
+  RequireMemoryForStage("fit", capture, common.threads);
   return Summarise(stage, *options,
                    RunFitStage(rectify_manifest, *options, common.threads, &stage));
 }

@@ -3,6 +3,7 @@
 
 #include "fitting/refine/refine_stage.h"
 #include "pipeline/contract/capture.h"
+#include "pipeline/contract/cost_model.h"
 #include "pipeline/contract/program.h"
 
 namespace glint {
@@ -53,6 +54,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RefineSta
   inputs.push_back(start.manifest_file.empty() ? start.maps_file : start.manifest_file);
   Stage stage(capture.work() / "refine", {"refine", kRefineVersion}, *set, common, inputs);
   if (stage.UpToDate()) return stage.UpToDateResult();
+  RequireMemoryForStage("refine", capture, common.threads);
   return Summarise(stage,
                    RunRefineStage(rectify_manifest, start, *options, common.threads, &stage));
 }

@@ -7,7 +7,7 @@ namespace {
 
 void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
   options->AddPositional("DIR", &o->folder, "the capture's folder", false);
-  options->Add("create", &o->create, "make the folder where there is none");
+  options->Add("create", &o->create, "make the folder if it does not exist");
   options->AddChoice("board", &o->board, {"charuco", "checkerboard", "none"},
                      "kind of board; none: COLMAP finds the cameras");
   options->Add("squares", &o->squares, "COLUMNS,ROWS of squares");
@@ -22,15 +22,14 @@ void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
   options->Add("encoding", &o->encoding,
                "how the photographs store radiance: auto, srgb, gamma2.2, linear, or the file of a "
                "response curve (glint-response writes one)");
-  options->AddRange("every", &o->every, 1, 1000000,
-                    "one frame in so many of a video becomes a photograph");
+  options->AddRange("every", &o->every, 1, 1000000, "use every Nth frame of a video");
   options->Add("single", &o->single,
                "one photograph from straight above, without a board; with --width-mm or "
                "--distance-mm");
   options->AddRange("width-mm", &o->width_mm, 0, 1e5,
-                    "with --single: how much of the sample the picture's width shows");
+                    "with --single: width of the area that the picture shows");
   options->AddRange("distance-mm", &o->distance_mm, 0, 1e5,
-                    "with --single: how far the lens was from the sample");
+                    "with --single: distance from the lens to the sample");
   options->Add("light-offset-mm", &o->light_offset_mm,
                "X,Y,Z of the flash in the camera frame: x right, y down, z forward");
 }
@@ -46,10 +45,10 @@ int main(int argc, char** argv) {
               "write nothing; list what is read from each photograph in the folder (EXIF, size)");
   return glint::RunProgram(
       argc, argv,
-      {"glint-init", "Writes a commented capture.toml, never over one that is there.",
+      {"glint-init", "Writes a commented capture.toml. Never overwrites an existing one.",
        GLINT_VERSION,
-       "A board.json in the folder (glint board) is taken for the board; else the options describe "
-       "it, or say that there is none.\nExamples:\n  glint init wood --squares 12,12 --square-mm "
+       "If the folder contains a board.json (glint board), it defines the board; otherwise the "
+       "options do.\nExamples:\n  glint init wood --squares 12,12 --square-mm "
        "15 --sample-mm 100,100\n"
        "  glint init wood --single --width-mm 120\n"
        "  glint init wood --list"},

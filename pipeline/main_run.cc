@@ -15,17 +15,17 @@ struct RunArguments {
 
 void AddOptions(glint::OptionSet* options, RunArguments* o) {
   options->AddPositional("CAPTURE", &o->run.capture, "folder of the capture", false);
-  options->Add("from", &o->run.from, "first stage that may run; earlier results stand");
-  options->Add("until", &o->run.until, "last stage that runs");
+  options->Add("from", &o->run.from, "start at this stage; keep earlier results");
+  options->Add("until", &o->run.until, "end after this stage");
   options->Add("dry-run", &o->dry_run, "only say which stages would run and why");
-  options->AddRange("jobs,-j", &o->jobs, 0, 1024, "threads for each stage, as --threads");
+  options->AddRange("jobs,-j", &o->jobs, 0, 1024, "same as --threads");
   options->AddChoice("method", &o->run.choices.method, {"classic", "latent", "refined"},
                      "classic: maps fitted texel by texel; latent: in the learned space; refined: "
                      "latent, then per texel (what is done without this option)");
   options->Add("exclude", &o->run.choices.exclude,
-               "photographs (file or view names) kept back from fit and refine");
-  options->Add("views", &o->run.choices.views, "the only photographs that fit and refine see");
-  options->Add("verbose,-v", &o->run.verbose, "all that the stages say, and Ninja's own lines");
+               "photographs (file or view names) held out from fit and refine");
+  options->Add("views", &o->run.choices.views, "use only these photographs in fit and refine");
+  options->Add("verbose,-v", &o->run.verbose, "show everything that the stages and Ninja print");
 }
 
 glint::ProgramResult DryRun(const RunArguments& o) {
@@ -50,22 +50,24 @@ int main(int argc, char** argv) {
   RunArguments o;
   glint::OptionSet options;
   AddOptions(&options, &o);
-  return glint::RunProgram(
-      argc, argv,
-      {"glint-run",
-       "Runs the stages calib, rectify, fit, refine, export, report of a capture, as far as they "
-       "are not up to date.",
-       GLINT_VERSION,
-       "Examples:\n  glint run wood\n  glint run wood --until rectify\n"
-       "  glint run wood --exclude img_003.jpg,img_007.jpg --method latent"},
-      &options, [&](const glint::CommonOptions& common) -> glint::ProgramResult {
-        o.run.force = common.force;
-        o.run.choices.seed = common.seed;
-        if (o.dry_run) return DryRun(o);
-        o.run.threads = ThreadsForStages(argc, argv, common, o.jobs);
-        o.run.log_level = common.log_level;
-        o.run.quiet_stdout = common.json;
-        const glint::RunSummary summary = glint::RunCapture(o.run);
-        return {summary.BriefReport(), summary.ToJson()};
-      });
+  return glint::RunProgram(argc, argv,
+                           {"glint-run",
+                            "Runs every stage of a capture that is out of date: calib, rectify, "
+                            "fit, refine, tile (with a "
+                            "section [tile] in capture.toml), export, report.",
+                            GLINT_VERSION,
+                            "Examples:\n  glint run wood\n  glint run wood --until rectify\n"
+                            "  glint run wood --exclude img_003.jpg,img_007.jpg --method latent"},
+                           &options,
+                           [&](const glint::CommonOptions& common) -> glint::ProgramResult {
+                             o.run.force = common.force;
+                             o.run.choices.seed = common.seed;
+                             if (o.dry_run) return DryRun(o);
+                             o.run.threads = ThreadsForStages(argc, argv, common, o.jobs);
+                             o.run.memory_gb = common.memory_gb;
+                             o.run.log_level = common.log_level;
+                             o.run.quiet_stdout = common.json;
+                             const glint::RunSummary summary = glint::RunCapture(o.run);
+                             return {summary.BriefReport(), summary.ToJson()};
+                           });
 }

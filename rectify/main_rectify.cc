@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/contract/capture.h"
+#include "pipeline/contract/cost_model.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/program.h"
 #include "rectify/views/rectify_capture.h"
@@ -53,6 +54,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RectifyOp
   for (const auto& file : capture.FilesBehind(photos)) inputs.push_back(file);
   Stage stage(capture.work() / "rectify", {"rectify", kRectifyVersion}, *set, common, inputs);
   if (stage.UpToDate()) return stage.UpToDateResult();
+  RequireMemoryForStage("rectify", capture, common.threads);
   return Summarise(stage, RectifyCapture(capture, calibration, *options, task, common, &stage));
 }
 

@@ -8,14 +8,13 @@ namespace {
 constexpr size_t kColumns = 80;
 constexpr char kIndent[] = "        ";
 
-// "--views", "--[no-]png", "-h, --help"
+// "--views", "-v, --verbose". That --no-verbose is known too is of use beside capture.toml only.
 std::string NamesOf(const CLI::Option& option, bool positional) {
   if (positional) return option.get_name(true, false);
   std::string names;
   for (const std::string& name : option.get_snames()) names += "-" + name + ", ";
   const std::string name = option.get_lnames().empty() ? "" : option.get_lnames()[0];
-  const bool can_be_off = option.check_lname("no-" + name);
-  return names + (can_be_off ? "--[no-]" : "--") + name;
+  return names + "--" + name;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// How help is set: names, placeholders, and text beneath them, 80 columns wide.
+// The layout of --help: names and value names, their text beneath, 80 columns wide.
 #pragma once
 
 #include <CLI/CLI.hpp>

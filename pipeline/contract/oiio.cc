@@ -5,6 +5,7 @@
 #include <set>
 
 #include "pipeline/contract/image.h"
+#include "pipeline/contract/memory_limit.h"
 #include "pipeline/contract/photo_name.h"
 
 namespace glint {
@@ -31,6 +32,19 @@ bool LacksDecoder(const std::string& reason) {
     if (reason.find(words) != std::string::npos) return true;
   }
   return false;
+}
+
+// A small file may ask for a large image.
+void RequireMemoryForImage(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
+  const double needed =
+      static_cast<double>(sizeof(float)) * spec.width * spec.height * spec.nchannels;
+  const auto limit = static_cast<double>(MemoryLimit_bytes());
+  if (needed <= limit) return;
+  throw UserError(file, "size",
+                  std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels of " +
+                      std::to_string(spec.nchannels) + " channels, which need " +
+                      MemoryText(needed) + " of memory",
+                  "Glint may use " + MemoryText(limit) + " here (--memory); scale it down");
 }
 
 }  // namespace
@@ -91,6 +105,7 @@ std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
                     std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels",
                     "images of at most " + std::to_string(kMaxPixels >> 20) + " Mpx are read");
   }
+  RequireMemoryForImage(file, spec);
   return input;
 }
 

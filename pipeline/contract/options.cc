@@ -192,7 +192,7 @@ void OptionSet::AddPositional(const std::string& name, Target target, const std:
   options_.back().required = required;
 }
 
-void OptionSet::Register(CLI::App* app) {
+void OptionSet::Register(CLI::App* app, const std::string& group) {
   for (Option& option : options_) {
     const std::string flag = option.positional ? option.name : "--" + option.name;
     const std::string help = option.help + Limits(option);
@@ -221,6 +221,7 @@ void OptionSet::Register(CLI::App* app) {
         },
         option.target);
     if (option.required) registered->required();
+    registered->group(group);
     if (!option.choices.empty()) registered->check(CLI::IsMember(option.choices));
     if (option.has_range) registered->check(CLI::Range(option.low, option.high));
     if (!std::holds_alternative<bool*>(option.target) && !option.positional) {

@@ -47,7 +47,8 @@ class OptionSet {
   // Unknown keys, wrong types and values out of range throw UserError naming file and key.
   void LoadToml(const std::filesystem::path& file, const std::string& table);
 
-  void Register(CLI::App* app);
+  // `group`: the title under which the help lists them.
+  void Register(CLI::App* app, const std::string& group = "Options");
 
   // For shells' completion and manual pages: a list of {name, help, kind, default?, choices?,
   // low?, high?, positional}; kinds are "flag", "integer", "number", "text", "path", "texts" and

@@ -61,4 +61,28 @@ std::vector<std::string> FilesOfPhotos(const std::vector<std::string>& names) {
   return files;
 }
 
+bool NamesPhoto(const std::string& name, const std::string& photo) {
+  const std::filesystem::path path(photo);
+  return photo == name || path.filename() == name || path.stem() == name;
+}
+
+std::vector<std::string> RejoinedNames(const std::vector<std::string>& parts,
+                                       const std::function<bool(const std::string&)>& known) {
+  std::vector<std::string> names;
+  for (size_t i = 0; i < parts.size();) {
+    std::string name = parts[i];
+    size_t used = 1;
+    std::string longer = name;
+    for (size_t j = i + 1; !known(name) && j < parts.size(); ++j) {
+      longer += "," + parts[j];
+      if (!known(longer)) continue;
+      name = longer;
+      used = j + 1 - i;
+    }
+    names.push_back(name);
+    i += used;
+  }
+  return names;
+}
+
 }  // namespace glint

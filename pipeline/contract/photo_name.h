@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,5 +25,14 @@ std::string FrameName(const std::string& video, int frame);
 
 // The files behind photographs' names, each once, in the order in which they come up.
 std::vector<std::string> FilesOfPhotos(const std::vector<std::string>& names);
+
+// Whether `name`, as a person writes it, is this photograph's path, file name, or file name without
+// its ending.
+bool NamesPhoto(const std::string& name, const std::string& photo);
+
+// Lists of names are separated by commas, which file names may hold too: puts together again what
+// is known only as a whole ("a", "b.jpg" of "a,b.jpg"). Parts that stay unknown are left alone.
+std::vector<std::string> RejoinedNames(const std::vector<std::string>& parts,
+                                       const std::function<bool(const std::string&)>& known);
 
 }  // namespace glint

@@ -17,12 +17,14 @@
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/help_formatter.h"
+#include "pipeline/contract/memory_limit.h"
 #include "pipeline/contract/stage.h"
 
 namespace glint {
 namespace {
 
 constexpr int kMaxThreads = 1024;
+constexpr double kMostMemory_gb = 1e6;
 
 void SetUpLogging(const std::string& program, const std::string& level) {
   auto logger = spdlog::stderr_logger_mt(program);
@@ -75,6 +77,8 @@ Json DescriptionOf(const ProgramInfo& info, const OptionSet& options) {
 
 int RunBody(const ProgramInfo& info, const CommonOptions& common,
             const std::function<ProgramResult(const CommonOptions&)>& body) {
+  constexpr double kGiga = 1e9;
+  SetMemoryLimit(static_cast<std::uint64_t>(kGiga * common.memory_gb));
   const auto began = std::chrono::steady_clock::now();
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -101,6 +105,22 @@ int RunBody(const ProgramInfo& info, const CommonOptions& common,
 
 }  // namespace
 
+OptionSet CommonOptionSet(CommonOptions* common) {
+  OptionSet set;
+  set.AddRange("threads", &common->threads, 0, kMaxThreads,
+               "threads to use; 0: one per core; never changes a result");
+  set.AddRange("memory", &common->memory_gb, 0, kMostMemory_gb,
+               "memory limit in GB; a stage that needs more stops with an error; 0: 80 % of what "
+               "the machine or its cgroup has; never changes a result");
+  set.Add("seed", &common->seed, "random seed");
+  set.AddChoice("log-level", &common->log_level, {"debug", "info", "warning", "error", "off"},
+                "verbosity on stderr");
+  set.Add("json", &common->json, "write the result to stdout as JSON");
+  set.Add("force", &common->force, "stages: run even if the result is up to date");
+  set.Add("status", &common->check, "stages: only report whether the result is up to date");
+  return set;
+}
+
 int RunProgram(int argc, char** argv, const ProgramInfo& info, OptionSet* options,
                const std::function<ProgramResult(const CommonOptions&)>& body) {
   // A write past a file-size limit is an error to report, not a reason to die.
@@ -115,23 +135,8 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info, OptionSet* option
   app.set_version_flag("--version", info.name + " " + info.version);
   if (!info.footer.empty()) app.footer(info.footer);
   options->Register(&app);
-  app.add_option("--threads", common.threads,
-                 "threads to use; 0: one a core; never changes a result (default: 0)")
-      ->check(CLI::Range(0, kMaxThreads))
-      ->option_text("N")
-      ->group("Common");
-  app.add_option("--seed", common.seed, "seed of everything random (default: 0)")
-      ->option_text("N")
-      ->group("Common");
-  app.add_option("--log-level", common.log_level, "what is said on stderr (default: info)")
-      ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
-      ->option_text("debug|info|warning|error|off")
-      ->group("Common");
-  app.add_flag("--json", common.json, "write the result to stdout as JSON")->group("Common");
-  app.add_flag("--force", common.force, "compute although the result is up to date")
-      ->group("Common");
-  app.add_flag("--status", common.check, "only say whether the result is up to date")
-      ->group("Common");
+  OptionSet common_options = CommonOptionSet(&common);
+  common_options.Register(&app, "Common");
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {

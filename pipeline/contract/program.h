@@ -13,12 +13,16 @@ namespace glint {
 
 struct CommonOptions {
   int threads = 0;         // resolved: at least 1
+  double memory_gb = 0;    // 0: a share of the machine's (memory_limit.h)
   std::uint64_t seed = 0;  // enters the manifest
   std::string log_level = "info";
   bool json = false;  // the result on stdout as JSON
   // For stages: compute although the result is up to date; or only say whether it is.
   bool force = false, check = false;
 };
+
+// The command line's side of them.
+OptionSet CommonOptionSet(CommonOptions* common);
 
 // What a program leaves on stdout: `text` for a person, or `json` with --json. A stage also sums up
 // its result in a few words, which are all that `glint run` shows of it.

@@ -17,10 +17,6 @@ double Seconds(std::chrono::steady_clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
 
-double Now_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 std::optional<RunProgress> WholeRun() {
   const char* text = std::getenv(kRunProgressVariable);
   return text == nullptr ? std::nullopt : ParseRunProgress(text);
@@ -61,7 +57,7 @@ std::string Progress::Line(const std::string& note) const {
   if (run_) {
     const double of_stage = part_.begin + own * (part_.end - part_.begin);
     share = run_->Share(of_stage);
-    left_s = run_->Remaining_s(of_stage, Now_s());
+    left_s = run_->Remaining_s(of_stage, SecondsSince1970());
   } else if (own > 0 && own < 1) {
     left_s = Seconds(std::chrono::steady_clock::now() - start_) * (1 - own) / own;
   }

@@ -7,6 +7,7 @@
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
+#include "pipeline/contract/photo_name.h"
 
 namespace glint {
 namespace {
@@ -65,9 +66,27 @@ RectifiedView ReadView(const std::filesystem::path& file, const Json& json, size
 }
 
 bool Names(const RectifiedView& view, const std::string& name) {
-  const std::filesystem::path photo(view.photo);
-  return view.name == name || view.photo == name || photo.filename() == name ||
-         photo.stem() == name;
+  return view.name == name || NamesPhoto(name, view.photo);
+}
+
+// Throws UserError for a name that no view has.
+std::vector<std::string> KnownNames(const RectifiedSet& set,
+                                    const std::vector<std::string>& parts) {
+  const auto known = [&](const std::string& name) {
+    return std::any_of(set.views.begin(), set.views.end(),
+                       [&](const RectifiedView& view) { return Names(view, name); });
+  };
+  const std::vector<std::string> names = RejoinedNames(parts, known);
+  for (const std::string& name : names) {
+    if (known(name)) continue;
+    std::string list;
+    for (const RectifiedView& view : set.views) {
+      list += (list.empty() ? "" : ", ") + view.name + " (" + view.photo + ")";
+    }
+    throw UserError(set.manifest_file, "views", "no view named '" + name + "'",
+                    "use a view's or photograph's name: " + list);
+  }
+  return names;
 }
 
 }  // namespace
@@ -184,26 +203,15 @@ void WriteRectifiedImage(const std::filesystem::path& file, const RectifiedImage
 std::vector<RectifiedView> SelectViews(const RectifiedSet& set,
                                        const std::vector<std::string>& only,
                                        const std::vector<std::string>& exclude) {
-  for (const auto* names : {&only, &exclude}) {
-    for (const std::string& name : *names) {
-      const bool known = std::any_of(set.views.begin(), set.views.end(),
-                                     [&](const RectifiedView& view) { return Names(view, name); });
-      if (known) continue;
-      std::string list;
-      for (const RectifiedView& view : set.views) {
-        list += (list.empty() ? "" : ", ") + view.name + " (" + view.photo + ")";
-      }
-      throw UserError(set.manifest_file, "views", "no view named '" + name + "'",
-                      "use a view's or photograph's name: " + list);
-    }
-  }
+  const std::vector<std::string> chosen = KnownNames(set, only);
+  const std::vector<std::string> excluded = KnownNames(set, exclude);
   const auto named = [](const RectifiedView& view, const std::vector<std::string>& names) {
     return std::any_of(names.begin(), names.end(),
                        [&](const std::string& name) { return Names(view, name); });
   };
   std::vector<RectifiedView> views;
   for (const RectifiedView& view : set.views) {
-    if ((only.empty() || named(view, only)) && !named(view, exclude)) views.push_back(view);
+    if ((chosen.empty() || named(view, chosen)) && !named(view, excluded)) views.push_back(view);
   }
   if (views.empty()) {
     throw UserError(set.manifest_file, "views", "no view left after --views and --exclude",

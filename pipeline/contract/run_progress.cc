@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <locale>
 #include <sstream>
@@ -40,6 +41,10 @@ std::optional<RunProgress> ParseRunProgress(const std::string& text) {
 std::string ToText(const RunProgress& progress) {
   return fmt::format("{} {} {} {}", progress.began_s, progress.before_s, progress.stage_s,
                      progress.after_s);
+}
+
+double SecondsSince1970() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 std::string DurationText(double seconds) {

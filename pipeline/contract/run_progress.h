@@ -6,8 +6,8 @@
 
 namespace glint {
 
-// Seconds as predicted (pipeline/driver/cost_model.h) for the stages before this one, for this one
-// and for those after it, and when the run began (seconds since 1970).
+// Seconds as predicted (pipeline/contract/cost_model.h) for the stages before this one, for this
+// one and for those after it, and when the run began (seconds since 1970).
 struct RunProgress {
   double began_s = 0;
   double before_s = 0, stage_s = 0, after_s = 0;
@@ -23,6 +23,9 @@ inline constexpr char kRunProgressVariable[] = "GLINT_RUN_PROGRESS";
 // "began before stage after"; none for a text that is not that.
 std::optional<RunProgress> ParseRunProgress(const std::string& text);
 std::string ToText(const RunProgress& progress);
+
+// The wall clock: seconds since 1970.
+double SecondsSince1970();
 
 // "35 s", "4 min", "1 h 10 min"
 std::string DurationText(double seconds);

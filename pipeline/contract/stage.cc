@@ -3,10 +3,12 @@
 #include <fcntl.h>
 #include <linux/fs.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -17,14 +19,31 @@
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
 #include "pipeline/contract/image.h"
+#include "pipeline/contract/run_progress.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
 
-double Now_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+struct ResourceUse {
+  double processor_s = 0;              // of all threads, children that have ended included
+  std::int64_t peak_memory_bytes = 0;  // of this process or of its largest child
+};
+
+ResourceUse UsedResources() {
+  ResourceUse use;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    getrusage(who, &usage);
+    const auto seconds = [](const timeval& time) {
+      return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    use.processor_s += seconds(usage.ru_utime) + seconds(usage.ru_stime);
+    use.peak_memory_bytes =
+        std::max(use.peak_memory_bytes, std::int64_t{1024} * usage.ru_maxrss);  // Linux: kilobytes
+  }
+  return use;
 }
 
 void MakeFolder(const fs::path& folder) {
@@ -134,7 +153,7 @@ Stage::Stage(fs::path folder, StageInfo info, const OptionSet& options, const Co
       options_(options.ManifestEcho()),
       run_options_(options.RunEcho()),
       threads_(common.threads),
-      started_s_(Now_s()) {
+      started_s_(SecondsSince1970()) {
   options_["seed"] = common.seed;
   for (const fs::path& input : inputs) {
     const fs::path file = fs::absolute(input).lexically_normal();
@@ -199,7 +218,7 @@ fs::path Stage::Output(const std::string& name) {
 }
 
 void Stage::WriteRunFacts() const {
-  const double finished_s = Now_s();
+  const double finished_s = SecondsSince1970();
   const std::time_t started = static_cast<std::time_t>(started_s_);
   char text[32];
   std::tm utc{};
@@ -207,8 +226,11 @@ void Stage::WriteRunFacts() const {
   std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &utc);
   char host[256] = "";
   gethostname(host, sizeof(host) - 1);
+  const ResourceUse use = UsedResources();
   const Json facts = {{"started", text},
                       {"seconds", finished_s - started_s_},
+                      {"processor_seconds", use.processor_s},
+                      {"peak_memory_bytes", use.peak_memory_bytes},
                       {"host", host},
                       {"instruction_sets", InstructionSetNames()},
                       {"threads", threads_},
@@ -245,8 +267,7 @@ std::string Stage::UpToDateText() const {
 }
 
 ProgramResult Stage::UpToDateResult(const Json& more) const {
-  Json json = {
-      {"stage", info_.name}, {"up_to_date", true}, {"manifest", manifest_file().string()}};
+  Json json = {{"stage", info_.name}, {"up_to_date", true}, {"manifest", manifest_file().string()}};
   json.update(more);
   return {UpToDateText(), json, "up to date"};
 }

@@ -1,5 +1,7 @@
 #include "pipeline/driver/described_programs.h"
 
+#include <utility>
+
 #include "pipeline/contract/program.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/programs.h"
@@ -45,30 +47,14 @@ std::vector<DescribedCommand> DescribeCommands() {
 }
 
 Json CommonOptionList() {
-  const auto flag = [](const char* name, const char* help) -> Json {
-    return {{"name", name}, {"help", help}, {"kind", "flag"}, {"positional", false}};
-  };
-  return {{{"name", "threads"},
-           {"help", "threads to use; 0: one a core; never changes a result"},
-           {"kind", "integer"},
-           {"positional", false},
-           {"default", "0"}},
-          {{"name", "seed"},
-           {"help", "seed of everything random"},
-           {"kind", "integer"},
-           {"positional", false},
-           {"default", "0"}},
-          {{"name", "log-level"},
-           {"help", "what is said on stderr"},
-           {"kind", "text"},
-           {"positional", false},
-           {"choices", {"debug", "info", "warning", "error", "off"}},
-           {"default", "info"}},
-          flag("json", "write the result to stdout as JSON"),
-          flag("force", "compute although the result is up to date"),
-          flag("status", "only say whether the result is up to date"),
-          flag("help", "print help and exit"),
-          flag("version", "print the version and exit")};
+  CommonOptions common;
+  Json list = CommonOptionSet(&common).Describe();
+  // Those that the command line's parser adds.
+  for (const auto& [name, help] : {std::pair{"help", "print help and exit"},
+                                   std::pair{"version", "print the version and exit"}}) {
+    list.push_back({{"name", name}, {"help", help}, {"kind", "flag"}, {"positional", false}});
+  }
+  return list;
 }
 
 }  // namespace glint

@@ -277,19 +277,17 @@ fs::path OnlyPhoto(const InitOptions& options) {
 // The largest square that stays clear of the picture's borders.
 Surroundings FromAbove(const InitOptions& options) {
   constexpr double kOfShorterSide = 0.9;
-  constexpr double kPhoneAngle = 26 / 43.267;  // focal length over diagonal, for the size alone
   if ((options.width_mm > 0) == (options.distance_mm > 0)) {
     throw UserError(
         "--single: found neither or both of --width-mm and --distance-mm; give one: how much of "
         "the sample the picture's width shows, or how far the lens was from it");
   }
   const auto [width_px, height_px] = PhotoSize(OnlyPhoto(options));
-  const double width_mm =
-      options.width_mm > 0
-          ? options.width_mm
-          : options.distance_mm * width_px / (kPhoneAngle * std::hypot(width_px, height_px));
+  if (options.width_mm == 0 && options.sample_mm.empty()) {
+    throw UserError("--distance-mm: found no --sample-mm; give the sample's size, WIDTHxHEIGHT");
+  }
   const double side_mm =
-      std::floor(kOfShorterSide * width_mm * std::min(width_px, height_px) / width_px);
+      std::floor(kOfShorterSide * options.width_mm * std::min(width_px, height_px) / width_px);
   const std::string length = options.width_mm > 0
                                  ? "picture_width_mm = " + NumberText(options.width_mm) +
                                        "           # how much of the sample its width shows\n"

@@ -120,9 +120,7 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
   const std::string exported = capture.tiles ? "tile" : last;
   steps.push_back(Step("export", {}, {exported}));
   std::vector<std::string> all_stages;
-  for (const StageStep& step : steps) {
-    if (step.stage != "export") all_stages.push_back(step.stage);
-  }
+  for (const StageStep& step : steps) all_stages.push_back(step.stage);
   if (imported) all_stages.insert(all_stages.begin(), "rectify");
   steps.push_back(Step("report", {}, all_stages));
   for (StageStep& step : steps) {

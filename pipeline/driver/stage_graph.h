@@ -15,7 +15,7 @@ struct RunChoices {
   // "refined": latent fit, then refinement per texel; "latent", "classic": the fit alone, with that
   // method; "": as "refined", but the fit's method is left to capture.toml.
   std::string method;
-  std::vector<std::string> exclude;  // photographs kept back from fit and refine
+  std::vector<std::string> exclude;  // photographs held out from fit and refine
   std::vector<std::string> views;    // the only photographs fit and refine see; empty: all
   std::uint64_t seed = 0;
 

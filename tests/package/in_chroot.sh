@@ -23,9 +23,9 @@ in_root apt-get install -y -qq --no-install-recommends /tmp/glint.deb >/dev/null
 installed_s=$SECONDS
 after=$(in_root dpkg-query -W -f '${Installed-Size}\n' | awk '{s += $1} END {print s}')
 SECONDS=0
-in_root glint demo /root/leather
+in_root glint demo /srv/leather
 demo_s=$SECONDS
-work=$root/root/leather/glint
+work=$root/srv/leather/glint
 [ -s "$work/report/index.html" ] && ls "$work"/export/*.glb >/dev/null
 in_root apt-get purge -y -qq glint >/dev/null 2>&1
 left=$(find "$root/usr" "$root/etc" "$root/var/lib" -path "$root/var/lib/apt" -prune -o -path "$root/var/lib/dpkg" -prune -o \( -name 'glint*' -o -name '_glint*' \) -print)

@@ -11,6 +11,7 @@
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/jpeg_end.h"
+#include "pipeline/contract/memory_limit.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
 
@@ -104,6 +105,20 @@ TEST(Photo, BadFilesAreNamed) {
 
 // Segments as in ITU-T T.81: a table that holds an end marker, a scan with a stuffed byte and a
 // restart marker, the end, and what a phone appends.
+// A small file may hold a large picture: it is refused by its header.
+TEST(Photo, APictureThatNeedsMoreMemoryThanAllowedIsRefusedBeforeItIsRead) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "white.png";
+  WritePng(file, Image(3000, 2000, {"Y"}));
+  EXPECT_LT(std::filesystem::file_size(file), 100000u);
+  SetMemoryLimit(20000000);
+  const std::string message = test::MessageOf<UserError>([&] { ReadPhoto(file); });
+  SetMemoryLimit(0);
+  EXPECT_THAT(message, HasSubstr("white.png: size: found 3000x2000 pixels of 1 channels"));
+  EXPECT_THAT(message, HasSubstr("need 24 MB of memory; Glint may use 20 MB here"));
+  EXPECT_EQ(ReadPhoto(file).image.width, 3000);
+}
+
 TEST(Photo, JpegIsCompleteUpToItsOwnEndMarker) {
   const std::string table("\xff\xdb\x00\x04\xff\xd9", 6), scan("\xff\xda\x00\x03\x01", 5);
   const std::string data("\x12\xff\x00\x34\xff\xd0\x56", 7), end = "\xff\xd9";

@@ -51,6 +51,18 @@ TEST(PhotoName, OnlyFramesOfVideosAreSplit) {
   EXPECT_THAT(FilesOfPhotos({"v.mov#0000", "a.jpg", "v.mov#0015"}), ElementsAre("v.mov", "a.jpg"));
 }
 
+TEST(PhotoName, ListsOfNamesMayHoldNamesWithCommas) {
+  const auto known = [](const std::string& name) {
+    for (const char* photo : {"p/a,b.jpg", "p/c.jpg", "p/d,e,f.jpg"}) {
+      if (NamesPhoto(name, photo)) return true;
+    }
+    return false;
+  };
+  EXPECT_THAT(RejoinedNames({"a", "b.jpg", "c.jpg"}, known), ElementsAre("a,b.jpg", "c.jpg"));
+  EXPECT_THAT(RejoinedNames({"c", "d", "e", "f"}, known), ElementsAre("c", "d,e,f"));
+  EXPECT_THAT(RejoinedNames({"x", "c", "a"}, known), ElementsAre("x", "c", "a"));
+}
+
 // The picture 1 2 3 / 4 5 6 as EXIF's eight orientations store it (EXIF 2.3, tag 0x0112).
 TEST(Upright, AllEightOrientationsGiveTheSamePicture) {
   const std::vector<std::vector<int>> stored = {

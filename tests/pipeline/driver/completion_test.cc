@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "pipeline/contract/cost_model.h"
 #include "pipeline/contract/run_progress.h"
 #include "pipeline/driver/completion.h"
-#include "pipeline/driver/cost_model.h"
 #include "pipeline/driver/edge.h"
 #include "pipeline/driver/manual.h"
 #include "pipeline/driver/stage_graph.h"
@@ -46,7 +46,7 @@ TEST(Completion, BashCompletesVerbsOptionsAndChoices) {
   };
   EXPECT_EQ(complete("glint ''", 1), "fit synth\n");
   EXPECT_EQ(complete("glint synth ''", 2), "capture\n");
-  EXPECT_EQ(complete("glint fit --me", 2), "--method\n");
+  EXPECT_EQ(complete("glint fit --met", 2), "--method\n");
   EXPECT_EQ(complete("glint fit --method ''", 3), "latent classic\n");
   EXPECT_EQ(complete("glint synth capture --st", 3), "--start --status\n");
 }

@@ -32,6 +32,7 @@ struct FakeOptions {
   bool check = false, force = false, json = false;
   std::string log_level;
   int threads = 0;
+  double memory_gb = 0;
 };
 
 std::vector<fs::path> Inputs(const FakeOptions& o, const std::string& stage) {
@@ -128,6 +129,7 @@ int main(int argc, char** argv) {
   app.add_flag("--json", o.json);
   app.add_option("--log-level", o.log_level);
   app.add_option("--threads", o.threads);
+  app.add_option("--memory", o.memory_gb);
   try {
     app.parse(argc, argv);
     const std::string stage = program.substr(std::string("glint-").size());

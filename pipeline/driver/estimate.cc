@@ -1,0 +1,62 @@
+#include "pipeline/driver/estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pipeline/contract/memory_limit.h"
+#include "pipeline/contract/run_progress.h"
+
+namespace glint {
+
+double CaptureEstimate::seconds() const {
+  double sum = 0;
+  for (const StageEstimate& stage : stages) sum += stage.seconds;
+  return sum;
+}
+
+double CaptureEstimate::memory_bytes() const {
+  double most = 0;
+  for (const StageEstimate& stage : stages) most = std::max(most, stage.memory_bytes);
+  return most;
+}
+
+std::string CaptureEstimate::ToText() const {
+  const auto line = [](const std::string& name, double seconds, double memory_bytes) {
+    return fmt::format("{:<9} {:>9} {:>9}\n", name, DurationText(seconds),
+                       MemoryText(memory_bytes));
+  };
+  std::string text;
+  for (const StageEstimate& stage : stages) {
+    text += line(stage.stage, stage.seconds, stage.memory_bytes);
+  }
+  return text + line("all", seconds(), memory_bytes()) +
+         "on two cores of a Xeon of 2.8 GHz; other machines differ by one factor\n";
+}
+
+Json CaptureEstimate::ToJson() const {
+  Json list = Json::array();
+  for (const StageEstimate& stage : stages) {
+    list.push_back(
+        {{"stage", stage.stage}, {"seconds", stage.seconds}, {"memory_bytes", stage.memory_bytes}});
+  }
+  return {{"photographs", size.photographs},
+          {"photograph_px", size.photograph_px},
+          {"texels", size.texels},
+          {"stages", list},
+          {"seconds", seconds()},
+          {"memory_bytes", memory_bytes()}};
+}
+
+CaptureEstimate EstimateCapture(const Capture& capture, const std::vector<StageStep>& steps,
+                                int threads) {
+  CaptureEstimate estimate;
+  estimate.size = SizeOf(capture);
+  for (const StageStep& step : steps) {
+    estimate.stages.push_back({step.stage, PredictedSeconds(step.stage, estimate.size),
+                               PredictedMemory_bytes(step.stage, estimate.size, threads)});
+  }
+  return estimate;
+}
+
+}  // namespace glint
