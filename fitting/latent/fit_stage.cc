@@ -9,6 +9,7 @@
 
 #include "fitting/bootstrap/bootstrap.h"
 #include "fitting/estimator/estimator.h"
+#include "fitting/latent/levels.h"
 #include "fitting/weights/find_model.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/progress.h"
@@ -103,6 +104,19 @@ SvbrdfMaps Start(const FitStageOptions& options, const PhotographSet& photograph
   return EstimateMaps(photographs, threads);
 }
 
+// Where fitting begins, at the size of its first level: finer detail of the initial maps would be
+// averaged away. With the method `start` they are the result, and have all detail.
+SvbrdfMaps InitialMaps(const FitStageOptions& options, const FitOptions& fit,
+                       const PhotographSet& photographs, int threads) {
+  const SamplePlane& plane = photographs.plane;
+  const auto [width, height] =
+      LevelSizes(plane.width, plane.height, fit.coarse_size, fit.finest_size).front();
+  const bool whole = options.method == "start" || !options.start.empty() ||
+                     (width == plane.width && height == plane.height);
+  if (whole) return Start(options, photographs, threads);
+  return Start(options, Downsampled(photographs, width, height, threads), threads);
+}
+
 Json Metrics(const FitResult& fit, const std::vector<RectifiedView>& views) {
   Json levels = Json::array();
   for (const FitLevel& level : fit.levels) {
@@ -152,9 +166,10 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
                 "most steps at the first, coarse level; 0: the method's own");
   set->AddRange("fine-iterations", &options->fine_iterations, 0, 1e6,
                 "most steps at each later level; 0: the method's own");
-  set->AddRange("finest-size", &options->finest_size, 0, 1 << 20,
-                "latent: texels along the longer side of the finest level; what is finer is left to "
-                "refinement, which finds it as well from any start; 0: the photographs'");
+  set->AddRange(
+      "finest-size", &options->finest_size, 0, 1 << 20,
+      "latent: texels along the longer side of the finest level; what is finer is left to "
+      "refinement, which finds it as well from any start; 0: the photographs'");
   set->AddRange("learning-rate", &options->learning_rate, 0, 1,
                 "Adam's rate at the start of a level; 0: the method's own");
   set->AddRange(
@@ -171,7 +186,7 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
   set->Add("weights", &options->weights, "the auto-encoder's weights (default: those shipped)");
   set->Add("estimator", &options->estimator, "the estimator's weights (default: those shipped)");
   set->Add("views", &options->views, "views to use, by name or photo (default: all)");
-  set->Add("exclude", &options->exclude, "views to keep back, by name or photo");
+  set->Add("exclude", &options->exclude, "views to hold out, by name or photo");
 }
 
 std::vector<fs::path> FitInputs(const FitStageOptions& options) {
@@ -197,7 +212,7 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
     throw UserError("fit: " + wrong);
 
   const auto began = std::chrono::steady_clock::now();
-  const SvbrdfMaps start = Start(options, photographs, threads);
+  const SvbrdfMaps start = InitialMaps(options, fit_options, photographs, threads);
   FitStageResult result;
   {
     std::unique_ptr<Progress> bar;

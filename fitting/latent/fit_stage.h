@@ -11,7 +11,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kFitVersion = 5;
+inline constexpr int kFitVersion = 6;
 
 struct FitStageOptions {
   // latent: in the learned space; classic: texel by texel; start: no fitting, the start as it is
@@ -34,7 +34,7 @@ struct FitStageOptions {
   std::filesystem::path weights;     // of the auto-encoder; empty: the shipped ones
   std::filesystem::path estimator;   // weights of the estimator; empty: the shipped ones
   std::vector<std::string> views;    // names of those to use; empty: all
-  std::vector<std::string> exclude;  // names of those kept back
+  std::vector<std::string> exclude;  // names of those held out
 };
 
 void AddFitOptions(OptionSet* set, FitStageOptions* options);

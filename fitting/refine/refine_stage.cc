@@ -197,7 +197,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");
   set->Add("views", &options->views, "views to use, by name or photo (default: those of fit)");
-  set->Add("exclude", &options->exclude, "views to keep back, by name or photo");
+  set->Add("exclude", &options->exclude, "views to hold out, by name or photo");
   set->Add("from", &options->from, "maps to start from, an svbrdf.exr (default: the fit's)");
 }
 

@@ -25,7 +25,7 @@ struct RefineStageOptions {
   double exposure_spread = 0.1;
   double light_spread = 0.02;
   std::vector<std::string> views;    // names of those to use; empty: those that fit used
-  std::vector<std::string> exclude;  // names of those kept back
+  std::vector<std::string> exclude;  // names of those held out
   std::filesystem::path from;        // maps to start from (svbrdf.exr); empty: the result of fit
 };
 

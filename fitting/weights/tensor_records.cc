@@ -61,7 +61,10 @@ void CheckMetadata(const std::filesystem::path& path, const TensorFile& file,
 
 std::string ChannelText(const std::vector<int>& channels) {
   std::string text;
-  for (const int c : channels) text += (text.empty() ? "" : ",") + std::to_string(c);
+  for (const int c : channels) {
+    if (!text.empty()) text += ',';
+    text += std::to_string(c);
+  }
   return text;
 }
 
