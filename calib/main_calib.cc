@@ -9,6 +9,7 @@
 #include "calib/capture/guide_capture.h"
 #include "calib/capture/pose_source.h"
 #include "pipeline/contract/capture.h"
+#include "pipeline/contract/cost_model.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/program.h"
 
@@ -79,6 +80,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOpti
                {"manifest", stage.manifest_file().string()}};
   std::string text = stage.UpToDateText(), brief = "up to date";
   if (!stage.UpToDate()) {
+    RequireMemoryForStage("calib", capture, common.threads);
     const CalibSummary summary = CalibrateCapture(capture, *options, common, &stage);
     json["metrics"] = MetricsOf(summary);
     text = TextOf(summary);

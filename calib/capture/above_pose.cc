@@ -22,8 +22,8 @@ void RequireInPicture(const Capture& capture, double width_mm, double height_mm)
   const auto& size = capture.sample_size_mm;
   if (size[0] <= width_mm && size[1] <= height_mm) return;
   throw UserError(capture.file, "sample.size_mm", fmt::format("{} x {} mm", size[0], size[1]),
-                  fmt::format("the photograph shows {:.4g} x {:.4g} mm: lower it, or mend "
-                              "picture_width_mm in [poses]",
+                  fmt::format("the photograph shows {:.4g} x {:.4g} mm: reduce size_mm, or "
+                              "correct picture_width_mm in [poses]",
                               width_mm, height_mm));
 }
 
@@ -46,8 +46,9 @@ void PoseFromAbove(const Capture& capture, const CalibOptions& options, CalibSum
                                : capture.poses.picture_width_mm * focal_px / photo.width_px;
   RequireInPicture(capture, height_mm * photo.width_px / focal_px,
                    height_mm * photo.height_px / focal_px);
-  if (!FocalTold(summary->photos, group)) {
-    spdlog::warn("{} does not tell its focal length; that of a phone's main camera is taken",
+  const bool reported = ReportedFocal_px(summary->photos, group) > 0;
+  if (!reported) {
+    spdlog::warn("{}: EXIF reports no focal length; that of a phone's main camera is assumed",
                  photo.name);
   }
   CameraEstimate estimate;
@@ -67,7 +68,7 @@ void PoseFromAbove(const Capture& capture, const CalibOptions& options, CalibSum
   summary->poses = {{"source", "above"},
                     {"height_mm", height_mm},
                     {"picture_width_mm", height_mm * photo.width_px / focal_px},
-                    {"focal_length_told", FocalTold(summary->photos, group)}};
+                    {"focal_length_from_exif", reported}};
 }
 
 }  // namespace glint

@@ -5,20 +5,16 @@
 namespace glint {
 namespace {
 
-constexpr double kPhoneFocal_mm = 26;     // 35 mm equivalent
-constexpr double kFullFrame_mm = 43.267;  // diagonal
+constexpr double kPhoneFocal_mm = 26;  // 35 mm equivalent
 
 }  // namespace
 
-bool FocalTold(const std::vector<DetectedPhoto>& photos, const CameraGroup& group) {
-  return photos[group.photos.front()].focal_length_35mm > 0;
-}
-
 Camera AssumedCamera(const std::vector<DetectedPhoto>& photos, const CameraGroup& group,
                      CameraModel model) {
-  const double focal_mm =
-      FocalTold(photos, group) ? photos[group.photos.front()].focal_length_35mm : kPhoneFocal_mm;
-  const double focal_px = focal_mm / kFullFrame_mm * std::hypot(group.width_px, group.height_px);
+  const double reported_px = ReportedFocal_px(photos, group);
+  const double focal_px = reported_px > 0 ? reported_px
+                                          : kPhoneFocal_mm / kFilmDiagonal_mm *
+                                                std::hypot(group.width_px, group.height_px);
   Camera camera{model, group.width_px, group.height_px, {}};
   for (const std::string& name : CameraParameterNames(model)) {
     const double value = name[0] == 'f' ? focal_px

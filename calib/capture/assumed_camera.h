@@ -1,4 +1,4 @@
-// Intrinsics where photographs do not tell them.
+// Intrinsics where photographs do not determine them.
 #pragma once
 
 #include "calib/camera/camera_model.h"
@@ -7,12 +7,9 @@
 namespace glint {
 
 // A camera without distortion for the group's stored pictures, its principal point in the middle;
-// the focal length is EXIF's 35 mm equivalent of the group's first photograph or, without one,
-// 26 mm: phones' main cameras have 23 to 28.
+// the focal length is the one reported by EXIF (ReportedFocal_px) or, without one, a 35 mm
+// equivalent of 26 mm: phones' main cameras have 23 to 28.
 Camera AssumedCamera(const std::vector<DetectedPhoto>& photos, const CameraGroup& group,
                      CameraModel model);
-
-// Whether EXIF tells the focal length.
-bool FocalTold(const std::vector<DetectedPhoto>& photos, const CameraGroup& group);
 
 }  // namespace glint

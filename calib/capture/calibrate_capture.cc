@@ -282,7 +282,7 @@ void SolveWithAssumedCameras(const Capture& capture, const CalibOptions& options
 
 namespace {
 
-// One photograph seldom tells its focal length: EXIF then does, or what phones have.
+// One photograph seldom determines the focal length: it then comes from EXIF, or is that of phones.
 void SolveOnePhotograph(const Capture& capture, const CalibOptions& options,
                         CalibSummary* summary) {
   try {
@@ -290,10 +290,11 @@ void SolveOnePhotograph(const Capture& capture, const CalibOptions& options,
   } catch (const Error& error) {
     const CameraGroup& group = summary->groups.groups[0];
     spdlog::warn(
-        "one photograph does not tell its focal length; {} is taken, which may be off by some "
-        "percent, and distances with it. Two more, tilted by 20 to 40 degrees, mend that",
-        FocalTold(summary->photos, group) ? "EXIF's 35 mm equivalent"
-                                          : "that of a phone's main camera (26 mm equivalent)");
+        "one photograph does not determine the focal length; {} is used, which may be off by some "
+        "percent, and distances with it. Take two more, tilted by 20 to 40 degrees",
+        ReportedFocal_px(summary->photos, group) > 0
+            ? "EXIF's 35 mm equivalent"
+            : "that of a phone's main camera (26 mm equivalent)");
     spdlog::debug("{}", error.what());
     SolveWithAssumedCameras(capture, options, summary);
   }
@@ -307,8 +308,8 @@ CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& option
   const PoseSource source = PoseSourceOf(options);
   if (source == PoseSource::kBoard) {
     summary = DetectCapture(capture, options, common.threads);
-    const bool told = !options.fix_intrinsics.empty() || !options.library.empty();
-    if (summary.photos.size() == 1 && !told) {
+    const bool given = !options.fix_intrinsics.empty() || !options.library.empty();
+    if (summary.photos.size() == 1 && !given) {
       SolveOnePhotograph(capture, options, &summary);
     } else {
       SolveCapture(capture, options, {}, &summary);

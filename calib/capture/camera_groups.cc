@@ -32,20 +32,20 @@ std::string Size(const CameraGroup& group) {
 // What the strays of a group have and the others have not.
 std::string StrayReason(const std::vector<DetectedPhoto>& photos, const CameraGroup& group,
                         const CameraGroup& largest) {
-  const std::string mend =
+  const std::string remedy =
       "; a screenshot, a crop or another camera? To use it, take at least three such photographs "
       "or give --cameras each";
   if (group.width_px != largest.width_px || group.height_px != largest.height_px) {
     return fmt::format("it has {}, while {} other photographs have {}", Size(group),
                        largest.photos.size(), Size(largest)) +
-           mend;
+           remedy;
   }
   const DetectedPhoto& photo = photos[group.photos[0]];
   const DetectedPhoto& other = photos[largest.photos[0]];
   return fmt::format("EXIF says '{}' at {} mm, while {} other photographs have '{}' at {} mm",
                      photo.camera_model, photo.focal_length_35mm, largest.photos.size(),
                      other.camera_model, other.focal_length_35mm) +
-         mend;
+         remedy;
 }
 
 }  // namespace
@@ -99,8 +99,7 @@ void LeaveOutStrays(const CameraGroups& groups, std::vector<DetectedPhoto>* phot
   }
 }
 
-double ToldFocal_px(const std::vector<DetectedPhoto>& photos, const CameraGroup& group) {
-  constexpr double kFilmDiagonal_mm = 43.2666;  // 36 × 24
+double ReportedFocal_px(const std::vector<DetectedPhoto>& photos, const CameraGroup& group) {
   for (const size_t index : group.photos) {
     const DetectedPhoto& photo = photos[index];
     const ExifFacts& exif = photo.measures.file.exif;
@@ -122,7 +121,7 @@ BundleProblem MakeProblem(const std::vector<DetectedPhoto>& photos, const Camera
   BundleProblem problem;
   for (const CameraGroup& group : groups.groups) {
     problem.cameras.push_back(
-        {group.width_px, group.height_px, std::nullopt, ToldFocal_px(photos, group)});
+        {group.width_px, group.height_px, std::nullopt, ReportedFocal_px(photos, group)});
   }
   for (size_t i = 0; i < photos.size(); ++i) {
     if (photos[i].detection.corners.empty()) continue;

@@ -33,9 +33,11 @@ CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::
 // are mistakes, not cameras: their corners are taken from them, and detection.problem says why.
 void LeaveOutStrays(const CameraGroups& groups, std::vector<DetectedPhoto>* photos);
 
-// Focal length in pixels by EXIF's 35 mm equivalent, which is about the diagonal (CIPA DCG-001); 0:
-// no photograph of the group tells it, or they were cropped or zoomed.
-double ToldFocal_px(const std::vector<DetectedPhoto>& photos, const CameraGroup& group);
+inline constexpr double kFilmDiagonal_mm = 43.2666;  // 36 × 24
+
+// Focal length in pixels reported by EXIF: its 35 mm equivalent, which is about the diagonal (CIPA
+// DCG-001). 0: no photograph of the group reports one, or they were cropped or zoomed.
+double ReportedFocal_px(const std::vector<DetectedPhoto>& photos, const CameraGroup& group);
 
 // The bundle adjustment of all photographs with corners, in stored pictures. `photo_index` returns
 // which detected photograph each of its photos is.

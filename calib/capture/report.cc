@@ -157,8 +157,9 @@ std::string TextOf(const CalibSummary& summary) {
 
 std::string BriefTextOf(const CalibSummary& summary) {
   const BundleResult& bundle = summary.bundle;
-  std::string text = fmt::format("{} photographs, reprojection error {:.3g} px",
-                                 summary.photos.size(), bundle.rms_px);
+  std::string text = fmt::format(
+      "{} of {} photographs, reprojection error {:.3g} px", summary.calibration.photos.size(),
+      summary.calibration.photos.size() + summary.rejected.size(), bundle.rms_px);
   for (const RejectedPhoto& photo : summary.rejected) {
     text += fmt::format("\n  left out: {}: {}", photo.name, photo.reason);
   }

@@ -50,8 +50,7 @@ void DrawScale(double highlight_deg, int top, cv::Mat* canvas) {
     Write(canvas, x - 6, top + 36, std::to_string(angle));
   }
   Write(canvas, left, top + 54,
-        fmt::format("degrees from the highlight (seen: left of {:.0f}); grey: no photo",
-                    highlight_deg));
+        fmt::format("degrees (below {:.0f}: highlight seen); grey: no photograph", highlight_deg));
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ std::string Verdict::Summary() const {
     high = std::max(high, view.camera.tilt_deg);
   }
   std::string text = fmt::format(
-      "{} photograph{}, {} within {:.0f}° of the top, tilts {:.0f} to {:.0f}°; a highlight on "
+      "{} photograph{}, {} within {:.0f}° of vertical, tilts {:.0f} to {:.0f}°; a highlight on "
       "{:.0f} % of the sample",
       views.size(), views.size() == 1 ? "" : "s", top_views, limits.top_deg, low, high,
       100 * highlight_share);

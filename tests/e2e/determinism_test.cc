@@ -125,7 +125,7 @@ TEST_F(DeterminismTest, KeepingAPhotographBackIsRecordedAndUndone) {
   EXPECT_THAT(RunJson({"--exclude", photo}).computed,
               ElementsAre("fit", "refine", "export", "report"));
   const Json report = Json::parse(ReadAll(capture() / "glint/report/manifest.json"));
-  EXPECT_EQ(report["metrics"]["kept_back"]["photographs"], 1);
+  EXPECT_EQ(report["metrics"]["held_out"]["photographs"], 1);
   RunJson();
   EXPECT_EQ(Differences(Results(finished()), Results(capture())), "");
 }

@@ -126,7 +126,7 @@ TEST_F(Guidance, JudgesOnePhotographThatDoesNotTellItsFocalLength) {
   LeaveOut({"near_top", "near_left", "near_right", "side0", "side1", "side2"});
   const test::Outcome outcome = Calib({});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("one photograph does not tell its focal length"));
+  EXPECT_THAT(outcome.err, HasSubstr("one photograph does not determine the focal length"));
   const auto advice = Checked();
   EXPECT_THAT(advice.at("focal"), HasSubstr("cannot be told"));
   EXPECT_THAT(advice.at("tilted"), HasSubstr("look straight down"));

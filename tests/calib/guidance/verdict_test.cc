@@ -43,7 +43,7 @@ TEST(Verdict, NothingIsMissingInAGoodCapture) {
   EXPECT_EQ(verdict.advice.size(), 0u) << TextOf(verdict);
   EXPECT_EQ(verdict.Word(), "good");
   EXPECT_THAT(verdict.Summary(),
-              HasSubstr("12 photographs, 6 within 10° of the top, tilts 0 to 30°"));
+              HasSubstr("12 photographs, 6 within 10° of vertical, tilts 0 to 30°"));
 }
 
 TEST(Verdict, TellsThatTheTopViewIsMissing) {

@@ -137,7 +137,7 @@ TEST_F(FittedMapsTest, EveryViewIsLitByTheFlashThatWasFound) {
   EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"flash_offset_mm", {1, 2}}})), UserError);
 }
 
-// The room lights views that were kept back, too.
+// The room lights held-out views, too.
 TEST_F(FittedMapsTest, EveryViewIsLitByTheRoomThatWasFound) {
   RoomLight room;
   room.radiance_rgb = {{0.2, 0.1, 0.1}, {0, 0, 0}, {0.1, 0, 0}, {0, 0, 0}};
