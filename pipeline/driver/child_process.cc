@@ -36,11 +36,21 @@ EnvironmentError CannotStart(const std::string& program, int error) {
 // any other load on the machine that made fitting six times slower (docs/experiments.md).
 void LetOpenMpWaitPassively() { ::setenv("OMP_WAIT_POLICY", "passive", 0); }
 
+// setenv allocates, which is safe between fork and exec in a program without other threads, and in
+// others too where fork keeps the allocator whole, as glibc's does.
+void SayOwnNumber(const std::string& variable) {
+  if (variable.empty()) return;
+  char number[16];
+  std::snprintf(number, sizeof(number), "%d", static_cast<int>(::getpid()));
+  ::setenv(variable.c_str(), number, 1);
+}
+
 // In the child, between fork and exec: only calls that are safe there.
 [[noreturn]] void BecomeChild(const ChildProcess& child, std::vector<char*>* arguments,
                               int stdout_descriptor, int error_descriptor, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(kCannotStart);  // the parent died before the line above
+  SayOwnNumber(child.number_variable);
   if (stdout_descriptor >= 0) ::dup2(stdout_descriptor, STDOUT_FILENO);
   if (child.quiet_stderr) {
     const int nowhere = ::open("/dev/null", O_WRONLY);
@@ -116,6 +126,12 @@ int RunChild(const ChildProcess& child) {
   const int code = Wait(pid);
   if (failed) throw CannotStart(child.arguments[0], error);
   return code;
+}
+
+void DieWithParent(const std::string& number_variable) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const char* number = std::getenv(number_variable.c_str());
+  if (number != nullptr && ::getppid() != std::atoi(number)) ::raise(SIGKILL);
 }
 
 void ReplaceProcess(const std::vector<std::string>& arguments) {

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -84,7 +82,7 @@ int RunEdge(const std::vector<std::string>& words) {
     return kExitUser;
   }
   // Ninja dies with `glint run`, this process with Ninja, the program with this process.
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  DieWithParent(kRunNinjaVariable);
   ChildProcess child;
   child.arguments = {words[1], Variable(kRunCaptureVariable, ".")};
   child.arguments.insert(child.arguments.end(), words.begin() + 2, words.end());

@@ -9,6 +9,8 @@
 //   GLINT_RUN_ARGUMENTS  further arguments, one a line (threads, log level)
 //   GLINT_RUN_OUTCOMES   number of the descriptor to note outcomes on
 //   GLINT_RUN_PLAN       when the run began and how long its stages will take, for progress bars
+//   GLINT_RUN_NINJA      Ninja's process number; where this process' parent is another, Ninja was
+//                        killed before this process began, which then does nothing
 //   GLINT_RUN_STDOUT     number of the descriptor for the program's stdout: Ninja's own has its
 //   remarks
 // Without them the program runs on the current folder and nothing is noted.
@@ -26,6 +28,7 @@ inline constexpr char kRunCaptureVariable[] = "GLINT_RUN_CAPTURE";
 inline constexpr char kRunArgumentsVariable[] = "GLINT_RUN_ARGUMENTS";
 inline constexpr char kRunOutcomesVariable[] = "GLINT_RUN_OUTCOMES";
 inline constexpr char kRunPlanVariable[] = "GLINT_RUN_PLAN";
+inline constexpr char kRunNinjaVariable[] = "GLINT_RUN_NINJA";
 inline constexpr char kRunStdoutVariable[] = "GLINT_RUN_STDOUT";
 
 struct EdgeOutcome {

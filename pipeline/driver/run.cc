@@ -1,8 +1,10 @@
 #include "pipeline/driver/run.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -11,13 +13,15 @@
 #include <set>
 #include <thread>
 
+#include "pipeline/contract/cost_model.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
 #include "pipeline/contract/hash_cache.h"
 #include "pipeline/contract/manifest.h"
+#include "pipeline/contract/photo_name.h"
 #include "pipeline/contract/program.h"
+#include "pipeline/contract/run_progress.h"
 #include "pipeline/driver/child_process.h"
-#include "pipeline/driver/cost_model.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/programs.h"
 
@@ -165,8 +169,7 @@ std::vector<NinjaEdge> Edges(const Capture& capture, const std::vector<StageStep
 RunPlan PlanOf(const Capture& capture, const std::vector<NinjaEdge>& edges) {
   const CaptureSize size = SizeOf(capture);
   RunPlan plan;
-  plan.began_s =
-      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  plan.began_s = SecondsSince1970();
   std::set<std::string> running;
   for (const NinjaEdge& edge : edges) {
     const StageStep& step = edge.step;
@@ -209,6 +212,7 @@ ChildProcess NinjaProcess(const fs::path& ninja, const Capture& capture, const R
   for (const StageStep& step : steps) child.arguments.push_back(step.manifest);
   std::string more;
   if (options.threads > 0) more += "--threads\n" + std::to_string(options.threads) + "\n";
+  if (options.memory_gb > 0) more += fmt::format("--memory\n{}\n", options.memory_gb);
   if (options.log_level != "info") more += "--log-level\n" + options.log_level + "\n";
   if (options.force) more += "--force\n";
   child.environment = {{kRunFolderVariable, fs::current_path().string()},
@@ -219,6 +223,7 @@ ChildProcess NinjaProcess(const fs::path& ninja, const Capture& capture, const R
                        {kRunStdoutVariable, std::to_string(results)}};
   if (!options.verbose) child.environment[kOneLineVariable] = "1";
   child.kept_descriptors = {outcomes, results};
+  child.number_variable = kRunNinjaVariable;
   // On stdout Ninja makes remarks, and repeats what a failing stage has said; errors of its own go
   // to stderr.
   child.on_line = [&options](const std::string& line) {
@@ -255,13 +260,13 @@ ChildProcess NinjaProcess(const fs::path& ninja, const Capture& capture, const R
 // by their number, or by their photograph; an imported set's names are read by the first stage.)
 void RequireKnownViews(const Capture& capture, const std::vector<std::string>& names) {
   if (capture.imported()) return;
-  for (const std::string& name : names) {
-    bool known = name.starts_with("view_");
-    for (const std::string& photo : capture.photos) {
-      const fs::path path(photo);
-      known = known || photo == name || path.filename() == name || path.stem() == name;
-    }
-    if (known) continue;
+  const auto known = [&](const std::string& name) {
+    return name.starts_with("view_") ||
+           std::any_of(capture.photos.begin(), capture.photos.end(),
+                       [&](const std::string& photo) { return NamesPhoto(name, photo); });
+  };
+  for (const std::string& name : RejoinedNames(names, known)) {
+    if (known(name)) continue;
     std::string list;
     for (const std::string& photo : capture.photos) list += (list.empty() ? "" : ", ") + photo;
     throw UserError("--exclude: found no photograph named '" + name + "'; there are: " + list);
@@ -317,12 +322,16 @@ RunSummary RunCapture(const RunOptions& options) {
   const auto lock = LockRun(capture.work());
   RemoveLeftovers(capture.work());
   const std::vector<NinjaEdge> edges = Edges(capture, steps, options.force);
+  const RunPlan plan = PlanOf(capture, edges);
+  for (const auto& [stage, seconds] : plan.stages) {
+    RequireMemoryForStage(stage, capture, std::max(1, options.threads));
+  }
   WriteFileAtomically(capture.work() / "build.ninja",
                       NinjaText(edges, RequireGlintProgram("glint"), options.choices));
   const OutcomeFile outcomes;
   const ResultDescriptor results(options.quiet_stdout);
-  ChildProcess child = NinjaProcess(ninja, capture, options, steps, PlanOf(capture, edges),
-                                    outcomes.descriptor(), results.get());
+  ChildProcess child =
+      NinjaProcess(ninja, capture, options, steps, plan, outcomes.descriptor(), results.get());
   child.kept_descriptors.push_back(lock->descriptor());
   const int code = RunChild(child);
   RunSummary summary;

@@ -20,6 +20,7 @@ struct RunOptions {
   RunChoices choices;
   // Handed on to the stages; never changes a result.
   int threads = 0;
+  double memory_gb = 0;  // 0: as each program decides (memory_limit.h)
   std::string log_level = "info";
   bool quiet_stdout = false;  // stages' results are not shown (--json)
 };

@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <chrono>
+#include <csignal>
 #include <thread>
 
 #include "pipeline/contract/image.h"
@@ -15,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::Outcome;
 using test::RunProgram;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -30,8 +34,8 @@ class RunTest : public testing::Test {
   RunTest() {
     const fs::path bin = folder_.path() / "bin";
     fs::create_directory(bin);
-    for (const char* name :
-         {"glint", "glint-run", "glint-status", "glint-init", "glint-verify", "glint-view"}) {
+    for (const char* name : {"glint", "glint-run", "glint-status", "glint-init", "glint-verify",
+                             "glint-view", "glint-estimate"}) {
       fs::copy_file(fs::path(GLINT_BIN_DIR) / name, bin / name);
     }
     for (const char* stage : {"calib", "rectify", "fit", "refine", "tile", "export", "report"}) {
@@ -293,7 +297,7 @@ TEST_F(RunTest, FromWithoutEarlierResultsSaysSo) {
   EXPECT_FALSE(fs::exists(capture() / "glint"));
 }
 
-TEST_F(RunTest, PhotographsKeptBackReachFitAndRefineOnly) {
+TEST_F(RunTest, HeldOutPhotographsReachFitAndRefineOnly) {
   RunJson();
   EXPECT_THAT(RunJson({"--exclude", "a.jpg"}).computed,
               ElementsAre("fit", "refine", "export", "report"));
@@ -435,7 +439,7 @@ TEST_F(RunTest, ThreadsNeverMakeAResultStale) {
 TEST_F(RunTest, GlintListsAndSuggestsVerbs) {
   const Outcome help = Glint({"--help"});
   EXPECT_EQ(help.code, 0);
-  EXPECT_THAT(help.out, HasSubstr("  run       run every stage that is not up to date\n"));
+  EXPECT_THAT(help.out, HasSubstr("  run       run every stage that is out of date\n"));
   const Outcome typo = Glint({"ran"});
   EXPECT_EQ(typo.code, 2);
   EXPECT_THAT(typo.err, HasSubstr("found the unknown verb 'ran'; did you mean: glint run"));
@@ -529,11 +533,61 @@ TEST_F(RunTest, InitRefusesASampleLargerThanTheWindow) {
   EXPECT_THAT(wrong.err, HasSubstr("'100xabc' is no number"));
 }
 
+TEST_F(RunTest, APhotographWithACommaInItsNameCanBeExcluded) {
+  test::WriteAll(capture() / "photos" / "a,b.jpg", "x");
+  EXPECT_THAT(RunJson({"--exclude", "a,b.jpg"}).computed, Contains("fit"));
+  const Outcome outcome = Glint({"run", capture().string(), "--exclude", "a,c.jpg"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--exclude: found no photograph named 'c.jpg'"));
+}
+
 TEST_F(RunTest, AMisspeltExcludeIsAnErrorAtOnce) {
   const Outcome outcome = Glint({"run", capture().string(), "--exclude", "IMG_9999"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("--exclude: found no photograph named 'IMG_9999'"));
   EXPECT_FALSE(fs::exists(capture() / "glint/calib"));
+}
+
+TEST_F(RunTest, WhatNeedsMoreMemoryThanAllowedIsRefusedBeforeAnyStage) {
+  const Outcome outcome = Glint({"run", capture().string(), "--memory", "0.3"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("capture.toml: glint-"));
+  EXPECT_THAT(outcome.err, HasSubstr("more than the 300 MB that it may use (--memory)"));
+  EXPECT_FALSE(fs::exists(capture() / "glint/calib"));
+  EXPECT_EQ(RunJson({"--memory", "8"}).computed.size(), 6u);
+}
+
+TEST_F(RunTest, AnEstimateSumsTimeAndTakesTheLargestMemory) {
+  const Outcome outcome = Glint({"estimate", capture().string(), "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(json["photographs"], 2);
+  double seconds = 0, most = 0;
+  std::vector<std::string> stages;
+  for (const Json& stage : json["stages"]) {
+    stages.push_back(stage["stage"]);
+    seconds += stage["seconds"].get<double>();
+    most = std::max(most, stage["memory_bytes"].get<double>());
+  }
+  EXPECT_THAT(stages, ElementsAre("calib", "rectify", "fit", "refine", "export", "report"));
+  EXPECT_NEAR(json["seconds"], seconds, 1e-9);
+  EXPECT_EQ(json["memory_bytes"], most);
+  EXPECT_THAT(Glint({"estimate", capture().string()}).out, HasSubstr("\nall "));
+}
+
+// A run killed while its edge was being loaded left the edge to work on, under the run's lock.
+TEST_F(RunTest, AnEdgeWhoseNinjaWasKilledBeforeItBeganDoesNothing) {
+  const fs::path made = folder_.path() / "made";
+  const auto edge_under = [&](pid_t ninja) {
+    return RunProgram({(folder_.path() / "bin/glint").string(), "--edge", "calib", "touch"}, [&] {
+      ::setenv("GLINT_RUN_CAPTURE", made.c_str(), 1);
+      ::setenv("GLINT_RUN_NINJA", std::to_string(ninja).c_str(), 1);
+    });
+  };
+  EXPECT_EQ(edge_under(1).code, 128 + SIGKILL);
+  EXPECT_FALSE(fs::exists(made));
+  EXPECT_EQ(edge_under(::getpid()).code, 0);
+  EXPECT_TRUE(fs::exists(made));
 }
 
 TEST_F(RunTest, InitRefusesABoardThatCannotBe) {
