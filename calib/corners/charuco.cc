@@ -16,14 +16,14 @@ double FreeRadiusSquares(const Board& board) {
   return std::min(0.42, 0.92 * std::sqrt(2.0) * gap);
 }
 
-struct Found {
+struct FoundCorner {
   CornerObservation observation;
   PlanePoint point;
 };
 
 // Fits every corner that is not found yet; returns how many came new.
 int FindCorners(const GrayImage& image, const Board& board, const DetectorOptions& options,
-                const std::vector<PlanePoint>& points, std::map<int, Found>* found) {
+                const std::vector<PlanePoint>& points, std::map<int, FoundCorner>* found) {
   int added = 0;
   for (const BoardCorner& corner : BoardCorners(board)) {
     if (found->count(corner.id)) continue;
@@ -43,7 +43,7 @@ int FindCorners(const GrayImage& image, const Board& board, const DetectorOption
   return added;
 }
 
-void DropInconsistent(std::map<int, Found>* found) {
+void DropInconsistent(std::map<int, FoundCorner>* found) {
   std::vector<PlanePoint> points;
   std::vector<int> ids;
   for (const auto& [id, one] : *found) {
@@ -54,7 +54,8 @@ void DropInconsistent(std::map<int, Found>* found) {
 }
 
 // Median of seen over described size of the markers, given where the corners are; 0: unknown.
-double MarkerScale(const std::vector<MarkerMatch>& matches, const std::map<int, Found>& found) {
+double MarkerScale(const std::vector<MarkerMatch>& matches,
+                   const std::map<int, FoundCorner>& found) {
   std::vector<PlanePoint> points;
   for (const auto& [id, one] : found) points.push_back(one.point);
   std::vector<double> ratios;
@@ -133,7 +134,7 @@ BoardDetection DetectCharuco(const GrayImage& image, const Board& board,
                                     on_board, board.dictionary);
     return detection;
   }
-  std::map<int, Found> found;
+  std::map<int, FoundCorner> found;
   FindCorners(image, board, options, MatchedPoints(agreeing), &found);
   DropInconsistent(&found);
   // Corners predict their neighbours better than markers do.

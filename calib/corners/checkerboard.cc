@@ -166,27 +166,60 @@ std::map<Cell, SaddleFit> OnBoard(const Grid& grid, const Extent& extent, bool o
   return best;
 }
 
+// Corners found, and whether the square at the top left of cell (0, 0) is black.
+struct Seen {
+  Grid grid;
+  bool origin_is_black = true;
+  bool grid_found = false;  // by a detector, sharp or not
+};
+
+using FindGrid = decltype(&FindChessboardGrid);
+
+// What a detector takes for a grid is one when its corners look like corners; then with all corners
+// that can be found beside them.
+Seen SeenBy(FindGrid find, const GrayImage& image, int columns, int rows,
+            const DetectorOptions& options) {
+  Seen seen;
+  const auto accept = [&](const SeenGrid& found) {
+    seen.grid_found = true;
+    seen.grid = FitSeen(image, found, options.saddle, &seen.origin_is_black);
+    DropInconsistent(&seen.grid);
+    return seen.grid.size() >= 6 && seen.grid.size() * 10 >= found.points_px.size() * 7;
+  };
+  if (!find(image, columns, rows, options.longest_px, accept)) {
+    seen.grid.clear();
+    return seen;
+  }
+  Grow(image, options.saddle, seen.origin_is_black, 2 * std::max(columns, rows) + 4, &seen.grid);
+  DropInconsistent(&seen.grid);
+  return seen;
+}
+
+bool IsSmaller(const Grid& grid, int columns, int rows) {
+  if (grid.empty()) return true;
+  const Extent extent = ExtentOf(grid);
+  return std::max(extent.columns, extent.rows) < std::max(columns, rows) ||
+         std::min(extent.columns, extent.rows) < std::min(columns, rows);
+}
+
 }  // namespace
 
 BoardDetection DetectCheckerboard(const GrayImage& image, const Board& board,
                                   const DetectorOptions& options) {
   BoardDetection detection;
   const int columns = board.squares_x - 1, rows = board.squares_y - 1;
-  bool origin_is_black = true;
-  Grid grid;
-  // What the detector takes for a grid is one when its corners look like corners.
-  const auto accept = [&](const SeenGrid& seen) {
-    grid = FitSeen(image, seen, options.saddle, &origin_is_black);
-    DropInconsistent(&grid);
-    return grid.size() >= 6 && grid.size() * 10 >= seen.points_px.size() * 7;
-  };
-  if (!FindChessboardGrid(image, columns, rows, options.longest_px, accept)) {
-    detection.problem =
-        grid.empty() ? "no checkerboard seen" : "no part of a checkerboard sharp enough to be used";
+  Seen seen = SeenBy(FindChessboardGrid, image, columns, rows, options);
+  if (IsSmaller(seen.grid, columns, rows)) {
+    Seen second = SeenBy(FindChessboardByQuads, image, columns, rows, options);
+    second.grid_found |= seen.grid_found;
+    if (second.grid.size() >= seen.grid.size()) seen = std::move(second);
+  }
+  const Grid& grid = seen.grid;
+  if (grid.empty()) {
+    detection.problem = seen.grid_found ? "no part of a checkerboard sharp enough to be used"
+                                        : "no checkerboard seen";
     return detection;
   }
-  Grow(image, options.saddle, origin_is_black, 2 * std::max(columns, rows) + 4, &grid);
-  DropInconsistent(&grid);
   if (static_cast<int>(grid.size()) < options.min_corners) {
     detection.problem =
         fmt::format("a checkerboard, but only {} corners sharp enough to be used", grid.size());
@@ -211,7 +244,7 @@ BoardDetection DetectCheckerboard(const GrayImage& image, const Board& board,
         "unknown",
         longer, shorter, columns, rows);
   }
-  for (const auto& [cell, fit] : OnBoard(grid, extent, origin_is_black, columns, rows)) {
+  for (const auto& [cell, fit] : OnBoard(grid, extent, seen.origin_is_black, columns, rows)) {
     const auto [column, row] = cell;
     detection.corners.push_back({row * columns + column,
                                  GridPointInSample(board, column + 1, row + 1), fit.centre_px,

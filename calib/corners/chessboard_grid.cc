@@ -43,39 +43,54 @@ std::vector<cv::Rect> Parts(cv::Size size) {
   return parts;
 }
 
+// The picture as OpenCV's detectors get it.
+struct ReducedPicture {
+  int factor = 1;
+  GrayImage gray;
+  cv::Mat mat;  // of `gray`'s samples
+  ReducedPicture(const GrayImage& image, int longest_px) {
+    gray = Reduced(image, longest_px, &factor);
+    mat = cv::Mat(gray.height, gray.width, CV_8U, gray.samples.data());
+  }
+};
+
 }  // namespace
 
 bool FindChessboardGrid(const GrayImage& image, int columns, int rows, int longest_px,
-                        const std::function<bool(const SeenGrid&)>& accept) {
-  int factor = 1;
-  const GrayImage small = Reduced(image, longest_px, &factor);
-  const cv::Mat picture(small.height, small.width, CV_8U,
-                        const_cast<unsigned char*>(small.samples.data()));
-  const cv::Rect whole(0, 0, small.width, small.height);
-  const cv::Size size(columns, rows);
+                        const AcceptGrid& accept) {
+  const ReducedPicture picture(image, longest_px);
+  const cv::Rect whole({0, 0}, picture.mat.size());
   std::vector<cv::Point2f> points;
   const auto exact = [&] {
-    return cv::findChessboardCornersSB(picture, size, points, cv::CALIB_CB_NORMALIZE_IMAGE);
+    return cv::findChessboardCornersSB(picture.mat, {columns, rows}, points,
+                                       cv::CALIB_CB_NORMALIZE_IMAGE);
   };
-  if (Tried(exact) && accept(GridFrom(points, columns, rows, whole, factor))) return true;
-  for (const cv::Rect& part : Parts(picture.size())) {
+  if (Tried(exact) && accept(GridFrom(points, columns, rows, whole, picture.factor))) return true;
+  for (const cv::Rect& part : Parts(picture.mat.size())) {
     cv::Mat meta;
     const auto larger = [&] {
       return cv::findChessboardCornersSB(
-          picture(part), {3, 3}, points,
+          picture.mat(part), {3, 3}, points,
           cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_LARGER, meta);
     };
     if (!Tried(larger)) continue;
     if (static_cast<size_t>(meta.cols) * meta.rows != points.size()) continue;
-    if (accept(GridFrom(points, meta.cols, meta.rows, part, factor))) return true;
+    if (accept(GridFrom(points, meta.cols, meta.rows, part, picture.factor))) return true;
   }
-  // Slow where it fails, hence last.
+  return false;
+}
+
+bool FindChessboardByQuads(const GrayImage& image, int columns, int rows, int longest_px,
+                           const AcceptGrid& accept) {
+  const ReducedPicture picture(image, longest_px);
+  const cv::Rect whole({0, 0}, picture.mat.size());
+  std::vector<cv::Point2f> points;
   const auto quads = [&] {
     return cv::findChessboardCorners(
-        picture, size, points,
+        picture.mat, {columns, rows}, points,
         cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK);
   };
-  return Tried(quads) && accept(GridFrom(points, columns, rows, whole, factor));
+  return Tried(quads) && accept(GridFrom(points, columns, rows, whole, picture.factor));
 }
 
 }  // namespace glint::corners

@@ -15,11 +15,18 @@ struct SeenGrid {
   std::vector<Eigen::Vector2d> points_px;
 };
 
-// Looks for grids, most likely ones first, until `accept` says that one is a checkerboard: one of
-// exactly columns × rows inner corners; the largest that the detector can make out in the picture,
-// and in overlapping parts of it, where something may hide the rest of the board; at last what
-// OpenCV's older detector finds. False: none accepted.
+// Look for grids until `accept` says that one is a checkerboard; false: none accepted.
+using AcceptGrid = std::function<bool(const SeenGrid&)>;
+
+// Most likely ones first: one of exactly columns × rows inner corners; the largest that the
+// detector (Duda and Frese 2018) can make out in the picture, and in overlapping parts of it, where
+// something may hide the rest of the board.
 bool FindChessboardGrid(const GrayImage& image, int columns, int rows, int longest_px,
-                        const std::function<bool(const SeenGrid&)>& accept);
+                        const AcceptGrid& accept);
+
+// A second opinion: OpenCV's older detector, which joins black quadrangles and so follows lines
+// that a lens bends, and which finds whole boards of columns × rows inner corners only.
+bool FindChessboardByQuads(const GrayImage& image, int columns, int rows, int longest_px,
+                           const AcceptGrid& accept);
 
 }  // namespace glint::corners

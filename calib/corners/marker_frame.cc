@@ -58,15 +58,15 @@ std::string Contradiction(const Board& board, const std::vector<SeenMarker>& see
   return "";
 }
 
-struct Found {
+struct FoundMarkers {
   std::vector<CornerObservation> corners;
   std::vector<PlanePoint> points;
 };
 
-Found FitMarkers(const GrayImage& image, const Board& board, const DetectorOptions& options,
-                 const std::vector<MarkerMatch>& matches) {
+FoundMarkers FitMarkers(const GrayImage& image, const Board& board, const DetectorOptions& options,
+                        const std::vector<MarkerMatch>& matches) {
   const int cells = CellsOfMarker(board.dictionary, matches[0].id).cells;
-  Found found;
+  FoundMarkers found;
   for (const MarkerMatch& match : matches) {
     Eigen::Vector2d guess_px[4];
     for (int k = 0; k < 4; ++k) guess_px[k] = match.corners[k].image_px;
@@ -105,7 +105,7 @@ BoardDetection DetectMarkerFrame(const GrayImage& image, const Board& board,
                                           on_board, board.dictionary);
     return detection;
   }
-  const Found found = FitMarkers(image, board, options, agreeing);
+  const FoundMarkers found = FitMarkers(image, board, options, agreeing);
   auto removed = Inconsistent(found.points);
   std::sort(removed.begin(), removed.end());
   for (int i = 0; i < static_cast<int>(found.corners.size()); ++i) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "calib/corners/damped_descent.h"
@@ -12,7 +13,6 @@
 namespace glint {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 enum Parameter {
   kCx,
   kCy,
@@ -58,7 +58,7 @@ double Evaluate(const Vector& p, double radius, double x, double y, Vector* grad
   const double ux = dx / radius, uy = dy / radius;
   const double gain = p[kContrast] + p[kGainX] * ux + p[kGainY] * uy;
   if (gradient != nullptr) {
-    const double slope = 2.0 / std::sqrt(kPi) * scale;
+    const double slope = 2.0 / std::sqrt(std::numbers::pi) * scale;
     const double g1 = slope * std::exp(-d1 * d1 * scale * scale) * e2 * gain;
     const double g2 = slope * std::exp(-d2 * d2 * scale * scale) * e1 * gain;
     Vector& g = *gradient;
@@ -172,7 +172,8 @@ double WorstSector(const Window& window, const Vector& p) {
   std::array<double, 8> sum{}, count{};
   for (const Pixel& pixel : window.pixels) {
     const double angle = std::atan2(pixel.y - p[kCy], pixel.x - p[kCx]);
-    const int sector = std::clamp(static_cast<int>((angle + kPi) / (2 * kPi) * 8), 0, 7);
+    const int sector =
+        std::clamp(static_cast<int>((angle + std::numbers::pi) / (2 * std::numbers::pi) * 8), 0, 7);
     sum[sector] +=
         pixel.weight * (pixel.value - Evaluate(p, window.radius_px, pixel.x, pixel.y, nullptr));
     count[sector] += pixel.weight;
@@ -185,7 +186,7 @@ double WorstSector(const Window& window, const Vector& p) {
 }
 
 double TurnDegrees(double a, double b) {
-  return std::abs(std::remainder(a - b, 2 * kPi)) * 180.0 / kPi;
+  return std::abs(std::remainder(a - b, 2 * std::numbers::pi)) * 180.0 / std::numbers::pi;
 }
 
 }  // namespace
@@ -214,7 +215,8 @@ SaddleFit FitSaddle(const GrayImage& image, const SaddleGuess& guess,
   for (int round = 0; round < kMaxRounds; ++round) {
     window = CollectPixels(image, at, options.max_radius_px);
     // Half of the ellipse must lie in the image.
-    const double area = kPi * window.radius_px * window.radius_px * cross / (longest * longest);
+    const double area =
+        std::numbers::pi * window.radius_px * window.radius_px * cross / (longest * longest);
     if (static_cast<double>(window.pixels.size()) < std::max(16.0, 0.6 * area)) return fit;
     const int active = window.pixels.size() < 60 ? kWithoutGain : kAll;
     if (round == 0) p = Start(window, at);
