@@ -1,0 +1,119 @@
+#include "tests/fuzz/targets.h"
+
+#include <fstream>
+#include <stdexcept>
+
+#include "calib/colmap/colmap_model.h"
+#include "datasets/import/foreign_set.h"
+#include "fitting/weights/safetensors.h"
+#include "pipeline/contract/board_file.h"
+#include "pipeline/contract/calibration.h"
+#include "pipeline/contract/capture.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/hash_cache.h"
+#include "pipeline/contract/image.h"
+#include "pipeline/contract/manifest.h"
+#include "pipeline/contract/rectified_set.h"
+#include "pipeline/contract/svbrdf_file.h"
+#include "rectify/linearize/response_curve.h"
+
+namespace glint::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of rectified images as a corpus holds them.
+constexpr int kRectifiedSize = 8;
+
+fs::path Put(const fs::path& folder, const std::string& name, std::string_view bytes) {
+  const fs::path file = folder / name;
+  std::ofstream(file, std::ios::binary | std::ios::trunc)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return file;
+}
+
+FuzzTarget OfFile(const std::string& name, const std::string& file_name,
+                  std::function<void(const fs::path&)> read) {
+  return {name, [file_name, read](const fs::path& folder, std::string_view bytes) {
+            read(Put(folder, file_name, bytes));
+          }};
+}
+
+void ReadRectified(const fs::path& file) {
+  RectifiedSet set;
+  set.manifest_file = file.parent_path() / "manifest.json";
+  set.plane.width = set.plane.height = kRectifiedSize;
+  RectifiedView view;
+  view.file = file.filename();
+  ReadRectifiedImage(set, view);
+}
+
+// Stands below the contract, whose errors it does not know.
+void ReadTensors(const fs::path& file) {
+  try {
+    ReadTensorFile(file);
+  } catch (const std::runtime_error& error) {
+    throw UserError(error.what());
+  }
+}
+
+// The three files of a model one after the other, each behind a line "== NAME".
+void ReadColmap(const fs::path& folder, std::string_view bytes) {
+  for (const char* name : {"cameras", "images", "points3D"}) {
+    for (const char* extension : {".txt", ".bin"}) {
+      std::error_code none;
+      fs::remove(folder / (std::string(name) + extension), none);
+      const std::string line = std::string("== ") + name + extension + "\n";
+      const size_t begin = bytes.find(line);
+      if (begin == std::string_view::npos) continue;
+      const std::string_view rest = bytes.substr(begin + line.size());
+      Put(folder, std::string(name) + extension, rest.substr(0, rest.find("\n== ")));
+    }
+  }
+  ReadColmapModel(folder);
+}
+
+}  // namespace
+
+const std::vector<FuzzTarget>& FuzzTargets() {
+  static const std::vector<FuzzTarget> targets = {
+      {"capture_toml",
+       [](const fs::path& folder, std::string_view bytes) {
+         Put(folder, "a.jpg", "");
+         Put(folder, "capture.toml", bytes);
+         ReadCapture(folder);
+       }},
+      OfFile("board", "board.json", [](const fs::path& file) { ReadBoardFile(file); }),
+      OfFile("manifest", "manifest.json", [](const fs::path& file) { ReadManifest(file); }),
+      OfFile("calibration", "manifest.json", [](const fs::path& file) { ReadCalibration(file); }),
+      OfFile("rectified_set", "manifest.json",
+             [](const fs::path& file) { ReadRectifiedSet(file); }),
+      OfFile("rectified_image", "view.exr", ReadRectified),
+      OfFile("svbrdf", "svbrdf.exr", [](const fs::path& file) { ReadSvbrdf(file); }),
+      OfFile("photo_header", "photo.jpg", [](const fs::path& file) { PhotoSize(file); }),
+      OfFile("views", "views.json", [](const fs::path& file) { ReadViewsJson(file); }),
+      OfFile("response", "response.json", [](const fs::path& file) { ReadResponseCurve(file); }),
+      OfFile("safetensors", "weights.safetensors", ReadTensors),
+      OfFile("hash_cache", "hashes.json", [](const fs::path& file) { HashCache{file}; }),
+      {"colmap", ReadColmap},
+  };
+  return targets;
+}
+
+const FuzzTarget& FindFuzzTarget(const std::string& name) {
+  for (const FuzzTarget& target : FuzzTargets()) {
+    if (target.name == name) return target;
+  }
+  throw std::out_of_range("no such fuzz target: " + name);
+}
+
+bool Accepts(const FuzzTarget& target, const fs::path& folder, std::string_view bytes) {
+  try {
+    target.read(folder, bytes);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace glint::fuzz
