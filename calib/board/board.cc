@@ -6,15 +6,12 @@
 
 #include "calib/board/dictionary.h"
 #include "calib/board/marker_frame.h"
+#include "calib/board/wrong_field.h"
 
 namespace glint {
 namespace {
 
 constexpr int kMaxSquares = 200;  // a side; keeps memory bounded whatever a description says
-
-std::string Wrong(const std::string& field, const std::string& found, const std::string& mend) {
-  return field + ": found " + found + "; " + mend;
-}
 
 std::string CheckWindow(const Board& board) {
   const BoardWindow& w = *board.window;
@@ -22,38 +19,41 @@ std::string CheckWindow(const Board& board) {
       fmt::format("[{}, {}, {}, {}]", w.first_column, w.first_row, w.columns, w.rows);
   if (w.columns < 1 || w.rows < 1 || w.first_column < 0 || w.first_row < 0 ||
       w.first_column > board.squares_x - w.columns || w.first_row > board.squares_y - w.rows) {
-    return Wrong("window", found,
-                 fmt::format("give [first column, first row, columns, rows] inside the {} x {} "
-                             "squares of the board",
-                             board.squares_x, board.squares_y));
+    return WrongField(
+        "window", found,
+        fmt::format("give [first column, first row, columns, rows] inside the {} x {} "
+                    "squares of the board",
+                    board.squares_x, board.squares_y));
   }
   if (board.kind == BoardKind::kCheckerboard) {
-    return Wrong("window", found + " with kind \"checkerboard\"",
-                 "use kind = \"charuco\": only markers tell where on a frame a corner lies");
+    return WrongField("window", found + " with kind \"checkerboard\"",
+                      "use kind = \"charuco\": only markers tell where on a frame a corner lies");
   }
   if (BoardCorners(board).size() < 4) {
-    return Wrong("window", found, "leave at least four inner corners round the window");
+    return WrongField("window", found, "leave at least four inner corners round the window");
   }
   return "";
 }
 
 std::string CheckMarkers(const Board& board) {
   if (!(board.marker_mm > 0) || !(board.marker_mm < board.square_mm)) {
-    return Wrong("marker_mm", fmt::format("{}", board.marker_mm),
-                 fmt::format("give the side of the printed markers, above 0 and below square_mm "
-                             "({})",
-                             board.square_mm));
+    return WrongField(
+        "marker_mm", fmt::format("{}", board.marker_mm),
+        fmt::format("give the side of the printed markers, above 0 and below square_mm "
+                    "({})",
+                    board.square_mm));
   }
   if (!DictionaryNumber(board.dictionary)) {
-    return Wrong("dictionary", "\"" + board.dictionary + "\"",
-                 fmt::format("use one of {}", fmt::join(DictionaryNames(), ", ")));
+    return WrongField("dictionary", "\"" + board.dictionary + "\"",
+                      fmt::format("use one of {}", fmt::join(DictionaryNames(), ", ")));
   }
   const int markers = board.squares_x * board.squares_y / 2;
   const int size = DictionarySize(board.dictionary);
   if (markers > size) {
-    return Wrong("dictionary", fmt::format("\"{}\" with {} markers", board.dictionary, size),
-                 fmt::format("{} x {} squares need {}: use a larger dictionary or fewer squares",
-                             board.squares_x, board.squares_y, markers));
+    return WrongField(
+        "dictionary", fmt::format("\"{}\" with {} markers", board.dictionary, size),
+        fmt::format("{} x {} squares need {}: use a larger dictionary or fewer squares",
+                    board.squares_x, board.squares_y, markers));
   }
   return "";
 }
@@ -82,20 +82,20 @@ Eigen::Vector2d GridPointInSample(const Board& board, double column, double row)
 
 std::string CheckBoard(const Board& board) {
   if (!board.board_centre_in_sample_mm.allFinite()) {
-    return Wrong("centre_mm", "a value that is not finite", "give two numbers in millimetres");
+    return WrongField("centre_mm", "a value that is not finite", "give two numbers in millimetres");
   }
   if (board.kind == BoardKind::kMarkers) return CheckMarkerFrame(board);
   const bool charuco = board.kind == BoardKind::kCharuco;
   const int least = charuco ? 2 : 3;
   if (board.squares_x < least || board.squares_y < least || board.squares_x > kMaxSquares ||
       board.squares_y > kMaxSquares) {
-    return Wrong(
+    return WrongField(
         "squares", fmt::format("[{}, {}]", board.squares_x, board.squares_y),
         fmt::format("give columns and rows of squares, {} to {} each", least, kMaxSquares));
   }
   if (!(board.square_mm > 0) || !(board.square_mm < 1e5)) {
-    return Wrong("square_mm", fmt::format("{}", board.square_mm),
-                 "give the side of a printed square in millimetres");
+    return WrongField("square_mm", fmt::format("{}", board.square_mm),
+                      "give the side of a printed square in millimetres");
   }
   if (charuco) {
     const std::string wrong = CheckMarkers(board);

@@ -8,8 +8,6 @@
 namespace glint {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 double AngleToNormal_deg(const Eigen::Vector3d& v) {
   return std::atan2(std::hypot(v.x(), v.y()), v.z()) / kDegree;
 }

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@
 #include "calib/camera/rigid3.h"
 
 namespace glint {
+
+inline constexpr double kDegree = std::numbers::pi / 180;
 
 // A camera whose pose on the sample is known.
 struct PosedCamera {

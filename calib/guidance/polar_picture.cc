@@ -9,7 +9,6 @@
 namespace glint {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kWidth = 420, kHeight = 452, kCentreX = 210, kCentreY = 212, kRadius = 178;
 
 struct Disc {
@@ -68,7 +67,7 @@ std::string Star(const Eigen::Vector2d& at) {
   return "<polygon points=\"" + points + "\" fill=\"#f79009\" stroke=\"#b54708\"/>\n";
 }
 
-std::string View(const Disc& disc, const ViewFacts& view, size_t number) {
+std::string ViewMark(const Disc& disc, const ViewFacts& view, size_t number) {
   const Eigen::Vector2d camera = disc.At(view.camera), light = disc.At(view.light);
   std::string svg = fmt::format(
       "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#f79009\"/>\n",
@@ -116,7 +115,7 @@ std::string PolarPictureSvg(const Verdict& verdict) {
       kWidth, kHeight);
   svg += Rings(disc, verdict.limits);
   for (const Suggestion& one : verdict.suggestions) svg += Wanted(disc, one.direction);
-  for (size_t i = verdict.views.size(); i-- > 0;) svg += View(disc, verdict.views[i], i + 1);
+  for (size_t i = verdict.views.size(); i-- > 0;) svg += ViewMark(disc, verdict.views[i], i + 1);
   return svg + Legend(!verdict.suggestions.empty()) + "</svg>\n";
 }
 

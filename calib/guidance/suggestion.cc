@@ -9,7 +9,6 @@
 namespace glint {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kTiltStep_deg = 2.5, kLargestTilt_deg = 40, kAzimuthStep_deg = 15;
 
 double MedianDistance_mm(const std::vector<GuidancePhoto>& photos) {

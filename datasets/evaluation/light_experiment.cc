@@ -137,8 +137,8 @@ class SeedRun {
 };
 
 // Share of the cases of a quantity (all: "") within their own three σ, and how many there are.
-std::pair<double, int> Coverage(const std::vector<LightSeedResult>& seeds,
-                                const std::string& quantity) {
+std::pair<double, int> CoverageOf(const std::vector<LightSeedResult>& seeds,
+                                  const std::string& quantity) {
   int within = 0, all = 0;
   for (const LightSeedResult& seed : seeds) {
     for (const LightCase& one : seed.light.cases) {
@@ -230,12 +230,12 @@ std::string LightExperimentResult::Text() const {
       "|---|---|---|---|---|---|\n";
   for (const Quantity& quantity : kQuantities) {
     const auto [mean, largest] = MeanAndLargest(seeds, quantity.error);
-    const auto [percent, count] = Coverage(seeds, quantity.name);
+    const auto [percent, count] = CoverageOf(seeds, quantity.name);
     text +=
         fmt::format("| {} | {:.3f} | {:.3f} | {} | {:.1f} of {} | {:.2f} |\n", quantity.label, mean,
                     largest, quantity.limit, percent, count, Reduced(seeds, quantity.name));
   }
-  const auto [percent, count] = Coverage(seeds, "");
+  const auto [percent, count] = CoverageOf(seeds, "");
   text += fmt::format("\n{} captures; all cases within 3σ: {:.1f} % of {}\n", seeds.size(), percent,
                       count);
   return text + MapTable(seeds);
@@ -250,7 +250,7 @@ std::string LightExperimentResult::Csv() const {
     text += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", seed.seed,
                         light.flash_mm, light.vignetting_percent, light.exposure_percent,
                         light.ambient_percent, light.power_percent, light.residual_percent,
-                        Coverage({seed}, "").first);
+                        CoverageOf({seed}, "").first);
     text += seed.has_maps
                 ? fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g}\n", seed.board.maps.average(),
                               seed.camera.maps.average(), seed.board.render, seed.camera.render)
@@ -271,7 +271,7 @@ Json LightExperimentResult::ToJson() const {
   }
   for (const Quantity& quantity : kQuantities) {
     const auto [mean, largest] = MeanAndLargest(seeds, quantity.error);
-    const auto [percent, count] = Coverage(seeds, quantity.name);
+    const auto [percent, count] = CoverageOf(seeds, quantity.name);
     json["summary"][quantity.name] = {{"mean", mean},
                                       {"largest", largest},
                                       {"wanted", quantity.limit},
@@ -279,7 +279,7 @@ Json LightExperimentResult::ToJson() const {
                                       {"cases", count},
                                       {"rms_of_error_over_sigma", Reduced(seeds, quantity.name)}};
   }
-  json["summary"]["within_3_sigma_percent"] = Coverage(seeds, "").first;
+  json["summary"]["within_3_sigma_percent"] = CoverageOf(seeds, "").first;
   return json;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fitting/reflectance/log_radiance.h"
 #include "fitting/view_correction/deviating_view.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
@@ -14,8 +15,6 @@ namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kLogOffset = 0.01;
 
 // Channels of confidence.exr and the planes of the maps that they are deviations of.
 struct StatedPlane {

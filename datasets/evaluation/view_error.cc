@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "fitting/photographs/picture_shift.h"
+#include "fitting/reflectance/log_radiance.h"
 #include "fitting/render/render_room.h"
 #include "fitting/render/renderer.h"
 #include "fitting/view_correction/corrections_json.h"
@@ -18,8 +19,6 @@ namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kLogOffset = 0.01;
 
 std::array<double, 3> OptionalNumbers(const fs::path& file, const Json& data,
                                       const std::string& field, std::array<double, 3> absent) {

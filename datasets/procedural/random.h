@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace glint::procedural {
 
@@ -53,6 +54,11 @@ class Rng {
   // Integer in [low, high].
   int Int(int low, int high) {
     return low + static_cast<int>(Next() % static_cast<uint64_t>(high - low + 1));
+  }
+  // Standard normal, by Box and Muller.
+  double Normal() {
+    const double radius = std::sqrt(-2 * std::log(1.0 - Unit()));
+    return radius * std::cos(2 * std::numbers::pi * Unit());
   }
   bool Chance(float probability) { return Unit() < probability; }
 

@@ -14,11 +14,6 @@
 namespace glint {
 namespace {
 
-double Normal(procedural::Rng* rng) {
-  const double radius = std::sqrt(-2 * std::log(1.0 - rng->Unit()));
-  return radius * std::cos(2 * std::numbers::pi * rng->Unit());
-}
-
 std::vector<float> Rendered(const SvbrdfMaps& maps, const SamplePlane& plane, const View& view,
                             const ReflectanceConvention& convention, int threads) {
   std::vector<float> rgb(3 * maps.texels());
@@ -195,7 +190,7 @@ DrawnDiscrepancy DrawDiscrepancy(const Discrepancy& discrepancy, std::uint64_t s
   drawn.lobe = rng.Unit() < 0.5 ? LobeShape::kSecondLobe : LobeShape::kAnisotropic;
   drawn.azimuth_rad = std::numbers::pi * rng.Unit();
   for (int i = 0; i < views; ++i) {
-    drawn.exposures.push_back(std::exp(discrepancy.strength * discrepancy.exposure * Normal(&rng)));
+    drawn.exposures.push_back(std::exp(discrepancy.strength * discrepancy.exposure * rng.Normal()));
   }
   return drawn;
 }

@@ -10,8 +10,6 @@
 namespace glint {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 Vec3d Cross(const Vec3d& a, const Vec3d& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
@@ -19,11 +17,6 @@ Vec3d Cross(const Vec3d& a, const Vec3d& b) {
 double Length(const Vec3d& v) { return std::hypot(v[0], v[1], v[2]); }
 
 // Box and Muller's.
-double Normal(procedural::Rng* rng) {
-  const double radius = std::sqrt(-2 * std::log(1.0 - rng->Unit()));
-  return radius * std::cos(2 * kPi * rng->Unit());
-}
-
 double MeanOf(const Vec3d& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
 
 // Mean radiance of a white Lambertian plane under the flash.
@@ -52,7 +45,7 @@ Vec3d TurnLight(const Vec3d& light_mm, double angle_deg, double azimuth_rad) {
   const double length = Length(u);
   for (double& value : u) value /= length;
   const Vec3d v = Cross(axis, u);
-  const double angle = angle_deg * kPi / 180;
+  const double angle = angle_deg * std::numbers::pi / 180;
   Vec3d turned;
   for (size_t i = 0; i < 3; ++i) {
     const double aside = std::cos(azimuth_rad) * u[i] + std::sin(azimuth_rad) * v[i];
@@ -65,14 +58,14 @@ ViewDisturbance DrawDisturbance(const Disturbance& disturbance, std::uint64_t se
   procedural::Rng rng(procedural::Mix64(seed) ^
                       procedural::Mix64(0xd157u + static_cast<std::uint64_t>(index)));
   ViewDisturbance drawn;
-  drawn.light_azimuth_rad = 2 * kPi * rng.Unit();
+  drawn.light_azimuth_rad = 2 * std::numbers::pi * rng.Unit();
   if (disturbance.light_together && index > 0) {
     drawn.light_azimuth_rad = DrawDisturbance(disturbance, seed, 0).light_azimuth_rad;
   }
   const double deviation = disturbance.registration_texel / std::numbers::sqrt2;
   for (int corner = 0; corner < 4; ++corner) {
-    drawn.shifts.column[corner] = deviation * Normal(&rng);
-    drawn.shifts.row[corner] = deviation * Normal(&rng);
+    drawn.shifts.column[corner] = deviation * rng.Normal();
+    drawn.shifts.row[corner] = deviation * rng.Normal();
   }
   return drawn;
 }
@@ -83,7 +76,7 @@ EnvironmentLight ScaledEnvironment(const Disturbance& disturbance, const View& f
   EnvironmentLight environment = disturbance.environment.empty()
                                      ? ConstantEnvironment()
                                      : ReadEnvironment(disturbance.environment);
-  const double reflected = MeanOf(environment.PlaneIrradiance()) / kPi;
+  const double reflected = MeanOf(environment.PlaneIrradiance()) / std::numbers::pi;
   View unexposed = first;
   unexposed.exposure = 1;
   environment.Scale(disturbance.environment_percent / 100 *

@@ -11,15 +11,13 @@
 namespace glint {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // Cells of the upper hemisphere, ring by ring from the zenith.
 class Cells {
  public:
   explicit Cells(int rings) : rings_(rings) {
     first_.push_back(0);
     for (int ring = 0; ring < rings; ++ring) {
-      const double middle = (ring + 0.5) * 0.5 * kPi / rings;
+      const double middle = (ring + 0.5) * 0.5 * std::numbers::pi / rings;
       const int sectors = std::max(4, static_cast<int>(std::lround(4 * rings * std::sin(middle))));
       first_.push_back(first_.back() + static_cast<size_t>(sectors));
     }
@@ -28,9 +26,10 @@ class Cells {
   // Of the direction with polar angle in [0, π/2) and azimuth in [0, 2π).
   size_t At(double polar, double azimuth) const {
     const auto ring = static_cast<size_t>(
-        std::clamp(static_cast<int>(polar / (0.5 * kPi) * rings_), 0, rings_ - 1));
+        std::clamp(static_cast<int>(polar / (0.5 * std::numbers::pi) * rings_), 0, rings_ - 1));
     const size_t sectors = first_[ring + 1] - first_[ring];
-    const auto sector = static_cast<size_t>(azimuth / (2 * kPi) * static_cast<double>(sectors));
+    const auto sector =
+        static_cast<size_t>(azimuth / (2 * std::numbers::pi) * static_cast<double>(sectors));
     return first_[ring] + std::min(sector, sectors - 1);
   }
 
@@ -72,11 +71,12 @@ EnvironmentLight FromImage(const Image& image, int rings) {
   const Cells cells(rings);
   Moments moments(cells.count(), {Vec3d{0, 0, 0}, Vec3d{0, 0, 0}, Vec3d{0, 0, 0}});
   for (int row = 0; 2 * row < image.height; ++row) {
-    const double polar0 = kPi * row / image.height;
-    const double polar1 = std::min(0.5 * kPi, kPi * (row + 1) / image.height);
+    const double polar0 = std::numbers::pi * row / image.height;
+    const double polar1 =
+        std::min(0.5 * std::numbers::pi, std::numbers::pi * (row + 1) / image.height);
     for (int column = 0; column < image.width; ++column) {
-      const double azimuth0 = 2 * kPi * column / image.width;
-      const double azimuth1 = 2 * kPi * (column + 1) / image.width;
+      const double azimuth0 = 2 * std::numbers::pi * column / image.width;
+      const double azimuth1 = 2 * std::numbers::pi * (column + 1) / image.width;
       const Vec3d moment = PixelMoment(polar0, polar1, azimuth0, azimuth1);
       auto& cell = moments[cells.At(0.5 * (polar0 + polar1), 0.5 * (azimuth0 + azimuth1))];
       const size_t pixel = static_cast<size_t>(row) * image.width + static_cast<size_t>(column);
@@ -87,7 +87,7 @@ EnvironmentLight FromImage(const Image& image, int rings) {
     }
   }
   EnvironmentLight environment;
-  environment.cell_rad = 0.5 * kPi / rings;
+  environment.cell_rad = 0.5 * std::numbers::pi / rings;
   for (const auto& moment : moments) {
     const DirectionalLight light = LightOf(moment);
     const auto& e = light.irradiance_rgb;

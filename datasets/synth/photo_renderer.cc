@@ -7,6 +7,7 @@
 
 #include "base/parallel/parallel.h"
 #include "datasets/procedural/random.h"
+#include "datasets/synth/vec3.h"
 #include "fitting/reflectance/brdf.h"
 #include "pipeline/contract/errors.h"
 
@@ -24,8 +25,6 @@ constexpr int kEdgeGenerator = 55;
 constexpr int kFewestMapSamples = 2;  // a side, inside the sample
 constexpr int kMostMapSamples = 16;
 constexpr double kSamplesPerTexel = 2;
-
-Vec3d ToVec3d(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 // Smooth noise in [0, 1] with one random value per unit square's corner.
 double ValueNoise(double x, double y, std::uint32_t seed) {

@@ -9,6 +9,7 @@
 #include "datasets/procedural/random.h"
 #include "datasets/synth/capture_plan.h"
 #include "datasets/synth/photo_file.h"
+#include "datasets/synth/vec3.h"
 #include "fitting/render/renderer.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
@@ -24,8 +25,6 @@ namespace fs = std::filesystem;
 constexpr int kStageVersion = 1;  // of stage "rectify" as written here
 constexpr double kDirSide = 2.0;  // DIR's plane spans [-1, 1]²
 constexpr double kRadians = std::numbers::pi / 180;
-
-Vec3d ToVec3d(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 std::vector<View> DirViews(int count, std::uint64_t seed) {
   procedural::Rng rng(procedural::Mix64(seed) ^ 0xd1f2019ull);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/parallel/parallel.h"
 #include "fitting/reflectance/brdf.h"
@@ -9,7 +10,6 @@
 namespace glint {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kMinStereoViews = 4;
 constexpr double kStereoDamping = 0.02;  // of the matrix's trace
 constexpr double kMaxStereoSlope = 0.7;
@@ -51,8 +51,8 @@ bool ReadTexel(const PhotographSet& set, const Photograph& photo, const GlobalLo
     // The offset of the loss: dark texels are not trusted beyond it.
     reading->ratio[c] = (measured + 0.003) / (predicted[c] + 0.003);
     total += predicted[c];
-    highlight += predicted[c] - g.irradiance[c] * g.light[2] * lobes.diffuse[c] / kPi;
-    reading->lambert += kPi * measured / std::max(1e-12, 3.0 * g.irradiance[c]);
+    highlight += predicted[c] - g.irradiance[c] * g.light[2] * lobes.diffuse[c] / std::numbers::pi;
+    reading->lambert += std::numbers::pi * measured / std::max(1e-12, 3.0 * g.irradiance[c]);
     reading->light[c] = g.light[c];
   }
   reading->highlight_share = std::clamp(highlight / std::max(1e-12, total), 0.0, 1.0);

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "fitting/reflectance/brdf.h"
 
 namespace glint {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Angles between normal and half vector, degrees: fine where a polished sample's highlight lies.
 constexpr std::array<double, 24> kBinEdges{0,  0.4, 0.8, 1.3,  2,  3,  4,  5.5, 7,  9,  11, 13.5,
                                            16, 19,  22,  25.5, 29, 33, 37, 42,  47, 53, 60, 70};
@@ -20,8 +20,8 @@ constexpr size_t kMaxSamples = 100'000;
 constexpr double kClipped = 0.99;
 constexpr double kOffset = 0.004;  // of the logarithms, in units of reflectance
 
-constexpr std::array<double, 15> kRoughness{0.06, 0.09, 0.13, 0.18, 0.23, 0.28, 0.34, 0.4,
-                                            0.46, 0.52, 0.59, 0.66, 0.74, 0.83, 0.93};
+constexpr std::array<double, 15> kTriedRoughnesses{0.06, 0.09, 0.13, 0.18, 0.23, 0.28, 0.34, 0.4,
+                                                   0.46, 0.52, 0.59, 0.66, 0.74, 0.83, 0.93};
 constexpr std::array<double, 12> kSpecular{0.025, 0.035, 0.045, 0.06, 0.08, 0.12,
                                            0.18,  0.26,  0.37,  0.5,  0.68, 0.9};
 // Glints: near the mirror direction the brightest texels stand out more than elsewhere.
@@ -40,7 +40,7 @@ struct Bin {
   double degrees = 0;  // its lower edge
   std::vector<double> reflectance[3];
   size_t clipped[3] = {0, 0, 0};
-  std::array<double, kRoughness.size()> factor{};  // sums of D·G/(4·NoL·NoV), flat
+  std::array<double, kTriedRoughnesses.size()> factor{};  // sums of D·G/(4·NoL·NoV), flat
   double fresnel = 0;
 };
 
@@ -63,7 +63,7 @@ void Collect(const PhotographSet& set, const Photograph& photo, size_t stride,
         photo.view, set.convention.falloff, set.plane.x_mm(column), set.plane.y_mm(row));
     const double n_dot_l = g.light[2];
     if (n_dot_l < 0.1 || g.camera[2] < 0.1) continue;
-    const double degrees = std::acos(std::min(1.0, g.half[2])) * 180.0 / kPi;
+    const double degrees = std::acos(std::min(1.0, g.half[2])) * 180.0 / std::numbers::pi;
     const auto edge = std::upper_bound(kBinEdges.begin(), kBinEdges.end(), degrees);
     if (edge == kBinEdges.end()) continue;
     Bin& bin = (*bins)[static_cast<size_t>(edge - kBinEdges.begin()) - 1];
@@ -72,8 +72,8 @@ void Collect(const PhotographSet& set, const Photograph& photo, size_t stride,
       bin.reflectance[c].push_back(radiance / std::max(1e-12, g.irradiance[c] * n_dot_l));
       if (photo.ldr && radiance >= kClipped) ++bin.clipped[c];
     }
-    for (size_t r = 0; r < kRoughness.size(); ++r) {
-      flat.roughness = kRoughness[r];
+    for (size_t r = 0; r < kTriedRoughnesses.size(); ++r) {
+      flat.roughness = kTriedRoughnesses[r];
       bin.factor[r] += SpecularFactor(flat, g);
     }
     bin.fresnel += g.fresnel;
@@ -121,7 +121,7 @@ double FitDiffuse(const std::vector<Sample>& samples, const std::vector<double>&
     sum += w * (samples[b].reflectance - highlight[b]);
     weight += w;
   }
-  return weight > 0 ? std::clamp(sum / weight, 0.0, 1.0 / kPi) : 0.0;
+  return weight > 0 ? std::clamp(sum / weight, 0.0, 1.0 / std::numbers::pi) : 0.0;
 }
 
 double LogCost(const std::vector<Sample>& samples, const std::vector<double>& highlight,
@@ -154,7 +154,7 @@ ChannelFit FitChannel(const std::vector<Sample>& samples, const std::vector<doub
     const double diffuse = FitDiffuse(samples, highlight);
     const double cost = LogCost(samples, highlight, diffuse) +
                         kSpecularPenalty * std::pow(std::log(specular / kTypicalSpecular), 2);
-    if (cost < best.cost) best = {diffuse * kPi, specular, cost};
+    if (cost < best.cost) best = {diffuse * std::numbers::pi, specular, cost};
   }
   return best;
 }
@@ -183,13 +183,13 @@ GlobalLobes FitGlobalLobes(const PhotographSet& set) {
   }
   const double most = ShowsGlints(bins) ? kMostPolished : 1.0;
   double best_cost = std::numeric_limits<double>::infinity();
-  for (size_t r = 0; r < kRoughness.size() && kRoughness[r] <= most; ++r) {
+  for (size_t r = 0; r < kTriedRoughnesses.size() && kTriedRoughnesses[r] <= most; ++r) {
     std::vector<double> factor;
     for (const Bin& bin : bins) {
       factor.push_back(bin.factor[r] / static_cast<double>(bin.reflectance[0].size()));
     }
     GlobalLobes lobes;
-    lobes.roughness = kRoughness[r];
+    lobes.roughness = kTriedRoughnesses[r];
     double cost = kRoughnessPenalty * std::pow(lobes.roughness - kTypicalRoughness, 2);
     for (int c = 0; c < 3; ++c) {
       const ChannelFit fit = FitChannel(samples[c], factor, fresnel);

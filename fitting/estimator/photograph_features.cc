@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "fitting/reflectance/brdf.h"
 
 namespace glint {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr std::array<double, kProfileBins> kBinEndDegrees{1.5, 3,  5,  7.5, 10.5, 14,
                                                           18,  23, 29, 36,  45,   90};
 constexpr double kBrightest = 4.0;  // of π·I/(E·NoL)
 constexpr double kClipped = 0.99;
 constexpr float kMaskedBright = 0.25f;  // radiance of a texel of which any pixel may have clipped
-constexpr double kLogOffset = 0.003;
+constexpr double kFeatureOffset = 0.003;
 constexpr double kLeastCosine = 0.02;
 constexpr double kLogIrradianceRange = 3.0;
 
@@ -24,7 +24,7 @@ struct Ring {
 };
 
 size_t RingOf(double angle) {
-  const double degrees = angle * 180.0 / kPi;
+  const double degrees = angle * 180.0 / std::numbers::pi;
   const auto end = std::lower_bound(kBinEndDegrees.begin(), kBinEndDegrees.end(), degrees);
   return static_cast<size_t>(
       std::min<std::ptrdiff_t>(end - kBinEndDegrees.begin(), kProfileBins - 1));
@@ -77,18 +77,18 @@ PhotographFeatures FeaturesOf(const Photograph& photograph, const SamplePlane& p
     put(8, i, g.camera[1]);
     put(9, i, angle);
     put(10, i,
-        std::clamp(std::log(std::max(1e-9, mean_e * cosine / kPi)), -kLogIrradianceRange,
-                   kLogIrradianceRange));
+        std::clamp(std::log(std::max(1e-9, mean_e * cosine / std::numbers::pi)),
+                   -kLogIrradianceRange, kLogIrradianceRange));
     bool clipped = MaskedByClipping(photograph, i);
     if (photograph.mask[i] < 0.5f && !clipped) continue;
     Ring& ring = rings[RingOf(angle)];
     for (int c = 0; c < 3; ++c) {
       const double radiance = std::max(0.0f, photograph.rgb[c * texels + i]);
       clipped |= photograph.ldr && radiance >= kClipped;
-      const double albedo =
-          std::min(kBrightest, kPi * radiance / std::max(1e-9, g.irradiance[c] * cosine));
+      const double albedo = std::min(
+          kBrightest, std::numbers::pi * radiance / std::max(1e-9, g.irradiance[c] * cosine));
       put(c, i, std::sqrt(albedo));
-      const double log_albedo = std::log(albedo + kLogOffset);
+      const double log_albedo = std::log(albedo + kFeatureOffset);
       ring.sum[c] += log_albedo;
       if (c == 1) ring.square += log_albedo * log_albedo;
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "base/parallel/parallel.h"
@@ -21,7 +22,6 @@ constexpr double kSeenAlready = 3;
 // part is what fitting made of its photographs.
 constexpr double kNormalSpread = 0.05;
 constexpr double kNormalTexels = 20;  // that this belief is worth, of a substance
-constexpr double kPi = 3.14159265358979;
 
 // Of log radiance, by which vignetting and the flash's beam may differ across the sample.
 constexpr double kCommonShading = 0.1;
@@ -67,7 +67,8 @@ std::vector<float> MedianColour(const RefineProblem& problem) {
           view.view, problem.convention.falloff, plane.x_mm(column), plane.y_mm(row));
       for (size_t c = 0; c < 3; ++c) {
         const double received = g.irradiance[c] * std::max(0.05, g.light[2]);
-        seen[c].push_back(static_cast<float>(kPi * view.rgb[c * texels + i] / received));
+        seen[c].push_back(
+            static_cast<float>(std::numbers::pi * view.rgb[c * texels + i] / received));
       }
     }
     for (size_t c = 0; c < 3; ++c) {
@@ -255,7 +256,7 @@ void SampleModel::UpdateSubstances(const Sampling& sampling) {
 // views has variance q²/n + d²/cells, with as many cells as half vectors differ by half the length
 // scale of its likeness.
 double SampleModel::SampleWorth(const std::vector<size_t>& texels) const {
-  const double cell = 0.5 * residuals_.options().half_vector_deg * kPi / 180;
+  const double cell = 0.5 * residuals_.options().half_vector_deg * std::numbers::pi / 180;
   std::vector<std::pair<int, int>> cells;
   for (const size_t t : texels) {
     const int row = static_cast<int>(t) / initial_.width;

@@ -15,13 +15,13 @@ constexpr float kBrightnessWeight = 0.5f, kChromaWeight = 2.0f;
 constexpr float kAlbedoOffset = 0.01f;
 constexpr float kMembershipWidth = 0.2f;  // of the features, for soft shares
 constexpr int kIterations = 40;
-constexpr size_t kSampled = 8192;
+constexpr size_t kClustered = 8192;
 
 // Expected of a substance's difference from the others' mean; of specular albedo relative …
 constexpr double kMeansRoughness = 0.2, kMeansSpecular = 1.5;
 // … and of its channels from each other: metals are coloured.
 constexpr double kChroma = 0.6;
-constexpr double kMostStep = 0.5;  // of a mean, in one round, relative
+constexpr double kMostMeanStep = 0.5;  // of a mean, in one round, relative
 
 using Feature = std::array<float, 3>;
 
@@ -88,7 +88,7 @@ std::vector<Feature> Centres(const std::vector<Feature>& features, int count) {
 }  // namespace
 
 Substances::Substances(const std::vector<float>& colour, int substances) {
-  const size_t texels = colour.size() / 3, step = std::max<size_t>(1, texels / kSampled);
+  const size_t texels = colour.size() / 3, step = std::max<size_t>(1, texels / kClustered);
   std::vector<Feature> sampled;
   for (size_t i = step / 2; i < texels; i += step) sampled.push_back(FeatureOf(colour, i));
   if (sampled.empty()) sampled.push_back(FeatureOf(colour, 0));
@@ -188,7 +188,7 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
     SharedValues& mean = means->mean[static_cast<size_t>(k)];
     for (Eigen::Index p = 0; p < 4; ++p) {
       const auto q = static_cast<size_t>(p);
-      const double most = kMostStep * (mean[q] + kSpecularOffset);
+      const double most = kMostMeanStep * (mean[q] + kSpecularOffset);
       mean[q] += std::clamp(step[4 * k + p], -most, most);
       mean[q] = std::clamp(mean[q], p == 3 ? kRoughnessBounds.low : 0.0, 1.0);
     }

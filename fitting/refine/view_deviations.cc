@@ -9,7 +9,7 @@ namespace {
 
 // Views that the expected spreads are worth when they are estimated.
 constexpr double kExpectedViews = 2;
-constexpr double kMostStep = 0.2;  // of a deviation, in one step
+constexpr double kMostDeviationStep = 0.2;  // of a deviation, in one step
 // What all views share is no deviation of theirs: exposures' mean is the albedos', and the lights'
 // is the flash's offset (flash_offset.h). The mean is held to 0 by so many times a view's own
 // precision.
@@ -139,7 +139,8 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
   for (int v = 0; v < views; ++v) {
     const auto k = static_cast<size_t>(v);
     for (int i = 0; i < kViewDeviations; ++i) {
-      values_[k][static_cast<size_t>(i)] += std::clamp(step[at(v, i)], -kMostStep, kMostStep);
+      values_[k][static_cast<size_t>(i)] +=
+          std::clamp(step[at(v, i)], -kMostDeviationStep, kMostDeviationStep);
       variances[k][static_cast<size_t>(i)] = covariance(at(v, i), at(v, i));
     }
   }

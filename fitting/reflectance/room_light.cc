@@ -7,8 +7,6 @@
 namespace glint {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 using ByDegree = std::array<double, kRoomDegree + 1>;
 
 constexpr size_t TermOf(int degree, int m) {
@@ -69,9 +67,9 @@ RoomHarmonics Filtered(RoomHarmonics terms, const ByDegree& filter, int degree) 
 // surface.
 RoomHarmonics DiffuseTerms(const double n[3]) {
   ByDegree filter{};
-  filter[0] = kPi;
-  filter[1] = 2 * kPi / 3;
-  filter[2] = kPi / 4;
+  filter[0] = std::numbers::pi;
+  filter[1] = 2 * std::numbers::pi / 3;
+  filter[2] = std::numbers::pi / 4;
   return Filtered(HarmonicsAt(n[0], n[1], n[2], 2), filter, 2);
 }
 
@@ -94,8 +92,8 @@ ByDegree IntegrateLobe(double roughness) {
   for (int i = 0; i < kSteps; ++i) {
     // Cubes of equal steps: narrow lobes are near 0.
     const double t = (i + 0.5) / kSteps;
-    const double theta = 0.25 * kPi * t * t * t;
-    const double width = 0.25 * kPi * 3 * t * t / kSteps;
+    const double theta = 0.25 * std::numbers::pi * t * t * t;
+    const double width = 0.25 * std::numbers::pi * 3 * t * t / kSteps;
     const double cosine = std::cos(theta), sine = std::sin(theta), lit = std::cos(2 * theta);
     const double ratio = alpha / (cosine * cosine * (alpha * alpha - 1) + 1);
     const double masking = lit / (lit * (1 - k) + k);
@@ -124,7 +122,7 @@ ByDegree SpecularFilter(double roughness) {
   const double share = at - static_cast<double>(knot);
   ByDegree filter;
   for (size_t l = 0; l < filter.size(); ++l) {
-    filter[l] = kPi * ((1 - share) * kLobes[knot][l] + share * kLobes[knot + 1][l]);
+    filter[l] = std::numbers::pi * ((1 - share) * kLobes[knot][l] + share * kLobes[knot + 1][l]);
   }
   return filter;
 }

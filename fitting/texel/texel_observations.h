@@ -4,14 +4,13 @@
 #include <vector>
 
 #include "fitting/reflectance/brdf.h"
+#include "fitting/reflectance/log_radiance.h"
 
 namespace glint {
 
 // Views are handled eight at a time, whatever the processor: sums then have one order, and so one
 // result, on all of them.
 inline constexpr int kLanes = 8;
-
-inline constexpr double kLogOffset = 0.01;  // of the loss |log(I + 0.01) − log(R + 0.01)|
 
 // Linear radiance from which a photograph that clips is taken to be at its limit; resampling may
 // have mixed a little of a darker pixel in (see AdmitClippedTexels).

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace glint {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 Vec3d CosineDirection(Stream* random) {
-  const double u = random->Uniform(0.0, 0.97), angle = random->Uniform(0.0, 2.0 * kPi);
+  const double u = random->Uniform(0.0, 0.97), angle = random->Uniform(0.0, 2.0 * std::numbers::pi);
   const double r = std::sqrt(u);
   return {r * std::cos(angle), r * std::sin(angle), std::sqrt(1.0 - u)};
 }
@@ -38,7 +37,7 @@ std::vector<View> DrawRenderLossViews(Stream* random, int count) {
     View view;
     view.light_in_sample_mm = Along(centre, to_light, Distance(random));
     view.camera_in_sample_mm = Along(centre, to_camera, Distance(random));
-    view.light_rgb = {kPi, kPi, kPi};
+    view.light_rgb = {std::numbers::pi, std::numbers::pi, std::numbers::pi};
     views.push_back(view);
   }
   return views;

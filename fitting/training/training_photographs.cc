@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "fitting/encoding/encoding_torch.h"
@@ -14,8 +15,7 @@ namespace {
 
 using torch::Tensor;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kMostTilt = kPi / 4;
+constexpr double kMostTilt = std::numbers::pi / 4;
 constexpr double kGamma = 2.2;
 
 enum class CaptureKind {
@@ -77,7 +77,7 @@ Disturbance DrawDisturbance(Stream* random) {
   d.second_lobe_width = random->Uniform(1.5, 3);
   d.gain = 0.12 * size * random->Normal();
   d.gain_period = random->Uniform(0.3, 1.2);
-  d.gain_phase = random->Uniform(0, 2 * kPi);
+  d.gain_phase = random->Uniform(0, 2 * std::numbers::pi);
   return d;
 }
 
@@ -88,7 +88,7 @@ CaptureKind DrawKind(Stream* random) {
 
 // Where the camera is; the first photograph of a capture is from near the top mostly.
 Vec3d DrawCamera(CaptureKind kind, bool first, double distance, Stream* random) {
-  const double azimuth = random->Uniform(0, 2 * kPi);
+  const double azimuth = random->Uniform(0, 2 * std::numbers::pi);
   double tilt = 0;
   switch (kind) {
     case CaptureKind::kDir: {
@@ -123,7 +123,7 @@ Drawn DrawCapture(CaptureKind kind, int photographs, Stream* random) {
   const bool phone = kind == CaptureKind::kPhone;
   const double usual = phone ? random->Uniform(2.6, 5.2) : random->Uniform(1.4, 3.6);
   const double beside = kind == CaptureKind::kDir ? 0.0 : usual * random->Uniform(0, 0.12);
-  const double flash_azimuth = random->Uniform(0, 2 * kPi);
+  const double flash_azimuth = random->Uniform(0, 2 * std::numbers::pi);
   // A part of a larger sample is seen from elsewhere than above its middle.
   const bool part = random->Uniform() < 0.5;
   const double part_x = part ? random->Uniform(-0.6, 0.6) : 0;
@@ -143,14 +143,14 @@ Drawn DrawCapture(CaptureKind kind, int photographs, Stream* random) {
     view.light_in_sample_mm = camera;
     view.light_in_sample_mm[0] += beside * std::cos(flash_azimuth);
     view.light_in_sample_mm[1] += beside * std::sin(flash_azimuth);
-    const double power =
-        kPi * exposure * (FalloffOf(kind) == LightFalloff::kInverseSquare ? usual * usual : 1.0);
+    const double power = std::numbers::pi * exposure *
+                         (FalloffOf(kind) == LightFalloff::kInverseSquare ? usual * usual : 1.0);
     view.light_rgb = {power, power, power};
     shot.view = view;
     for (double& x : shot.view.light_in_sample_mm) x += d.light * distance * random->Normal();
     shot.view.light_in_sample_mm[2] = std::max(0.7, shot.view.light_in_sample_mm[2]);
     shot.view.exposure = std::exp(d.exposure * random->Normal());
-    const double ambient = d.ambient * kPi * exposure;
+    const double ambient = d.ambient * std::numbers::pi * exposure;
     shot.view.ambient_rgb = {ambient, ambient, ambient};
     for (double& p : shot.believed.light_rgb) p *= std::exp(d.power);
     shot.shift_x = d.registration * random->Normal();
@@ -159,7 +159,7 @@ Drawn DrawCapture(CaptureKind kind, int photographs, Stream* random) {
     shot.gradient_y = 0.5 * d.vignetting * random->Normal();
     shot.vignetting = d.vignetting * random->Normal();
     if (frames_end && random->Uniform() < 0.5) {
-      const double azimuth = random->Uniform(0, 2 * kPi);
+      const double azimuth = random->Uniform(0, 2 * std::numbers::pi);
       shot.frame = {std::cos(azimuth), std::sin(azimuth), random->Uniform(0, 0.9)};
     }
     drawn.shots.push_back(shot);
@@ -240,7 +240,7 @@ Photograph Expose(const float* radiance, const Shot& shot, const Drawn& drawn,
         const TexelGeometry<double> g =
             TexelGeometryInView(shot.view, convention.falloff, plane.x_mm(column), plane.y_mm(row));
         const double angle = std::acos(std::clamp(g.half[2], -1.0, 1.0));
-        log_gain += d.gain * std::sin(2 * kPi * angle / d.gain_period + d.gain_phase);
+        log_gain += d.gain * std::sin(2 * std::numbers::pi * angle / d.gain_period + d.gain_phase);
       }
       gain[i] = static_cast<float>(std::exp(log_gain));
     }

@@ -8,11 +8,7 @@
 #include "fitting/reflectance/brdf.h"
 
 namespace glint {
-namespace {
-
-constexpr double kPi = std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 ViewUnknowns::ViewUnknowns(const PhotographSet& set, const UnknownKinds& kinds)
     : set_(set), kinds_(kinds) {
@@ -21,9 +17,9 @@ ViewUnknowns::ViewUnknowns(const PhotographSet& set, const UnknownKinds& kinds)
     light_distance_mm_.push_back(std::hypot(light[0], light[1], light[2]));
     const TexelGeometry<double> centre =
         TexelGeometryInView(photograph.view, set.convention.falloff, 0.0, 0.0);
-    room_unit_ +=
-        (centre.irradiance[0] + centre.irradiance[1] + centre.irradiance[2]) /
-        (3 * kPi * photograph.view.exposure * static_cast<double>(set.photographs.size()));
+    room_unit_ += (centre.irradiance[0] + centre.irradiance[1] + centre.irradiance[2]) /
+                  (3 * std::numbers::pi * photograph.view.exposure *
+                   static_cast<double>(set.photographs.size()));
   }
 }
 
@@ -46,7 +42,7 @@ double ViewUnknowns::LeastRoom(int channel) const {
   double least = -1e9;
   for (int v = 0; v < views(); ++v) {
     const Vec3d& ambient_rgb = set_.photographs[At(v)].view.ambient_rgb;
-    least = std::max(least, -(ambient_rgb[c] / kPi + even) / room_unit_);
+    least = std::max(least, -(ambient_rgb[c] / std::numbers::pi + even) / room_unit_);
   }
   return least;
 }

@@ -10,6 +10,8 @@
 
 namespace glint {
 
+inline const std::vector<std::string> kRgbChannels = {"R", "G", "B"};
+
 // float32, planar: channel c is the contiguous block [c·H·W, (c+1)·H·W), rows top to bottom.
 struct Image {
   int width = 0, height = 0;

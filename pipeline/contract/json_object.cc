@@ -7,15 +7,12 @@
 #include "pipeline/contract/errors.h"
 
 namespace glint {
-namespace {
 
 std::string Describe(const Json& value) {
   // Strings in JSON are UTF-8 that the parser has checked.
   const std::string text = value.dump(-1, ' ', true);
   return text.size() <= 60 ? text : text.substr(0, 57) + "...";
 }
-
-}  // namespace
 
 JsonObject::JsonObject(std::filesystem::path file, std::string name, const Json& json)
     : file_(std::move(file)), name_(std::move(name)), json_(json) {

@@ -10,6 +10,9 @@
 
 namespace glint {
 
+// A value as messages show it: cut off where it is long, in ASCII.
+std::string Describe(const Json& value);
+
 class JsonObject {
  public:
   // `name` is the object's place in the file ("" at the top). Throws UserError: no object. `json`

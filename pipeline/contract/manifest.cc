@@ -5,16 +5,12 @@
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
 #include "pipeline/contract/json_file.h"
+#include "pipeline/contract/json_object.h"
 
 namespace glint {
 namespace {
 
 constexpr std::size_t kMaxOutputs = 100000;
-
-std::string Describe(const Json& value) {
-  const std::string text = value.dump();
-  return text.size() <= 60 ? text : text.substr(0, 57) + "...";
-}
 
 std::string FieldName(const std::string& object_name, const std::string& field) {
   return object_name.empty() ? field : object_name + "." + field;

@@ -11,7 +11,7 @@ namespace glint {
 namespace {
 
 // In single quotes, for a shell.
-std::string Quoted(const std::string& text) {
+std::string ShellQuoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
   return quoted + "'";
@@ -53,19 +53,19 @@ std::map<std::string, std::vector<std::string>> VerbsAfter(
 std::string Bash(const std::vector<DescribedCommand>& commands) {
   std::string words, flags, choices;
   for (const auto& [before, verbs] : VerbsAfter(commands)) {
-    words += fmt::format("    {}) words={} ;;\n", Quoted(before),
-                         Quoted(fmt::format("{}", fmt::join(verbs, " "))));
+    words += fmt::format("    {}) words={} ;;\n", ShellQuoted(before),
+                         ShellQuoted(fmt::format("{}", fmt::join(verbs, " "))));
   }
   for (const DescribedCommand& command : commands) {
     const std::string name = fmt::format("{}", fmt::join(command.words, " "));
-    flags += fmt::format("    {}) flags={} ;;\n", Quoted(name),
-                         Quoted(fmt::format("{}", fmt::join(Flags(command), " "))));
+    flags += fmt::format("    {}) flags={} ;;\n", ShellQuoted(name),
+                         ShellQuoted(fmt::format("{}", fmt::join(Flags(command), " "))));
     for (const Json& option : AllOptions(command)) {
       if (!option.contains("choices")) continue;
       choices += fmt::format(
-          "    {}) choices={} ;;\n", Quoted(name + " --" + option["name"].get<std::string>()),
-          Quoted(fmt::format("{}",
-                             fmt::join(option["choices"].get<std::vector<std::string>>(), " "))));
+          "    {}) choices={} ;;\n", ShellQuoted(name + " --" + option["name"].get<std::string>()),
+          ShellQuoted(fmt::format(
+              "{}", fmt::join(option["choices"].get<std::vector<std::string>>(), " "))));
     }
   }
   return "# bash completion for glint: glint completion bash writes it.\n"
@@ -116,7 +116,7 @@ std::string Zsh(const std::vector<DescribedCommand>& commands) {
   for (const DescribedCommand& command : commands) {
     const std::string name = fmt::format("{}", fmt::join(command.words, " "));
     if (command.words.size() == 1) {
-      verbs += "    " + Quoted(name + ":" + FirstSentence(command.description)) + "\n";
+      verbs += "    " + ShellQuoted(name + ":" + FirstSentence(command.description)) + "\n";
     }
     std::string specs;
     for (const Json& option : AllOptions(command)) {
@@ -131,14 +131,15 @@ std::string Zsh(const std::vector<DescribedCommand>& commands) {
       } else if (option["kind"] != "flag") {
         spec += option["kind"] == "path" ? ":file:_files" : ":value:";
       }
-      specs += " \\\n      " + Quoted(spec);
+      specs += " \\\n      " + ShellQuoted(spec);
     }
-    cases += "    " + Quoted(name) + ") _arguments" + specs + " \\\n      '*:file:_files' ;;\n";
+    cases +=
+        "    " + ShellQuoted(name) + ") _arguments" + specs + " \\\n      '*:file:_files' ;;\n";
   }
   std::string inner;
   for (const auto& [before, words] : VerbsAfter(commands)) {
     if (before.empty()) continue;
-    inner += fmt::format("    {}) inner=({}) ;;\n", Quoted(before), fmt::join(words, " "));
+    inner += fmt::format("    {}) inner=({}) ;;\n", ShellQuoted(before), fmt::join(words, " "));
   }
   return "#compdef glint\n"
          "# zsh completion for glint: glint completion zsh writes it.\n"
@@ -175,22 +176,22 @@ std::string Fish(const std::vector<DescribedCommand>& commands) {
               : "__fish_seen_subcommand_from " + command.words[0];
     const std::string before =
         inner ? "__fish_seen_subcommand_from " + command.words[0] : "__fish_use_subcommand";
-    out +=
-        fmt::format("complete -c glint {}-n {} -a {} -d {}\n", inner ? "" : "-f ", Quoted(before),
-                    command.words.back(), Quoted(FirstSentence(command.description)));
+    out += fmt::format("complete -c glint {}-n {} -a {} -d {}\n", inner ? "" : "-f ",
+                       ShellQuoted(before), command.words.back(),
+                       ShellQuoted(FirstSentence(command.description)));
     for (const Json& option : AllOptions(command)) {
       if (option["positional"].get<bool>()) continue;
       std::string more;
       if (option.contains("choices")) {
         more = " -x -a " +
-               Quoted(fmt::format(
+               ShellQuoted(fmt::format(
                    "{}", fmt::join(option["choices"].get<std::vector<std::string>>(), " ")));
       } else if (option["kind"] != "flag") {
         more = option["kind"] == "path" ? " -r -F" : " -x";
       }
-      out += fmt::format("complete -c glint -n {} -l {}{} -d {}\n", Quoted(here),
+      out += fmt::format("complete -c glint -n {} -l {}{} -d {}\n", ShellQuoted(here),
                          option["name"].get<std::string>(), more,
-                         Quoted(FirstSentence(option["help"].get<std::string>())));
+                         ShellQuoted(FirstSentence(option["help"].get<std::string>())));
     }
   }
   return out;

@@ -48,7 +48,7 @@ std::map<std::string, size_t> CountFiles(const fs::path& folder,
 }
 
 // A string in TOML.
-std::string Quoted(const std::string& text) {
+std::string TomlQuoted(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') quoted += '\\';
@@ -65,7 +65,7 @@ std::string Patterns(const fs::path& folder, const std::string& subfolder,
   for (const auto& [extension, count] : CountFiles(folder / subfolder, wanted)) {
     *files += count;
     const std::string before = subfolder.empty() ? "" : subfolder + "/";
-    list += (list.empty() ? "" : ", ") + Quoted(before + "*" + extension);
+    list += (list.empty() ? "" : ", ") + TomlQuoted(before + "*" + extension);
   }
   return list.empty() ? "" : "[" + list + "]";
 }

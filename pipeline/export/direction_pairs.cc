@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "fitting/reflectance/log_radiance.h"
+
 namespace glint {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kLogOffset = 0.01;
 constexpr double kMostTilt_deg = 70;
 constexpr int kPairs = 36, kErrorPairs = 100;
 constexpr size_t kErrorTexels = 4096;
@@ -27,17 +27,17 @@ Direction FromAngles(double sine, double azimuth) {
           std::sqrt(std::max(0.0, 1 - sine * sine))};
 }
 
-bool Seen(const Direction& d) { return d[2] > std::cos(kMostTilt_deg * kPi / 180); }
+bool Seen(const Direction& d) { return d[2] > std::cos(kMostTilt_deg * std::numbers::pi / 180); }
 
 // The i-th point of a sequence that fills the pairs evenly; false: below the horizon.
 bool HighlightPair(int i, double roughness, DirectionPair* pair) {
   const double u = RadicalInverse(i, 2), alpha = roughness * roughness;
   const double tangent = alpha * std::sqrt(u / (1 - u));
-  const Direction half =
-      FromAngles(tangent / std::sqrt(1 + tangent * tangent), 2 * kPi * RadicalInverse(i, 3));
+  const Direction half = FromAngles(tangent / std::sqrt(1 + tangent * tangent),
+                                    2 * std::numbers::pi * RadicalInverse(i, 3));
   const Direction camera =
-      FromAngles(std::sin(kMostTilt_deg * kPi / 180) * std::sqrt(RadicalInverse(i, 5)),
-                 2 * kPi * RadicalInverse(i, 7));
+      FromAngles(std::sin(kMostTilt_deg * std::numbers::pi / 180) * std::sqrt(RadicalInverse(i, 5)),
+                 2 * std::numbers::pi * RadicalInverse(i, 7));
   double dot = 0;
   for (size_t k = 0; k < 3; ++k) dot += half[k] * camera[k];
   Direction light;
@@ -48,10 +48,11 @@ bool HighlightPair(int i, double roughness, DirectionPair* pair) {
 }
 
 DirectionPair AnyPair(int i) {
-  const double most = std::sin(kMostTilt_deg * kPi / 180);
-  return MakePair(
-      FromAngles(most * std::sqrt(RadicalInverse(i, 2)), 2 * kPi * RadicalInverse(i, 3)),
-      FromAngles(most * std::sqrt(RadicalInverse(i, 5)), 2 * kPi * RadicalInverse(i, 7)));
+  const double most = std::sin(kMostTilt_deg * std::numbers::pi / 180);
+  return MakePair(FromAngles(most * std::sqrt(RadicalInverse(i, 2)),
+                             2 * std::numbers::pi * RadicalInverse(i, 3)),
+                  FromAngles(most * std::sqrt(RadicalInverse(i, 5)),
+                             2 * std::numbers::pi * RadicalInverse(i, 7)));
 }
 
 std::vector<DirectionPair> Pairs(double roughness, int count) {
@@ -79,7 +80,7 @@ double SmithSpecular(const DirectionPair& pair, double roughness) {
   const double square = std::pow(std::max(roughness, 0.03), 4);  // α²
   const double h = pair.geometry.half[2], l = pair.light[2], v = pair.camera[2];
   const double denominator = h * h * (square - 1) + 1;
-  const double distribution = square / (kPi * denominator * denominator);
+  const double distribution = square / (std::numbers::pi * denominator * denominator);
   const double masking =
       l * std::sqrt(v * v * (1 - square) + square) + v * std::sqrt(l * l * (1 - square) + square);
   return distribution * 0.5 / std::max(masking, 1e-9);
@@ -105,7 +106,7 @@ double ShadingError(
       double ours[3];
       EvaluateBrdf(texel, pair.geometry, weight, ours);
       const std::array<double, 3> theirs = target(i, pair);
-      const double received = kPi * pair.light[2];
+      const double received = std::numbers::pi * pair.light[2];
       for (size_t c = 0; c < 3; ++c) {
         sum += std::abs(std::log(received * std::max(theirs[c], 0.0) + kLogOffset) -
                         std::log(received * ours[c] + kLogOffset));

@@ -11,12 +11,11 @@
 namespace glint {
 namespace {
 
-const std::vector<std::string> kRgb = {"R", "G", "B"};
 const std::vector<std::string> kGrey = {"Y"};
 
 MapPicture ColorPicture(const std::string& name, const SvbrdfMaps& maps, int first_plane,
                         const std::string& folder) {
-  MapPicture picture{name, "sRGB", Image(maps.width, maps.height, kRgb), folder};
+  MapPicture picture{name, "sRGB", Image(maps.width, maps.height, kRgbChannels), folder};
   for (int c = 0; c < 3; ++c) {
     const auto from = maps.plane(first_plane + c);
     std::transform(from.begin(), from.end(), picture.image.channel(c).begin(), ClampedSrgb<float>);
@@ -26,7 +25,7 @@ MapPicture ColorPicture(const std::string& name, const SvbrdfMaps& maps, int fir
 
 MapPicture LayeredDiffusePicture(const ExportedMaterial& material) {
   MapPicture picture{"diffuse_layered", "sRGB",
-                     Image(material.maps.width, material.maps.height, kRgb), "exact/"};
+                     Image(material.maps.width, material.maps.height, kRgbChannels), "exact/"};
   for (size_t i = 0; i < material.maps.texels(); ++i) {
     const std::array<double, 3> albedo = LayeredDiffuse(material, i);
     for (int c = 0; c < 3; ++c) {
@@ -37,7 +36,7 @@ MapPicture LayeredDiffusePicture(const ExportedMaterial& material) {
 }
 
 MapPicture BaseColorPicture(const MetalRoughness& metal) {
-  MapPicture picture{"basecolor", "sRGB", Image(metal.width, metal.height, kRgb)};
+  MapPicture picture{"basecolor", "sRGB", Image(metal.width, metal.height, kRgbChannels)};
   std::transform(metal.base_color.begin(), metal.base_color.end(), picture.image.samples.begin(),
                  ClampedSrgb<float>);
   return picture;
@@ -52,7 +51,7 @@ MapPicture GreyPicture(const std::string& name, int width, int height, const Val
 
 MapPicture NormalPicture(const SvbrdfMaps& maps, const std::string& name, float y_sign) {
   MapPicture picture{name, y_sign > 0 ? "normal +Y" : "normal -Y",
-                     Image(maps.width, maps.height, kRgb)};
+                     Image(maps.width, maps.height, kRgbChannels)};
   for (int c = 0; c < 3; ++c) {
     const float half = c == 1 ? 0.5f * y_sign : 0.5f;
     const auto from = maps.plane(kNormalX + c);
@@ -65,7 +64,7 @@ MapPicture NormalPicture(const SvbrdfMaps& maps, const std::string& name, float 
 template <class Red, class Green, class Blue>
 MapPicture PackedPicture(const std::string& name, int width, int height, const Red& red,
                          const Green& green, const Blue& blue) {
-  MapPicture picture{name, "linear", Image(width, height, kRgb)};
+  MapPicture picture{name, "linear", Image(width, height, kRgbChannels)};
   std::copy(red.begin(), red.end(), picture.image.channel(0).begin());
   std::copy(green.begin(), green.end(), picture.image.channel(1).begin());
   std::copy(blue.begin(), blue.end(), picture.image.channel(2).begin());

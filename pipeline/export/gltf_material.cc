@@ -18,7 +18,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
 
-const std::vector<std::string> kRgb = {"R", "G", "B"};
 constexpr int kFloat = 5126, kUnsignedShort = 5123;          // glTF's component types
 constexpr int kArrayBuffer = 34962, kElementBuffer = 34963;  // and buffer targets
 
@@ -47,7 +46,7 @@ class Buffer {
 };
 
 Image BaseColor(const ExportedMaterial& material) {
-  Image image(material.maps.width, material.maps.height, kRgb);
+  Image image(material.maps.width, material.maps.height, kRgbChannels);
   for (size_t i = 0; i < material.maps.texels(); ++i) {
     const std::array<double, 3> base = GltfBaseColor(material, i);
     for (int c = 0; c < 3; ++c) {
@@ -59,14 +58,14 @@ Image BaseColor(const ExportedMaterial& material) {
 
 // Roughness in green; red (occlusion) 1, blue (metalness) 0.
 Image OcclusionRoughnessMetallic(const SvbrdfMaps& maps) {
-  Image image(maps.width, maps.height, kRgb);
+  Image image(maps.width, maps.height, kRgbChannels);
   std::fill(image.channel(0).begin(), image.channel(0).end(), 1.0f);
   std::copy(maps.plane(kRoughness).begin(), maps.plane(kRoughness).end(), image.channel(1).begin());
   return image;
 }
 
 Image Normal(const SvbrdfMaps& maps) {
-  Image image(maps.width, maps.height, kRgb);
+  Image image(maps.width, maps.height, kRgbChannels);
   for (int c = 0; c < 3; ++c) {
     std::transform(maps.plane(kNormalX + c).begin(), maps.plane(kNormalX + c).end(),
                    image.channel(c).begin(), [](float n) { return 0.5f * n + 0.5f; });
@@ -76,7 +75,7 @@ Image Normal(const SvbrdfMaps& maps) {
 
 // F0 over the largest of the sample.
 Image SpecularColor(const SvbrdfMaps& maps, float largest) {
-  Image image(maps.width, maps.height, kRgb);
+  Image image(maps.width, maps.height, kRgbChannels);
   for (int c = 0; c < 3; ++c) {
     std::transform(maps.plane(kSpecularR + c).begin(), maps.plane(kSpecularR + c).end(),
                    image.channel(c).begin(),

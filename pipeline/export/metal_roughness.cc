@@ -7,13 +7,12 @@
 
 #include "base/parallel/parallel.h"
 #include "fitting/reflectance/brdf.h"
+#include "fitting/reflectance/log_radiance.h"
 #include "pipeline/export/direction_pairs.h"
 
 namespace glint {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kLogOffset = 0.01;
 // That are tried: denser near 0, where F0 is a little above 0.04, and near 1, where a metal has a
 // little diffuse light.
 constexpr int kMetalnesses = 17;
@@ -43,14 +42,16 @@ struct Linear {
 
 Linear TargetOf(const PairTerms& pair, double metallic) {
   const double dielectric = kDielectricF0 + (1 - kDielectricF0) * pair.fresnel;
-  return {(1 - metallic) * (1 - dielectric) / kPi + metallic * pair.specular * (1 - pair.fresnel),
+  return {(1 - metallic) * (1 - dielectric) / std::numbers::pi +
+              metallic * pair.specular * (1 - pair.fresnel),
           pair.specular * ((1 - metallic) * dielectric + metallic * pair.fresnel)};
 }
 
 PairTerms TermsOf(const DirectionPair& pair, double roughness) {
   TexelSvbrdf<double> texel{{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, roughness};
   return {SpecularFactor(texel, pair.geometry), pair.geometry.fresnel,
-          SmithSpecular(pair, roughness), SchlickWeight(pair.v_dot_h), kPi * pair.light[2]};
+          SmithSpecular(pair, roughness), SchlickWeight(pair.v_dot_h),
+          std::numbers::pi * pair.light[2]};
 }
 
 // By roughness: the terms of its pairs.
@@ -99,7 +100,8 @@ Best BestBase(const std::vector<PairTerms>& pairs, double metallic, double diffu
   const size_t count = std::min(pairs.size(), ours.size());
   for (size_t i = 0; i < count; ++i) {
     const PairTerms& pair = pairs[i];
-    const double brdf = diffuse / kPi + pair.ours * (specular + (1 - specular) * pair.our_fresnel);
+    const double brdf =
+        diffuse / std::numbers::pi + pair.ours * (specular + (1 - specular) * pair.our_fresnel);
     const Linear target = TargetOf(pair, metallic);
     ours[i] = pair.received * brdf + kLogOffset;
     slopes[i] = pair.received * target.slope;

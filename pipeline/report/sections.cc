@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
@@ -20,7 +21,6 @@ namespace fs = std::filesystem;
 constexpr char kOwnManifest[] = "manifest.json";
 constexpr float kDifferenceGain = 4;
 constexpr int kStagePicture_px = 1200;
-constexpr double kPi = 3.14159265358979323846;
 
 std::string ManifestLink(const std::string& stage) { return "../" + stage + "/manifest.json"; }
 
@@ -248,7 +248,7 @@ std::string GeometrySection(const ReportInput& input) {
     const double tilt_deg =
         std::acos(
             std::clamp(view.camera_in_sample_mm[2] / std::max(distance_mm, 1e-9), -1.0, 1.0)) *
-        180 / kPi;
+        180 / std::numbers::pi;
     const auto cell = [](const Json& value, const Trace& from) {
       return "<td class=\"number\">" + FigureHtml(value, from) + "</td>";
     };

@@ -14,10 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kRgb = {"R", "G", "B"};
-
 Image SrgbPicture(const SvbrdfMaps& maps, int first_plane) {
-  Image image(maps.width, maps.height, kRgb);
+  Image image(maps.width, maps.height, kRgbChannels);
   for (int c = 0; c < 3; ++c) {
     const auto from = maps.plane(first_plane + c);
     std::transform(from.begin(), from.end(), image.channel(c).begin(), ClampedSrgb<float>);
@@ -28,8 +26,8 @@ Image SrgbPicture(const SvbrdfMaps& maps, int first_plane) {
 // Normal x, normal y and roughness in 16 bits, high bytes in one picture and low bytes in another:
 // 8 bits of a normal are half a degree, which a glossy highlight shows.
 std::array<Image, 2> GeometryPictures(const SvbrdfMaps& maps) {
-  std::array<Image, 2> bytes = {Image(maps.width, maps.height, kRgb),
-                                Image(maps.width, maps.height, kRgb)};
+  std::array<Image, 2> bytes = {Image(maps.width, maps.height, kRgbChannels),
+                                Image(maps.width, maps.height, kRgbChannels)};
   for (int c = 0; c < 3; ++c) {
     const auto from = maps.plane(c == 2 ? kRoughness : kNormalX + c);
     for (size_t i = 0; i < from.size(); ++i) {

@@ -1,0 +1,12 @@
+// Between Eigen's vectors, of poses, and the renderer's.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "fitting/reflectance/view.h"
+
+namespace glint {
+
+inline Vec3d ToVec3d(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+}  // namespace glint
