@@ -20,8 +20,8 @@ Camera ReadCamera(const std::filesystem::path& file, const Json& json, const std
                     "use SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV or FULL_OPENCV");
   }
   camera.model = *known;
-  camera.width_px = static_cast<int>(RequireNumber(file, json, name, "width_px"));
-  camera.height_px = static_cast<int>(RequireNumber(file, json, name, "height_px"));
+  camera.width_px = RequireCount(file, json, name, "width_px");
+  camera.height_px = RequireCount(file, json, name, "height_px");
   camera.parameters =
       RequireNumbers(file, json, name, "parameters", CameraParameterNames(camera.model).size());
   if (camera.focal_length_x() <= 0 || camera.focal_length_y() <= 0 || camera.width_px < 1 ||
@@ -67,8 +67,8 @@ CalibratedPhoto ReadPhoto(const std::filesystem::path& file, const Json& json,
     }
   }
   photo.rms_px = RequireNumber(file, json, name, "rms_px");
-  photo.corners = static_cast<int>(RequireNumber(file, json, name, "corners"));
-  photo.inliers = static_cast<int>(RequireNumber(file, json, name, "inliers"));
+  photo.corners = RequireCount(file, json, name, "corners");
+  photo.inliers = RequireCount(file, json, name, "inliers");
   return photo;
 }
 

@@ -44,6 +44,10 @@ HashCache::HashCache(fs::path file) : file_(std::move(file)) {
     const Json json = ReadJsonFile(file_, "");
     for (const auto& [path, entry] : json.items()) {
       const auto& stamp = entry.at("stamp");
+      // A number too large for an integer is read as a float, which no integer need hold.
+      for (const Json& number : stamp) {
+        if (!number.is_number_integer()) throw UserError(file_, "stamp", number.dump(), "");
+      }
       known_[path] = {{stamp.at(0), stamp.at(1), stamp.at(2), stamp.at(3), stamp.at(4)},
                       entry.at("hash")};
     }

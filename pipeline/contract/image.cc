@@ -128,11 +128,8 @@ ImageHeader ReadImageHeader(const std::filesystem::path& file) {
 }
 
 Image ReadExr(const std::filesystem::path& file, std::map<std::string, std::string>* attributes) {
-  const auto input = OpenImage(file);
+  const auto input = OpenExr(file);
   const OIIO::ImageSpec& spec = input->spec();
-  if (std::string(input->format_name()) != "openexr") {
-    throw UserError(file, "format", input->format_name(), "an OpenEXR image is expected here");
-  }
   if (spec.nchannels > kMaxChannels) {
     throw UserError(file, "channels", std::to_string(spec.nchannels),
                     "at most " + std::to_string(kMaxChannels) + " are read");

@@ -1,6 +1,7 @@
 #include "pipeline/contract/manifest.h"
 
 #include <cmath>
+#include <limits>
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
@@ -109,6 +110,16 @@ double RequireNumber(const std::filesystem::path& file, const Json& object,
   return value.get<double>();
 }
 
+int RequireCount(const std::filesystem::path& file, const Json& object,
+                 const std::string& object_name, const std::string& field) {
+  const double number = RequireNumber(file, object, object_name, field);
+  if (number >= 0 && number <= std::numeric_limits<int>::max() && number == std::floor(number)) {
+    return static_cast<int>(number);
+  }
+  throw UserError(file, FieldName(object_name, field), Describe(object[field]),
+                  "a whole number, 0 or more, is expected; run the stage again");
+}
+
 std::string RequireString(const std::filesystem::path& file, const Json& object,
                           const std::string& object_name, const std::string& field) {
   const Json& value = RequireField(file, object, object_name, field);
@@ -149,7 +160,7 @@ Manifest ReadManifest(const std::filesystem::path& file, const std::string& expe
     throw UserError(file, "stage", "'" + manifest.stage + "'",
                     "a manifest of stage '" + expected_stage + "' is expected here");
   }
-  manifest.stage_version = static_cast<int>(RequireNumber(file, json, "", "stage_version"));
+  manifest.stage_version = RequireCount(file, json, "", "stage_version");
   const Json& inputs = RequireArray(file, json, "inputs");
   for (size_t i = 0; i < inputs.size(); ++i) {
     const std::string name = "inputs[" + std::to_string(i) + "]";
@@ -165,8 +176,8 @@ Manifest ReadManifest(const std::filesystem::path& file, const std::string& expe
     RequireInside(file, name, output.path);
     output.hash = RequireString(file, outputs[i], name, "hash");
     if (outputs[i].contains("width")) {
-      output.width = static_cast<int>(RequireNumber(file, outputs[i], name, "width"));
-      output.height = static_cast<int>(RequireNumber(file, outputs[i], name, "height"));
+      output.width = RequireCount(file, outputs[i], name, "width");
+      output.height = RequireCount(file, outputs[i], name, "height");
       for (const Json& channel : RequireField(file, outputs[i], name, "channels")) {
         if (!channel.is_string()) {
           throw UserError(file, name + ".channels", Describe(channel), "channel names are texts");

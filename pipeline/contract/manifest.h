@@ -51,6 +51,9 @@ const Json& RequireField(const std::filesystem::path& file, const Json& object,
                          const std::string& object_name, const std::string& field);
 double RequireNumber(const std::filesystem::path& file, const Json& object,
                      const std::string& object_name, const std::string& field);
+// A whole number that an int holds, 0 or more.
+int RequireCount(const std::filesystem::path& file, const Json& object,
+                 const std::string& object_name, const std::string& field);
 std::string RequireString(const std::filesystem::path& file, const Json& object,
                           const std::string& object_name, const std::string& field);
 // An array of exactly `count` finite numbers.

@@ -1,5 +1,7 @@
 #include "pipeline/contract/oiio.h"
 
+#include <OpenEXR/ImfHeader.h>
+
 #include <fstream>
 #include <mutex>
 #include <set>
@@ -10,6 +12,8 @@
 
 namespace glint {
 namespace {
+
+constexpr int kMostExrSide = 1 << 17;
 
 // The brand of an ISO media file: "heic", "mif1"…; "" for other files.
 std::string MediaBrand(const std::filesystem::path& file) {
@@ -81,12 +85,14 @@ void SetUpOiio() {
     OIIO::attribute("limits:imagesize_MB", 8192);
     OIIO::attribute("threads", 1);
     OIIO::attribute("exr_threads", -1);
+    // OpenEXR makes a table with an entry for every line of an image before anyone sees its size.
+    Imf::Header::setMaxImageSize(kMostExrSide, kMostExrSide);
   });
 }
 
-std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
-                                            const OIIO::ImageSpec* configuration) {
-  SetUpOiio();
+namespace {
+
+void RequireFile(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     throw UserError(file, "", "no such file", "check the path");
@@ -94,11 +100,34 @@ std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
   if (std::filesystem::file_size(file, error) == 0) {
     throw UserError(file, "", "an empty file", "copy the photograph again");
   }
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), configuration);
-  if (!input) {
-    RejectUnreadable(file, OIIO::geterror(), OIIO::get_string_attribute("input_format_list"));
+}
+
+// OpenEXR allocates what an attribute's length says, up to 2 GiB, before it looks for the bytes.
+// Its header is a list of (name, type, length, bytes), all lengths of 4 bytes, little endian.
+void RequireAttributesWithinFile(const std::filesystem::path& file) {
+  constexpr std::size_t kMagicAndVersion = 8, kLongestName = 256;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  stream.seekg(kMagicAndVersion);
+  std::string name, type;
+  while (std::getline(stream, name, '\0') && !name.empty() && name.size() < kLongestName &&
+         std::getline(stream, type, '\0') && type.size() < kLongestName) {
+    unsigned char bytes[4] = {};
+    stream.read(reinterpret_cast<char*>(bytes), 4);
+    const std::uint32_t length =
+        bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<std::uint32_t>(bytes[3]) << 24;
+    if (stream && length > size) {
+      throw UserError(file, "header",
+                      "an attribute of " + std::to_string(length) + " bytes in a " + "file of " +
+                          std::to_string(size),
+                      "the file is damaged; make it again");
+    }
+    stream.seekg(length, std::ios::cur);
   }
-  const OIIO::ImageSpec& spec = input->spec();
+}
+
+void RequireSize(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
   if (spec.width < 1 || spec.height < 1 || spec.depth != 1 || spec.nchannels < 1 ||
       static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) > kMaxPixels) {
     throw UserError(file, "size",
@@ -106,6 +135,35 @@ std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
                     "images of at most " + std::to_string(kMaxPixels >> 20) + " Mpx are read");
   }
   RequireMemoryForImage(file, spec);
+}
+
+}  // namespace
+
+std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
+                                            const OIIO::ImageSpec* configuration) {
+  SetUpOiio();
+  RequireFile(file);
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), configuration);
+  if (!input) {
+    RejectUnreadable(file, OIIO::geterror(), OIIO::get_string_attribute("input_format_list"));
+  }
+  RequireSize(file, input->spec());
+  return input;
+}
+
+std::unique_ptr<OIIO::ImageInput> OpenExr(const std::filesystem::path& file) {
+  SetUpOiio();
+  RequireFile(file);
+  RequireAttributesWithinFile(file);
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create("openexr");
+  OIIO::ImageSpec spec;
+  if (!input || !input->open(file.string(), spec)) {
+    std::string reason = input ? input->geterror() : OIIO::geterror();
+    if (reason.size() > 200) reason.resize(200);
+    throw UserError(file, "format", "no OpenEXR image that can be read (" + reason + ")",
+                    "an OpenEXR image is expected here");
+  }
+  RequireSize(file, spec);
   return input;
 }
 

@@ -19,6 +19,10 @@ void SetUpOiio();
 std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
                                             const OIIO::ImageSpec* configuration = nullptr);
 
+// The same for OpenEXR alone: no other format's reader looks at the file, which some allocate
+// gigabytes for.
+std::unique_ptr<OIIO::ImageInput> OpenExr(const std::filesystem::path& file);
+
 // What OpenImage throws for a file that does not open. `reason` is OpenImageIO's own, and `formats`
 // the formats it was built with ("bmp,heif,jpeg,…").
 [[noreturn]] void RejectUnreadable(const std::filesystem::path& file, std::string reason,

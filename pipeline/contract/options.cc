@@ -268,7 +268,9 @@ void OptionSet::LoadToml(const std::filesystem::path& file, const std::string& t
       throw UserError(file, place.Field(value), "an unknown key", "use one of: " + Joined(known));
     }
     if (found->set_on_command_line && found->set_on_command_line()) continue;
-    std::visit([&](auto* target) { ReadInto(value, place, target); }, found->target);
+    // Captured by name, as clang before 16 needs it.
+    std::visit([&place, &node = value](auto* target) { ReadInto(node, place, target); },
+               found->target);
     if (!found->choices.empty()) {
       const std::string& text = *std::get<std::string*>(found->target);
       if (std::find(found->choices.begin(), found->choices.end(), text) == found->choices.end()) {
