@@ -202,7 +202,9 @@ TEST_F(Trials, Stdout) {
         }
         if (outcome.code == 3 && outcome.err.find("stdout") == std::string::npos)
           return outcome.err;
-        if (json && outcome.code == 0) return std::string("a lost answer was not said");
+        // Who closes a pipe does not want the rest; who fills a disk does.
+        if (json && outcome.code == 0 && i % 3 != 2)
+          return std::string("a lost answer was not said");
         return Recovered();
       });
 }
@@ -231,18 +233,17 @@ TEST_F(Trials, FlippedByte) {
 // One option of each stage: that stage and later ones are computed, no earlier one.
 TEST_F(Trials, InvalidationMatrix) {
   const std::vector<std::pair<std::string, std::string>> options = {
-      {"calib", "[calib]\nmin_corners = 9\n"},
-      {"rectify", "[rectify]\nsamples = 3\n"},
+      {"calib", "[calib]\nmin-corners = 9\n"},
+      {"rectify", "[rectify]\nfilter = \"soft\"\n"},
       {"fit", ""},
       {"refine", ""},
       {"export", "[export]\nbits = \"16\"\n"},
-      {"report", ""}};
+      {"report", "[report]\npicture-px = 300\n"}};
   RunTrials(
-      "another option or another weight of each stage: it and later stages are computed, no "
+      "another option of each stage: it and later stages are computed, no "
       "earlier one",
       static_cast<int>(kStages.size()), [&](int i) {
         const auto& [stage, toml] = options[static_cast<size_t>(i)];
-        if (stage == "report") return std::string();  // has no option that changes its result
         Reset();
         if (stage == "fit") EditToml("iterations = 12", "iterations = 13");
         if (stage == "refine") EditToml("iterations = 8", "iterations = 9");
