@@ -18,15 +18,20 @@ endfunction()
 
 # What a user runs, without tests and benchmarks: cmake --build … --target programs
 add_custom_target(programs)
+# The same without what only developers run: what ./dev demo waits for.
+add_custom_target(user_programs)
 
-# glint_program(glint-calib SOURCES main_calib.cc DEPENDS …): a program in build/bin
+# glint_program(glint-calib SOURCES main_calib.cc DEPENDS … [FOR_DEVELOPERS]): a program in build/bin
 function(glint_program name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "FOR_DEVELOPERS" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE glint_compile_options ${ARG_DEPENDS})
   glint_reuse_headers(${name} ${ARG_DEPENDS})
   target_compile_definitions(${name} PRIVATE GLINT_VERSION="${PROJECT_VERSION}")
   add_dependencies(programs ${name})
+  if(NOT ARG_FOR_DEVELOPERS)
+    add_dependencies(user_programs ${name})
+  endif()
   install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
 
