@@ -5,10 +5,12 @@
 
 #include "fitting/reflectance/border.h"
 #include "fitting/relief/ambient_occlusion.h"
+#include "fitting/relief/height_field.h"
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/cost_model.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
+#include "pipeline/contract/image.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/export/export_maps.h"
@@ -67,6 +69,19 @@ ExportedMaterial MaterialOf(const std::array<double, 2>& size_mm, SvbrdfMaps map
   return material;
 }
 
+// Of the normals, from the confidence that is stated beside the maps; empty where none is.
+std::vector<float> TrustOf(const std::filesystem::path& maps_manifest, const SvbrdfMaps& maps) {
+  const auto file = maps_manifest.parent_path() / "confidence.exr";
+  if (!std::filesystem::exists(file)) return {};
+  const Image confidence = ReadExr(file);
+  const int x = confidence.ChannelIndex("normal.X"), y = confidence.ChannelIndex("normal.Y");
+  if (x < 0 || y < 0 || confidence.width != maps.width || confidence.height != maps.height) {
+    throw UserError(file, "normal.X, normal.Y", "not the deviations of these maps",
+                    "run glint-refine again");
+  }
+  return TrustOfNormals(confidence.channel(x), confidence.channel(y));
+}
+
 ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, ExportOptions* options,
                      const CommonOptions& common) {
   const Capture capture = ReadCapture(folder);
@@ -97,8 +112,10 @@ ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, Export
   const double shorter_mm = std::min(plane.width_mm, plane.height_mm);
   ExportedMaterial material =
       MaterialOf(size_mm, std::move(maps), convention, *options, common.threads);
-  const HeightField relief = (repeats ? IntegrateRepeatingNormals : IntegrateNormals)(
-      material.maps, plane, options->height_longest * shorter_mm);
+  const double longest_mm = options->height_longest * shorter_mm;
+  const HeightField relief =
+      repeats ? IntegrateRepeatingNormals(material.maps, plane, longest_mm)
+              : IntegrateNormals(material.maps, plane, longest_mm, TrustOf(source, material.maps));
   material.height_range_mm = HeightRange(relief);
   OcclusionOptions occlusion;
   occlusion.reach_mm = options->occlusion_reach * shorter_mm;

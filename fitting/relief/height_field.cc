@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <numeric>
 #include <opencv2/core.hpp>
+#include <stdexcept>
+#include <utility>
 
 #include "fitting/relief/torus_poisson.h"
 
@@ -53,60 +57,158 @@ double HeightField::LookupRepeating(double row, double column) const {
          v * ((1 - u) * at(r1, c0) + u * at(r1, c1));
 }
 
-HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane, double longest_mm) {
+namespace {
+
+// Values on a grid of even size and weighted differences between its neighbours.
+struct Grid {
+  int width, height;
+  std::vector<double> across, down;  // what differences to the right and downward ought to be …
+  std::vector<double> across_trust, down_trust;  // … and their weights; 0 over the border
+  double screening;                              // weight of a value's own square
+
+  size_t index(int row, int column) const { return static_cast<size_t>(row) * width + column; }
+  size_t size() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+
+  // Half the gradient by the values of Σ w·(difference − target)²: −div(w·(∇u − target)).
+  template <class Difference>
+  std::vector<double> Gradient(const Difference& difference) const {
+    std::vector<double> gradient(size(), 0.0);
+    const auto add = [&](size_t from, size_t to, double weight, double target) {
+      const double flow = weight * difference(from, to, target);
+      gradient[from] -= flow;
+      gradient[to] += flow;
+    };
+    for (int row = 0; row < height; ++row) {
+      for (int column = 0; column < width; ++column) {
+        const size_t i = index(row, column);
+        if (column + 1 < width) add(i, i + 1, across_trust[i], across[i]);
+        if (row + 1 < height) add(i, i + static_cast<size_t>(width), down_trust[i], down[i]);
+      }
+    }
+    return gradient;
+  }
+
+  std::vector<double> Applied(const std::vector<double>& u) const {
+    std::vector<double> result =
+        Gradient([&](size_t from, size_t to, double) { return u[to] - u[from]; });
+    for (size_t i = 0; i < size(); ++i) result[i] += screening * u[i];
+    return result;
+  }
+
+  std::vector<double> RightSide() const {
+    return Gradient([](size_t, size_t, double target) { return target; });
+  }
+
+  // Of all weights 1, exactly, mean 0: cosines are the equation's eigenvectors.
+  std::vector<double> SolvedEvenly(std::vector<double> values) const {
+    cv::Mat grid(height, width, CV_64F, values.data()), spectrum;
+    cv::dct(grid, spectrum);
+    for (int row = 0; row < height; ++row) {
+      for (int column = 0; column < width; ++column) {
+        const double eigenvalue = 4 - 2 * std::cos(std::numbers::pi * column / width) -
+                                  2 * std::cos(std::numbers::pi * row / height);
+        double& value = spectrum.at<double>(row, column);
+        value = row + column > 0 ? value / (eigenvalue + screening) : 0.0;
+      }
+    }
+    cv::idct(spectrum, grid);
+    return values;
+  }
+};
+
+double Dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+// Preconditioned conjugate gradients (Saad, "Iterative methods for sparse linear systems", 9.2).
+std::vector<double> SolvedWithTrust(const Grid& grid) {
+  constexpr int kMostSteps = 100;
+  constexpr double kResidualLeft = 1e-3;
+  std::vector<double> residual = grid.RightSide();
+  std::vector<double> heights(grid.size(), 0.0);
+  std::vector<double> even = grid.SolvedEvenly(residual), direction = even;
+  double square = Dot(residual, even);
+  const double enough = kResidualLeft * kResidualLeft * square;
+  for (int step = 0; step < kMostSteps && square > enough; ++step) {
+    const std::vector<double> applied = grid.Applied(direction);
+    const double length = square / Dot(direction, applied);
+    for (size_t i = 0; i < heights.size(); ++i) {
+      heights[i] += length * direction[i];
+      residual[i] -= length * applied[i];
+    }
+    even = grid.SolvedEvenly(residual);
+    const double before = std::exchange(square, Dot(residual, even));
+    for (size_t i = 0; i < heights.size(); ++i) {
+      direction[i] = even[i] + square / before * direction[i];
+    }
+  }
+  return heights;
+}
+
+}  // namespace
+
+HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane, double longest_mm,
+                             std::span<const float> trust) {
+  if (!trust.empty() && trust.size() != maps.texels()) {
+    throw std::invalid_argument("IntegrateNormals: not as many weights as texels");
+  }
   HeightField field;
   field.width = maps.width;
   field.height = maps.height;
-  const int width = Even(maps.width), height = Even(maps.height);
   const int gaps_x = std::max(1, maps.width - 1), gaps_y = std::max(1, maps.height - 1);
   field.texel_x_mm = (plane.x_mm(maps.width - 1) - plane.x_mm(0)) / gaps_x;
   field.texel_y_mm = (plane.y_mm(0) - plane.y_mm(maps.height - 1)) / gaps_y;
-
-  // Differences to the right and downward; between two texels the mean of their slopes.
-  const auto slope = [&](int row, int column) {
-    const int r = std::min(row, maps.height - 1), c = std::min(column, maps.width - 1);
-    return SlopeOf(maps, static_cast<size_t>(r) * maps.width + c);
-  };
-  cv::Mat divergence = cv::Mat::zeros(height, width, CV_64F);
-  for (int row = 0; row < height; ++row) {
-    for (int column = 0; column < width; ++column) {
-      const Slope here = slope(row, column);
-      if (column + 1 < width) {
-        const double right = 0.5 * (here.x + slope(row, column + 1).x) * field.texel_x_mm;
-        divergence.at<double>(row, column) += right;
-        divergence.at<double>(row, column + 1) -= right;
-      }
-      if (row + 1 < height) {  // rows run against y
-        const double down = -0.5 * (here.y + slope(row + 1, column).y) * field.texel_y_mm;
-        divergence.at<double>(row, column) += down;
-        divergence.at<double>(row + 1, column) -= down;
-      }
-    }
-  }
   // Texels are as good as square (glint-rectify, glint-import).
   const double texel_mm = std::sqrt(field.texel_x_mm * field.texel_y_mm);
-  const double screening =
-      longest_mm > 0 ? std::pow(2 * std::numbers::pi * texel_mm / longest_mm, 2) : 0;
-  cv::Mat spectrum;
-  cv::dct(divergence, spectrum);
-  for (int row = 0; row < height; ++row) {
-    for (int column = 0; column < width; ++column) {
-      const double eigenvalue = 2 * std::cos(std::numbers::pi * column / width) +
-                                2 * std::cos(std::numbers::pi * row / height) - 4;
-      double& value = spectrum.at<double>(row, column);
-      value = row + column > 0 ? value / (eigenvalue - screening) : 0.0;
+
+  Grid grid{Even(maps.width), Even(maps.height), {}, {}, {}, {}, 0};
+  if (longest_mm > 0) grid.screening = std::pow(2 * std::numbers::pi * texel_mm / longest_mm, 2);
+  const auto texel = [&](int row, int column) {
+    return static_cast<size_t>(std::min(row, maps.height - 1)) * maps.width +
+           static_cast<size_t>(std::min(column, maps.width - 1));
+  };
+  // Between two texels: the mean of their slopes, and of their variances.
+  const auto between = [&](size_t a, size_t b) {
+    return trust.empty() ? 1.0 : 2 / (1.0 / trust[a] + 1.0 / trust[b]);
+  };
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      const size_t here = texel(row, column), right = texel(row, column + 1),
+                   below = texel(row + 1, column);
+      const Slope slope = SlopeOf(maps, here);
+      grid.across.push_back(0.5 * (slope.x + SlopeOf(maps, right).x) * field.texel_x_mm);
+      grid.down.push_back(-0.5 * (slope.y + SlopeOf(maps, below).y) * field.texel_y_mm);
+      grid.across_trust.push_back(between(here, right));
+      grid.down_trust.push_back(between(here, below));
     }
   }
-  cv::Mat solved;
-  cv::idct(spectrum, solved);
-  const double mean = cv::mean(solved(cv::Rect(0, 0, maps.width, maps.height)))[0];
+  const std::vector<double> solved =
+      trust.empty() ? grid.SolvedEvenly(grid.RightSide()) : SolvedWithTrust(grid);
+  double mean = 0;
+  for (int row = 0; row < maps.height; ++row) {
+    for (int column = 0; column < maps.width; ++column) mean += solved[grid.index(row, column)];
+  }
+  mean /= static_cast<double>(maps.texels());
   field.height_mm.reserve(maps.texels());
   for (int row = 0; row < maps.height; ++row) {
     for (int column = 0; column < maps.width; ++column) {
-      field.height_mm.push_back(static_cast<float>(solved.at<double>(row, column) - mean));
+      field.height_mm.push_back(static_cast<float>(solved[grid.index(row, column)] - mean));
     }
   }
   return field;
+}
+
+std::vector<float> TrustOfNormals(std::span<const float> sigma_x, std::span<const float> sigma_y) {
+  std::vector<float> variances(sigma_x.size());
+  for (size_t i = 0; i < variances.size(); ++i) {
+    variances[i] = 0.5f * (sigma_x[i] * sigma_x[i] + sigma_y[i] * sigma_y[i]);
+  }
+  std::vector<float> trust = variances;
+  const auto middle = trust.begin() + static_cast<std::ptrdiff_t>(trust.size() / 2);
+  std::nth_element(trust.begin(), middle, trust.end());
+  const float median = std::max(*middle, std::numeric_limits<float>::min());
+  for (size_t i = 0; i < trust.size(); ++i) trust[i] = 2 * median / (variances[i] + median);
+  return trust;
 }
 
 HeightField IntegrateRepeatingNormals(const SvbrdfMaps& maps, const SamplePlane& plane,

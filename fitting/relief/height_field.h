@@ -1,6 +1,7 @@
 // The surface whose normals the maps hold.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "fitting/reflectance/svbrdf_maps.h"
@@ -34,12 +35,21 @@ struct HeightField {
 // A small error that normals share adds up over long distances. With `longest_mm` above 0 the
 // sample is expected to be flat on larger scales: waves of that length are halved, longer ones
 // flattened, those of a third of it lose a tenth (a screened Poisson equation).
+//
+// `trust`: by texel, H·W, what its normal is worth against others', above 0 (TrustOfNormals());
+// empty: all the same. The equation is then solved by conjugate gradients, preconditioned with the
+// cosine transforms, to a thousandth of the first residual. Throws std::invalid_argument where
+// there are not as many as texels.
 inline constexpr double kMostReliefSlope = 5;  // 79°: a normal beyond says little about height
 HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane,
-                             double longest_mm = 0);
+                             double longest_mm = 0, std::span<const float> trust = {});
 // The same of maps that repeat (fitting/tiling): so do the heights.
 HeightField IntegrateRepeatingNormals(const SvbrdfMaps& maps, const SamplePlane& plane,
                                       double longest_mm = 0);
+
+// 1/(σ² + m²), relative to the median's: σ² is the mean of both standard deviations' squares and m²
+// its median, for errors that stated deviations do not hold. H·W each.
+std::vector<float> TrustOfNormals(std::span<const float> sigma_x, std::span<const float> sigma_y);
 
 // Normals of a height field, by central differences: [3·H·W], planar.
 std::vector<float> NormalsOf(const HeightField& field);

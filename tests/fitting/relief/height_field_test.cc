@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <random>
+#include <stdexcept>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -72,6 +74,44 @@ TEST(HeightField, ScreeningFlattensWhatIsLong) {
   };
   EXPECT_NEAR(rms(integrated(0.1, 0)), rms(relief(0.1, 0)), 0.2 * rms(relief(0.1, 0)));
   EXPECT_LT(rms(integrated(0, 0.1)), 0.05 * rms(relief(0, 0.1)));
+}
+
+double DifferenceRms(const HeightField& a, const HeightField& b) {
+  double squares = 0;
+  for (size_t i = 0; i < a.height_mm.size(); ++i) {
+    squares += std::pow(a.height_mm[i] - b.height_mm[i], 2);
+  }
+  return std::sqrt(squares / static_cast<double>(a.height_mm.size()));
+}
+
+TEST(HeightField, EqualTrustChangesNothing) {
+  const HeightField truth = Waves(63, 80);
+  const SamplePlane plane{63, 80, 20, 20, TexelSampling::kPixelCentres};
+  const std::vector<float> same(63 * 80, 0.7f);
+  EXPECT_LT(DifferenceRms(IntegrateNormals(MapsOf(truth), plane, 0, same),
+                          IntegrateNormals(MapsOf(truth), plane)),
+            1e-5);
+}
+
+// Where normals are known to be bad, what is around them decides.
+TEST(HeightField, NormalsThatAreNotTrustedBendLessOfTheRelief) {
+  const HeightField truth = Waves(64, 64);
+  SvbrdfMaps maps = MapsOf(truth);
+  std::vector<float> sigma(maps.texels(), 0.01f);
+  for (int row = 10; row < 54; ++row) {
+    for (int column = 24; column < 36; ++column) {  // a stripe that leans as a whole
+      const size_t i = static_cast<size_t>(row) * 64 + static_cast<size_t>(column);
+      maps.plane(kNormalX)[i] += 0.3f;
+      sigma[i] = 0.3f;
+    }
+  }
+  const SamplePlane plane{64, 64, 20, 20, TexelSampling::kPixelCentres};
+  const double even = DifferenceRms(IntegrateNormals(maps, plane), truth);
+  const double trusting =
+      DifferenceRms(IntegrateNormals(maps, plane, 0, TrustOfNormals(sigma, sigma)), truth);
+  EXPECT_LT(trusting, 0.25 * even);
+  EXPECT_THROW(IntegrateNormals(maps, plane, 0, std::vector<float>(3, 1.0f)),
+               std::invalid_argument);
 }
 
 TEST(HeightField, AFlatSampleIsFlat) {
