@@ -157,6 +157,7 @@ TexelGeometry<T> MakeTexelGeometry(const T light[3], const T camera[3], const T 
 template <class T>
 TexelGeometry<T> TexelGeometryLitFrom(const View& view, LightFalloff falloff,
                                       const T light_in_sample_mm[3], const T& x_mm, const T& y_mm) {
+  using std::exp;
   using std::sqrt;
   const T position[3] = {x_mm, y_mm, T(0)};
   T light[3], camera[3], irradiance[3], ambient[3];
@@ -166,8 +167,10 @@ TexelGeometry<T> TexelGeometryLitFrom(const View& view, LightFalloff falloff,
   }
   const T light_inverse = T(1) / sqrt(Dot(light, light));
   const T camera_inverse = T(1) / sqrt(Dot(camera, camera));
-  const T attenuation =
-      falloff == LightFalloff::kInverseSquare ? light_inverse * light_inverse : T(1);
+  T attenuation = falloff == LightFalloff::kInverseSquare ? light_inverse * light_inverse : T(1);
+  if (view.beam[0] != 0 || view.beam[1] != 0) {
+    attenuation *= exp(-(T(view.beam[0]) * light[0] + T(view.beam[1]) * light[1]) / light[2]);
+  }
   for (int i = 0; i < 3; ++i) {
     light[i] *= light_inverse;
     camera[i] *= camera_inverse;

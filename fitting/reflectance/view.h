@@ -20,6 +20,10 @@ struct View {
   Vec3d light_rgb{1, 1, 1};    // power: radiance·mm² (inverse square) or irradiance (no falloff)
   Vec3d ambient_rgb{0, 0, 0};  // irradiance of a uniform surround
   double exposure = 1.0;
+  // Gradient of the logarithm of the light's radiant intensity by the tangents of its direction to
+  // the texel, (texel − light)_xy / light_z. The fused renderer knows lights of equal intensity
+  // only; TexelGeometryInView and RenderLit (render/render_lit.h) know both.
+  std::array<double, 2> beam{0, 0};
 };
 
 // The plane z = 0 of a rectified sample cut into texels; row 0 is at +y.

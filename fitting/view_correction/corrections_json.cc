@@ -43,10 +43,24 @@ std::map<std::string, ViewCorrection> ReadCorrections(const std::filesystem::pat
   return corrections;
 }
 
-FlashOffset ReadFlashOffset(const std::filesystem::path& manifest_file, const Json& data) {
-  if (!data.contains("flash_offset_mm")) return {0, 0, 0};
-  const auto mm = RequireNumbers(manifest_file, data, "data", "flash_offset_mm", 3);
-  return {mm[0], mm[1], mm[2]};
+Json JsonOf(const SharedLight& shared) {
+  return {{"offset_mm", shared.offset_mm},
+          {"beam", {shared.shape[kBeamX], shared.shape[kBeamY]}},
+          {"distance_power", shared.shape[kDistancePower]},
+          {"distance_mm", shared.distance_mm}};
+}
+
+SharedLight ReadSharedLight(const std::filesystem::path& manifest_file, const Json& data) {
+  SharedLight shared;
+  if (!data.contains("shared_light")) return shared;
+  const Json& light = data["shared_light"];
+  const auto offset = RequireNumbers(manifest_file, light, "data.shared_light", "offset_mm", 3);
+  const auto beam = RequireNumbers(manifest_file, light, "data.shared_light", "beam", 2);
+  std::copy(offset.begin(), offset.end(), shared.offset_mm.begin());
+  shared.shape = {beam[0], beam[1],
+                  RequireNumber(manifest_file, light, "data.shared_light", "distance_power")};
+  shared.distance_mm = RequireNumber(manifest_file, light, "data.shared_light", "distance_mm");
+  return shared;
 }
 
 Json JsonOf(const RoomLight& room) { return {{"radiance_rgb", room.radiance_rgb}}; }

@@ -1,4 +1,4 @@
-// What was corrected, in a manifest: data.corrections, data.flash_offset_mm
+// What was corrected, in a manifest: data.corrections, data.shared_light
 // and data.room_light (docs/manifest.md).
 #pragma once
 
@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "fitting/view_correction/flash_offset.h"
+#include "fitting/view_correction/shared_light.h"
 #include "fitting/view_correction/view_correction.h"
 #include "pipeline/contract/manifest.h"
 
@@ -18,8 +18,10 @@ Json JsonOf(const std::string& view, const ViewCorrection& correction);
 std::map<std::string, ViewCorrection> ReadCorrections(const std::filesystem::path& manifest_file,
                                                       const Json& data);
 
-// data.flash_offset_mm; none where `data` has none. Throws UserError.
-FlashOffset ReadFlashOffset(const std::filesystem::path& manifest_file, const Json& data);
+Json JsonOf(const SharedLight& shared);
+
+// data.shared_light; as said where `data` has none. Throws UserError.
+SharedLight ReadSharedLight(const std::filesystem::path& manifest_file, const Json& data);
 
 Json JsonOf(const RoomLight& room);
 

@@ -1,0 +1,15 @@
+// Renderings under lights that do not shine alike in all directions.
+#pragma once
+
+#include "fitting/reflectance/convention.h"
+#include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/reflectance/view.h"
+
+namespace glint {
+
+// As RenderView(), with View::beam. Any number of threads gives the same bits. Throws
+// std::invalid_argument unless the maps' size is the plane's.
+void RenderLit(const SvbrdfMaps& maps, const SamplePlane& plane, const View& view,
+               const ReflectanceConvention& convention, float* rgb_planar, int threads = 1);
+
+}  // namespace glint
