@@ -23,11 +23,11 @@ double AngleDeg(const Vec3d& a, const Vec3d& b) {
 LightAngles CompareLights(const PlannedViews& planned, const std::filesystem::path& fit_manifest) {
   const Manifest manifest = ReadManifest(fit_manifest);
   const auto corrections = ReadCorrections(fit_manifest, manifest.data);
-  const FlashOffset flash_offset_mm = ReadFlashOffset(fit_manifest, manifest.data);
+  const SharedLight shared_light = ReadSharedLight(fit_manifest, manifest.data);
   LightAngles angles;
   for (size_t i = 0; i < planned.views.size(); ++i) {
     const auto found = corrections.find(ViewName(i));
-    View view = WithFlashOffset(planned.views[i], flash_offset_mm);
+    View view = WithSharedLight(planned.views[i], shared_light);
     if (found != corrections.end()) view = CorrectedView(view, found->second);
     const Vec3d& light = view.light_in_sample_mm;
     const double off_deg = AngleDeg(light, planned.taken[i].light_in_sample_mm);

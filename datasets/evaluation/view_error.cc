@@ -7,8 +7,8 @@
 
 #include "fitting/photographs/picture_shift.h"
 #include "fitting/reflectance/log_radiance.h"
+#include "fitting/render/render_lit.h"
 #include "fitting/render/render_room.h"
-#include "fitting/render/renderer.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
@@ -91,7 +91,7 @@ FittedMaps ReadFittedMaps(const fs::path& path) {
   fit.maps = ReadSvbrdf(file.parent_path() / "svbrdf.exr", &fit.convention);
   fit.light_scale_rgb =
       OptionalNumbers(file, manifest.data, "light_scale_rgb", fit.light_scale_rgb);
-  fit.flash_offset_mm = ReadFlashOffset(file, manifest.data);
+  fit.shared_light = ReadSharedLight(file, manifest.data);
   fit.corrections = ReadCorrections(file, manifest.data);
   fit.room = ReadRoomLight(file, manifest.data);
   return fit;
@@ -111,7 +111,7 @@ RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
 
 View ViewOfFit(const FittedMaps& fit, const RectifiedView& view) {
   const auto found = fit.corrections.find(view.name);
-  View lit = WithFlashOffset(view.view, fit.flash_offset_mm);
+  View lit = WithSharedLight(view.view, fit.shared_light);
   if (found != fit.corrections.end()) lit = CorrectedView(lit, found->second);
   for (int c = 0; c < 3; ++c) lit.light_rgb[c] *= fit.light_scale_rgb[c];
   return lit;
@@ -127,7 +127,7 @@ std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
   convention.diffuse_weight = fit.convention.diffuse_weight;
   const View lit = ViewOfFit(fit, view);
   std::vector<float> rendered(3 * maps.texels());
-  RenderView(maps, set.plane, lit, convention, rendered.data(), threads);
+  RenderLit(maps, set.plane, lit, convention, rendered.data(), threads);
   AddRoomLight(fit.room, maps, set.plane, lit, convention, rendered.data(), threads);
   return rendered;
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fitting/reflectance/svbrdf_maps.h"
-#include "fitting/view_correction/flash_offset.h"
+#include "fitting/view_correction/shared_light.h"
 #include "fitting/view_correction/view_correction.h"
 #include "pipeline/contract/rectified_set.h"
 
@@ -38,7 +38,7 @@ struct FittedMaps {
   SvbrdfMaps maps;
   ReflectanceConvention convention;
   std::array<double, 3> light_scale_rgb{1, 1, 1};     // multiplies every light_rgb
-  FlashOffset flash_offset_mm{0, 0, 0};               // of every view's light
+  SharedLight shared_light;                           // of every view
   std::map<std::string, ViewCorrection> corrections;  // by view, of those that were refined from
   RoomLight room;                                     // added to every view's
 };

@@ -84,7 +84,7 @@ class Refiner {
  private:
   void EstimateModel();
   void MoveFlash();
-  void SetViews(const std::vector<DeviationValues>& deviations);
+  void SetViews(const ViewDeviations& deviations);
   std::vector<DeviationProducts> OfViews(size_t texel, const TexelValues& values,
                                          std::span<const int> views, Worker* worker);
   void SolveFromStarts();
@@ -134,7 +134,14 @@ Refiner::Refiner(const RefineProblem& problem, const SvbrdfMaps& start,
       progress_(progress),
       model_(problem_, start, options) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
-  for (const RefineView& view : problem_.views) said_.push_back(view.view);
+  double distance_mm = 0;
+  for (const RefineView& view : problem_.views) {
+    said_.push_back(view.view);
+    const Vec3d& light = view.view.light_in_sample_mm;
+    distance_mm +=
+        std::hypot(light[0], light[1], light[2]) / static_cast<double>(all_views_.size());
+  }
+  result_.summary.shared_light.distance_mm = distance_mm;
   kernel_.diffuse_weight = problem.convention.diffuse_weight;
   kernel_.robust_scale = options.robust_scale;
   for (int i = 0; i < threads_; ++i) {
@@ -192,9 +199,9 @@ void Refiner::EstimateModel() {
     return Prediction{2 * w.search.solver().Cost(w.observations, TexelPrior(), values),
                       3 * w.observations.views()};
   };
-  solver.deviate = [&](const std::vector<DeviationValues>& deviations) { SetViews(deviations); };
+  solver.deviate = [&](const ViewDeviations& deviations) { SetViews(deviations); };
   if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);
-  SetViews(model_.deviations().values());
+  SetViews(model_.deviations());
   for (int i = 0; options_.flash_offset > 0 && i < kFlashMoves; ++i) {
     model_.Begin(solver, threads_);
     MoveFlash();
@@ -206,32 +213,27 @@ void Refiner::EstimateModel() {
 
 // To where the sample is level in the mean: of an offset half vectors turn by half.
 void Refiner::MoveFlash() {
-  double distance_mm = 0;
-  for (const RefineView& view : problem_.views) {
-    const Vec3d& light = view.view.light_in_sample_mm;
-    distance_mm +=
-        std::hypot(light[0], light[1], light[2]) / static_cast<double>(all_views_.size());
-  }
   const std::array<double, 2>& tilt = model_.tilt();
-  FlashOffset& offset = result_.summary.flash_offset_mm;
+  SharedLight& shared = result_.summary.shared_light;
   // Normals that lean toward +x say that the half vectors do: that the light stands there.
   FlashOffset more{0, 0, 0};
-  for (size_t i = 0; i < 2; ++i) more[i] = -2 * distance_mm * tilt[i];
-  for (size_t i = 0; i < 2; ++i) offset[i] += more[i];
-  SetViews(model_.deviations().values());
+  for (size_t i = 0; i < 2; ++i) more[i] = -2 * shared.distance_mm * tilt[i];
+  for (size_t i = 0; i < 2; ++i) shared.offset_mm[i] += more[i];
+  SetViews(model_.deviations());
   model_.Level();
 }
 
 // To the flash's offset as it is known, and single views' deviations beside it.
-void Refiner::SetViews(const std::vector<DeviationValues>& deviations) {
+void Refiner::SetViews(const ViewDeviations& deviations) {
+  SharedLight& shared = result_.summary.shared_light;
+  shared.shape = deviations.shape();
   const auto set = [&](size_t v, const DeviationValues& deviation, RefineProblem* problem) {
-    const View flashed = WithFlashOffset(said_[v], result_.summary.flash_offset_mm);
-    problem->views[v].view = Deviating(flashed, deviation);
+    problem->views[v].view = Deviating(WithSharedLight(said_[v], shared), deviation);
   };
   for (size_t v = 0; v < said_.size(); ++v) {
-    set(v, deviations[v], &problem_);
+    set(v, deviations.values()[v], &problem_);
     for (size_t i = 0; i < nudged_.size(); ++i) {
-      DeviationValues further = deviations[v];
+      DeviationValues further = deviations.values()[v];
       further[i] += kDeviationStep;
       set(v, further, &nudged_[i]);
     }
@@ -259,7 +261,17 @@ std::vector<DeviationProducts> Refiner::OfViews(size_t texel, const TexelValues&
   GatherObservations(problem_, start_, texel, views, &worker->observations);
   TexelGram gram;
   solver.Gram(worker->observations, TexelPrior(), values, &gram);
-  return ProductsOf(solver.rows(), worker->nudged, usable);
+  std::vector<DeviationProducts> products =
+      ProductsOf(solver.rows(), worker->nudged, usable.size());
+  const SamplePlane& plane = problem_.plane;
+  const double x_mm = plane.x_mm(static_cast<int>(texel) % plane.width);
+  const double y_mm = plane.y_mm(static_cast<int>(texel) / plane.width);
+  for (size_t i = 0; i < usable.size(); ++i) {
+    products[i].view = usable[i];
+    products[i].by_shape = ByLightShape(problem_.views[static_cast<size_t>(usable[i])].view,
+                                        result_.summary.shared_light.distance_mm, x_mm, y_mm);
+  }
+  return products;
 }
 
 TexelSolution Refiner::Current(size_t texel, const TexelPrior& prior, Worker* worker) {
@@ -374,7 +386,7 @@ void Refiner::Conclude() {
   summary.light_offsets_mm.assign(views, {});
   summary.exposures.assign(views, 1.0);
   for (size_t v = 0; v < views && model_.deviations().any(); ++v) {
-    const View flashed = WithFlashOffset(said_[v], summary.flash_offset_mm);
+    const View flashed = WithSharedLight(said_[v], summary.shared_light);
     const View& found = problem_.views[v].view;
     for (size_t i = 0; i < 3; ++i) {
       summary.light_offsets_mm[static_cast<size_t>(order_[v])][i] =
@@ -409,6 +421,8 @@ std::string RefineOptions::Check() const {
   if (estimation_rounds < 0) return "estimation rounds must be at least 0";
   if (neighbour_passes < 0) return "neighbour passes must be at least 0";
   if (!(flash_offset >= 0.0)) return "the expected flash offset must be at least 0";
+  if (!(flash_beam >= 0.0)) return "the expected gradient of the flash's beam must be at least 0";
+  if (!(distance_power >= 0.0)) return "the expected power of distance must be at least 0";
   if (!(exposure_spread >= 0.0)) return "the expected exposure spread must be at least 0";
   if (!(light_spread >= 0.0)) return "the expected light spread must be at least 0";
   if (!(prior >= 0.0)) return "the prior's weight must be at least 0";

@@ -17,6 +17,7 @@
 // Texels are independent within a step, so the result does not depend on the number of threads.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -28,7 +29,7 @@
 #include "fitting/reflectance/room_light.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/reflectance/view.h"
-#include "fitting/view_correction/flash_offset.h"
+#include "fitting/view_correction/shared_light.h"
 
 namespace glint {
 
@@ -60,6 +61,8 @@ struct RefineOptions {
   // places across their directions, relative to their distance (view_deviations.h). 0: as said.
   double exposure_spread = 0;
   double light_spread = 0;
+  // Standard deviations expected of the shape of all views' light (shared_light.h). 0: as said.
+  double flash_beam = 0, distance_power = 0;
   double prior = 1.0;         // factor on the priors' weight; 0: none
   double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
 
@@ -85,15 +88,15 @@ enum ConfidencePlane : int {
 struct RefineSummary {
   double start_cost = 0;  // means over texels
   double final_cost = 0;
-  double residual_sigma = 0;             // standard deviation of residuals, log units
-  double discrepancy = 0;                // of it, what the reflectance model does not express
-  double effective_views = 0;            // how many views say something of their own
-  int substances = 0;                    // that are told apart
-  double roughness_spread = 0;           // of texels about their substance's mean …
-  double specular_spread = 0;            // … relative
-  double normal_spread = 0;              // of n_x, n_y about 0, and between neighbours
-  FlashOffset flash_offset_mm{0, 0, 0};  // by which the views' lights were moved
-  // What single views deviate by: added to the lights beside `flash_offset_mm`, factors on
+  double residual_sigma = 0;    // standard deviation of residuals, log units
+  double discrepancy = 0;       // of it, what the reflectance model does not express
+  double effective_views = 0;   // how many views say something of their own
+  int substances = 0;           // that are told apart
+  double roughness_spread = 0;  // of texels about their substance's mean …
+  double specular_spread = 0;   // … relative
+  double normal_spread = 0;     // of n_x, n_y about 0, and between neighbours
+  SharedLight shared_light;     // of all views
+  // What single views deviate by: added to the lights beside `shared_light`, factors on
   // exposures; and the spreads of both, estimated.
   std::vector<Vec3d> light_offsets_mm;
   std::vector<double> exposures;

@@ -194,6 +194,13 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "photographs; 0: as they are said to be");
   set->AddRange("light-spread", &options->light_spread, 0, 1,
                 "likewise of their lights' places across their directions, relative to distance");
+  set->AddRange("flash-beam", &options->flash_beam, 0, 10,
+                "expected standard deviation of the gradient of the flash's intensity (logarithm) "
+                "by the tangent of its direction, where the light was not calibrated; it is found "
+                "from the photographs, alike in all; 0: none");
+  set->AddRange("distance-power", &options->distance_power, 0, 10,
+                "likewise of the power of the light's distance that an automatic exposure, or "
+                "distances that are not known well, multiply its intensity by; 0: none");
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");
   set->Add("views", &options->views, "views to use, by name or photo (default: those of fit)");
@@ -254,6 +261,8 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
       refine.flash_offset = options.flash_offset;
       refine.exposure_spread = options.exposure_spread;
       refine.light_spread = options.light_spread;
+      refine.flash_beam = options.flash_beam;
+      refine.distance_power = options.distance_power;
     }
     refined = Refine(
         ProblemOf(photographs), maps, refine, threads, [&](std::int64_t done, std::int64_t total) {
@@ -273,7 +282,7 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
            {{"convention", ToString(convention)}});
   result.data = {{"convention", ToString(convention)},
                  {"light_scale_rgb", start.light_scale_rgb},
-                 {"flash_offset_mm", refined.summary.flash_offset_mm},
+                 {"shared_light", JsonOf(refined.summary.shared_light)},
                  {"views", result.views},
                  {"method", "refined"}};
   result.metrics = Metrics(refined.summary, views);

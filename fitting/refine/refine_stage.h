@@ -13,7 +13,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 13;
+inline constexpr int kRefineVersion = 14;
 
 struct RefineStageOptions {
   RefineOptions refine;
@@ -24,6 +24,8 @@ struct RefineStageOptions {
   // Of the same sets, RefineOptions::exposure_spread and light_spread.
   double exposure_spread = 0.1;
   double light_spread = 0.02;
+  double flash_beam = 0.3;
+  double distance_power = 1;
   std::vector<std::string> views;    // names of those to use; empty: those that fit used
   std::vector<std::string> exclude;  // names of those held out
   std::filesystem::path from;        // maps to start from (svbrdf.exr); empty: the result of fit

@@ -139,7 +139,8 @@ SampleModel::SampleModel(const RefineProblem& problem, const SvbrdfMaps& initial
       substances_(MedianColour(problem), options.substances),
       normal_spreads_(static_cast<size_t>(substances_.count()), kNormalSpread),
       deviations_(static_cast<int>(problem.views.size()),
-                  {options.exposure_spread, options.light_spread, options.light_spread}) {
+                  {options.exposure_spread, options.light_spread, options.light_spread},
+                  {options.flash_beam, options.flash_beam, options.distance_power}) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   means_.mean = InitialMeans(initial, substances_);
 }
@@ -382,7 +383,7 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
   }
   const double scale = residuals_.scale();
   deviations_.Update(texels, SampleWorth(sampling.texels) / (scale * scale));
-  sampling.solver->deviate(deviations_.values());
+  sampling.solver->deviate(deviations_);
 }
 
 double SampleModel::CrossValidate(const Sampling& sampling) const {

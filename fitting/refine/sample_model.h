@@ -41,7 +41,7 @@ struct SampleSolver {
                            int worker)>
       predict;
   // From now on views deviate so from what is said of them.
-  std::function<void(const std::vector<DeviationValues>& deviations)> deviate;
+  std::function<void(const ViewDeviations& deviations)> deviate;
 };
 
 class SampleModel {

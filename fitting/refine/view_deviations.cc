@@ -21,8 +21,10 @@ constexpr double kShadingGradient = 0.1;
 
 using TexelMatrix = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
-// A view's deviations, then its shading's gradient along x and y.
-constexpr int kUnknowns = kViewDeviations + 2;
+// A view's deviations, then its shading's gradient along x and y, then the light's shape, which
+// all views share.
+constexpr int kOwnUnknowns = kViewDeviations + 2;
+constexpr int kUnknowns = kOwnUnknowns + kLightShapes;
 using UnknownsByTexel = Eigen::Matrix<double, kUnknowns, kTexelParameters>;
 
 struct OwnProducts {
@@ -32,13 +34,16 @@ struct OwnProducts {
   UnknownsByTexel by_values;
 };
 
-// Shading is an exposure that depends on the place.
+// Shading is an exposure that depends on the place, the light's shape is one in its own ways.
 OwnProducts WithShading(const DeviationProducts& products, const std::array<double, 2>& place) {
   Eigen::Matrix<double, kUnknowns, kViewDeviations> by =
       Eigen::Matrix<double, kUnknowns, kViewDeviations>::Zero();
   by.topRows<kViewDeviations>().setIdentity();
   for (int axis = 0; axis < 2; ++axis) {
     by(kViewDeviations + axis, kLogExposure) = place[static_cast<size_t>(axis)];
+  }
+  for (int i = 0; i < kLightShapes; ++i) {
+    by(kOwnUnknowns + i, kLogExposure) = products.by_shape[static_cast<size_t>(i)];
   }
   Eigen::Matrix<double, kViewDeviations, kViewDeviations> squared;
   Eigen::Matrix<double, kViewDeviations, 1> by_residual;
@@ -56,20 +61,33 @@ OwnProducts WithShading(const DeviationProducts& products, const std::array<doub
   return {products.view, by * squared * by.transpose(), by * by_residual, by * by_values};
 }
 
+// The light's shape is common to all views: sums over views' unknowns become sums over those that
+// are told apart.
+Eigen::MatrixXd SharingTheLight(int views) {
+  Eigen::MatrixXd sharing =
+      Eigen::MatrixXd::Zero(kUnknowns * views, kOwnUnknowns * views + kUnknowns - kOwnUnknowns);
+  for (int v = 0; v < views; ++v) {
+    for (int i = 0; i < kUnknowns; ++i) {
+      const int first = i < kOwnUnknowns ? kOwnUnknowns * v : kOwnUnknowns * (views - 1);
+      sharing(kUnknowns * v + i, first + i) = 1;
+    }
+  }
+  return sharing;
+}
+
 }  // namespace
 
 std::vector<DeviationProducts> ProductsOf(const KernelRows& rows,
                                           std::span<const std::vector<double>> nudged,
-                                          std::span<const int> views) {
-  std::vector<DeviationProducts> products(views.size());
-  for (size_t v = 0; v < views.size(); ++v) {
+                                          size_t views) {
+  std::vector<DeviationProducts> products(views);
+  for (size_t v = 0; v < views; ++v) {
     DeviationProducts& of = products[v];
-    of.view = views[v];
     for (int c = 0; c < 3; ++c) {
       const double residual = rows.row(c, KernelRows::kResidual)[v];
       std::array<double, kViewDeviations> by;
       for (size_t i = 0; i < kViewDeviations; ++i) {
-        by[i] = (nudged[i][static_cast<size_t>(c) * views.size() + v] - residual) / kDeviationStep;
+        by[i] = (nudged[i][static_cast<size_t>(c) * views + v] - residual) / kDeviationStep;
       }
       const std::pair<int, KernelRows::Row> values[] = {
           {DiffuseParameter(c), KernelRows::kByDiffuse},
@@ -89,18 +107,24 @@ std::vector<DeviationProducts> ProductsOf(const KernelRows& rows,
   return products;
 }
 
-ViewDeviations::ViewDeviations(int views, const DeviationValues& expected)
-    : expected_(expected), spreads_(expected), values_(static_cast<size_t>(views)) {
+ViewDeviations::ViewDeviations(int views, const DeviationValues& expected,
+                               const LightShapeValues& expected_shape)
+    : expected_(expected),
+      spreads_(expected),
+      expected_shape_(expected_shape),
+      values_(static_cast<size_t>(views)) {
+  const auto wide = [](double e) { return e > 0; };
   // Of one photograph there is no telling.
-  any_ = views > 1 && std::any_of(expected.begin(), expected.end(), [](double e) { return e > 0; });
+  any_ = views > 1 && (std::any_of(expected.begin(), expected.end(), wide) ||
+                       std::any_of(expected_shape.begin(), expected_shape.end(), wide));
 }
 
 void ViewDeviations::Update(std::span<const TexelOfViews> texels, double information) {
   if (!any_) return;
   const int views = static_cast<int>(values_.size());
-  const auto at = [](int view, int i) { return static_cast<Eigen::Index>(kUnknowns * view + i); };
-  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(kUnknowns * views, kUnknowns * views);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(kUnknowns * views);
+  const auto own_at = [](int view) { return static_cast<Eigen::Index>(kUnknowns * view); };
+  Eigen::MatrixXd own_hessian = Eigen::MatrixXd::Zero(kUnknowns * views, kUnknowns * views);
+  Eigen::VectorXd own_gradient = Eigen::VectorXd::Zero(kUnknowns * views);
   for (const TexelOfViews& texel : texels) {
     std::vector<OwnProducts> own;
     for (const DeviationProducts& products : *texel.products) {
@@ -109,17 +133,27 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
     const Eigen::Map<const TexelMatrix> inverse(texel.inverse.data());
     for (const OwnProducts& a : own) {
       const UnknownsByTexel follows = a.by_values * inverse;
-      gradient.segment<kUnknowns>(at(a.view, 0)) -= a.by_residual;
-      hessian.block<kUnknowns, kUnknowns>(at(a.view, 0), at(a.view, 0)) += a.squared;
+      own_gradient.segment<kUnknowns>(own_at(a.view)) -= a.by_residual;
+      own_hessian.block<kUnknowns, kUnknowns>(own_at(a.view), own_at(a.view)) += a.squared;
       for (const OwnProducts& b : own) {
-        hessian.block<kUnknowns, kUnknowns>(at(a.view, 0), at(b.view, 0)) -=
+        own_hessian.block<kUnknowns, kUnknowns>(own_at(a.view), own_at(b.view)) -=
             follows * b.by_values.transpose();
       }
     }
   }
-  hessian *= information;
-  gradient *= information;
-  for (int i = 0; i < kUnknowns; ++i) {
+  const Eigen::MatrixXd sharing = SharingTheLight(views);
+  Eigen::MatrixXd hessian = information * sharing.transpose() * own_hessian * sharing;
+  Eigen::VectorXd gradient = information * sharing.transpose() * own_gradient;
+  const auto at = [](int view, int i) {
+    return static_cast<Eigen::Index>(kOwnUnknowns * view + i);
+  };
+  for (int i = 0; i < kLightShapes; ++i) {
+    const auto k = static_cast<size_t>(i);
+    const double spread = std::max(expected_shape_[k], 1e-6);
+    hessian(at(views, i), at(views, i)) += 1 / (spread * spread);
+    gradient[at(views, i)] -= shape_[k] / (spread * spread);
+  }
+  for (int i = 0; i < kOwnUnknowns; ++i) {
     const bool shading = i >= kViewDeviations;
     const double spread =
         shading ? kShadingGradient : std::max(spreads_[static_cast<size_t>(i)], 1e-6);
@@ -143,6 +177,10 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
           std::clamp(step[at(v, i)], -kMostDeviationStep, kMostDeviationStep);
       variances[k][static_cast<size_t>(i)] = covariance(at(v, i), at(v, i));
     }
+  }
+  for (size_t i = 0; i < kLightShapes; ++i) {
+    shape_[i] +=
+        std::clamp(step[at(views, static_cast<int>(i))], -kMostDeviationStep, kMostDeviationStep);
   }
   UpdateSpreads(variances);
 }

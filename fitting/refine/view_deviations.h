@@ -6,6 +6,8 @@
 // flash's beam, unlike in every view. So a gradient of each view's shading is unknown as well; it
 // is not applied, and leaves the flash's place to the highlights.
 //
+// What all photographs share of their light's intensity (shared_light.h) is found with them.
+//
 // Each deviation is Gaussian about 0 with a spread estimated of the capture (MacKay 1992, as the
 // residuals' variance is). The deviations are the most probable ones with all texels eliminated:
 // Newton steps on the marginal likelihood, whose information is the Schur complement of the texels.
@@ -17,6 +19,7 @@
 
 #include "fitting/texel/texel_kernel.h"
 #include "fitting/view_correction/deviating_view.h"
+#include "fitting/view_correction/shared_light.h"
 
 namespace glint {
 
@@ -24,6 +27,7 @@ namespace glint {
 // derivatives by the view's deviations.
 struct DeviationProducts {
   int view = 0;
+  LightShapeValues by_shape{};  // ByLightShape()
   std::array<std::array<double, kViewDeviations>, kViewDeviations> squared{};
   std::array<double, kViewDeviations> by_residual{};
   std::array<std::array<double, kTexelParameters>, kViewDeviations> by_values{};
@@ -33,10 +37,11 @@ struct DeviationProducts {
 inline constexpr double kDeviationStep = 1e-4;
 
 // `rows`: of the views as they are; `nudged`: residuals [channel][usable view], for each deviation
-// in turn a step longer. `views`: which they are.
+// in turn a step longer, of as many usable views. Which views they are, and `by_shape`, is
+// left to the caller.
 std::vector<DeviationProducts> ProductsOf(const KernelRows& rows,
                                           std::span<const std::vector<double>> nudged,
-                                          std::span<const int> views);
+                                          size_t views);
 
 // What one texel tells of the views.
 struct TexelOfViews {
@@ -48,19 +53,22 @@ struct TexelOfViews {
 class ViewDeviations {
  public:
   // `expected`: standard deviations before anything is seen; 0: that one is as said.
-  ViewDeviations(int views, const DeviationValues& expected);
+  ViewDeviations(int views, const DeviationValues& expected,
+                 const LightShapeValues& expected_shape);
 
   bool any() const { return any_; }
   // One step. `information`: what a squared residual of these texels is worth, 1 / variance.
   void Update(std::span<const TexelOfViews> texels, double information);
 
   const std::vector<DeviationValues>& values() const { return values_; }
+  const LightShapeValues& shape() const { return shape_; }
   const DeviationValues& spreads() const { return spreads_; }
 
  private:
   void UpdateSpreads(const std::vector<DeviationValues>& variances);
 
   DeviationValues expected_, spreads_;
+  LightShapeValues expected_shape_, shape_{};
   std::vector<DeviationValues> values_;
   bool any_ = false;
 };

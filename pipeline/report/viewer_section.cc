@@ -84,6 +84,7 @@ Json ViewsJson(const ReportInput& input, const ReportOptions& options) {
                      {"light_rgb", lit.light_rgb},
                      {"ambient_rgb", lit.ambient_rgb},
                      {"exposure", lit.exposure},
+                     {"beam", lit.beam},
                      {"photograph", JpegUri(Shrunk(DisplayImage(photograph.rgb, photograph.width,
                                                                 photograph.height),
                                                    options.picture_px))}});

@@ -3,6 +3,7 @@ uniform vec3 lightPosition;   // in the scene
 uniform vec3 lightRadiance;   // E·d² of the point light, or the environment's scale
 uniform vec3 ambient;         // irradiance from everywhere, by π reflected
 uniform bool fallsOff;        // E = P/d², or P
+uniform vec2 beam;            // gradient of log P by the tangents of the light's direction
 uniform float exposure;
 uniform int channel;          // 0: all, then diffuse, specular, roughness, normal, confidence
 uniform sampler2D confidenceMap;
@@ -44,6 +45,7 @@ vec3 radianceOf(Texel t, vec3 n, vec3 v) {
   vec3 toLight = lightPosition - vPosition;
   vec3 l = normalize(toLight);
   vec3 received = fallsOff ? lightRadiance / dot(toLight, toLight) : lightRadiance;
+  if (beam != vec2(0.0)) received *= exp(-dot(beam, toLight.xy) / toLight.z);
   vec3 reflected = brdf(t, n, l, v) * max(dot(n, l), 1e-8);
   return received * reflected + ambient * (t.diffuse + t.specular) / 3.14159265358979;
 }

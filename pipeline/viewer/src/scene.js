@@ -50,6 +50,7 @@ export class MaterialScene {
       fallsOff: { value: true }, lighting: { value: 0 }, exposure: { value: 1 },
       channel: { value: 0 }, tiles: { value: new THREE.Vector2(1, 1) },
       lightPosition: { value: new THREE.Vector3() }, lightRadiance: { value: new THREE.Vector3() },
+      beam: { value: new THREE.Vector2() },
       ambient: { value: new THREE.Vector3() }, eye: { value: new THREE.Vector3() },
       environmentMap: { value: null }, environmentLods: { value: 0 }, environmentTurn: { value: new THREE.Vector2(1, 0) },
     };
@@ -139,6 +140,7 @@ export class MaterialScene {
     u.lighting.value = 0;
     u.lightPosition.value.set(...view.light_mm);
     u.lightRadiance.value.set(...view.light_rgb).multiplyScalar(view.exposure);
+    u.beam.value.set(...view.beam);
     u.ambient.value.set(...view.ambient_rgb).multiplyScalar(view.exposure);
     u.fallsOff.value = fallsOff;
     u.exposure.value = 1;
@@ -154,6 +156,7 @@ export class MaterialScene {
 
   leaveView() {
     this.view = null;
+    this.uniforms.beam.value.set(0, 0);
     this.mesh.scale.setScalar(1);
     this.wear(this.shape);
   }

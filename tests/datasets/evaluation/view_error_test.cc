@@ -7,8 +7,8 @@
 
 #include "datasets/procedural/material.h"
 #include "datasets/synth/view_set.h"
+#include "fitting/render/render_lit.h"
 #include "fitting/render/render_room.h"
-#include "fitting/render/renderer.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/files.h"
@@ -124,17 +124,18 @@ TEST_F(FittedMapsTest, ViewsAreComparedAsTheyWereCorrected) {
             ReadRectifiedImage(set_, set_.views[1]).rgb);
 }
 
-// The flash's offset is known of views that were not fitted, too.
+// What is found of the flash is known of views that were not fitted, too.
 TEST_F(FittedMapsTest, EveryViewIsLitByTheFlashThatWasFound) {
-  const FlashOffset offset{3, -2, 0};
-  const FittedMaps fit = ReadFittedMaps(WriteFit("refine", {{"flash_offset_mm", offset}}));
+  const SharedLight shared{{3, -2, 0}, {0.4, -0.3, 1.5}, 250};
+  const FittedMaps fit = ReadFittedMaps(WriteFit("refine", {{"shared_light", JsonOf(shared)}}));
   for (const RectifiedView& view : set_.views) {
     std::vector<float> expected(3 * material_.maps.texels());
-    RenderView(material_.maps, set_.plane, WithFlashOffset(view.view, offset), set_.convention,
-               expected.data());
+    RenderLit(material_.maps, set_.plane, WithSharedLight(view.view, shared), set_.convention,
+              expected.data());
     EXPECT_EQ(RenderFit(fit, set_, view, 2), expected);
   }
-  EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"flash_offset_mm", {1, 2}}})), UserError);
+  EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"shared_light", {{"offset_mm", {1, 2}}}}})),
+               UserError);
 }
 
 // The room lights held-out views, too.

@@ -57,9 +57,9 @@ inline SvbrdfMaps QuarteredMaps(int size, unsigned seed) {
 }
 
 // `bits` 0: float radiance; otherwise clipped at 1 and quantised in gamma 2.2.
-// `flash_offset`: of all lights beside where the views say they are.
+// `light`: what is not said of the views' lights.
 inline SyntheticScene Photograph(const SvbrdfMaps& truth, int views, int bits = 0,
-                                 unsigned seed = 5, const FlashOffset& flash_offset = {0, 0, 0}) {
+                                 unsigned seed = 5, const SharedLight& light = {}) {
   SyntheticScene scene;
   scene.truth = truth;
   scene.ldr = bits > 0;
@@ -69,7 +69,7 @@ inline SyntheticScene Photograph(const SvbrdfMaps& truth, int views, int bits = 
   for (int v = 0; v < views; ++v) {
     const double x = v ? jitter(random) : 0.0, y = v ? jitter(random) : 0.0;
     scene.views.push_back(DirView(x, y));
-    const View lit = WithFlashOffset(scene.views.back(), flash_offset);
+    const View lit = WithSharedLight(scene.views.back(), light);
     std::vector<float> rgb(3 * truth.texels());
     for (size_t t = 0; t < truth.texels(); ++t) {
       double radiance[3];
