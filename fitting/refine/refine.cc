@@ -22,7 +22,6 @@ namespace glint {
 namespace {
 
 constexpr int kTexelsPerPiece = 256;
-constexpr int kFlashMoves = 2;  // that half vectors turn by half is a first approximation
 
 void CheckProblem(const RefineProblem& problem, const SvbrdfMaps& start) {
   const SamplePlane& plane = problem.plane;
@@ -83,7 +82,6 @@ class Refiner {
 
  private:
   void EstimateModel();
-  void MoveFlash();
   void SetViews(const ViewDeviations& deviations);
   std::vector<DeviationProducts> OfViews(size_t texel, const TexelValues& values,
                                          std::span<const int> views, Worker* worker);
@@ -202,31 +200,15 @@ void Refiner::EstimateModel() {
   solver.deviate = [&](const ViewDeviations& deviations) { SetViews(deviations); };
   if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);
   SetViews(model_.deviations());
-  for (int i = 0; options_.flash_offset > 0 && i < kFlashMoves; ++i) {
-    model_.Begin(solver, threads_);
-    MoveFlash();
-  }
   model_.Estimate(solver, threads_);
   for (auto& worker : workers_) worker->search.SetNoise(std::sqrt(model_.residuals().variance()));
   model_.Describe(&result_.summary);
 }
 
-// To where the sample is level in the mean: of an offset half vectors turn by half.
-void Refiner::MoveFlash() {
-  const std::array<double, 2>& tilt = model_.tilt();
-  SharedLight& shared = result_.summary.shared_light;
-  // Normals that lean toward +x say that the half vectors do: that the light stands there.
-  FlashOffset more{0, 0, 0};
-  for (size_t i = 0; i < 2; ++i) more[i] = -2 * shared.distance_mm * tilt[i];
-  for (size_t i = 0; i < 2; ++i) shared.offset_mm[i] += more[i];
-  SetViews(model_.deviations());
-  model_.Level();
-}
-
-// To the flash's offset as it is known, and single views' deviations beside it.
+// To the shared light as it is known, and single views' deviations beside it.
 void Refiner::SetViews(const ViewDeviations& deviations) {
   SharedLight& shared = result_.summary.shared_light;
-  shared.shape = deviations.shape();
+  shared.values = deviations.shared();
   const auto set = [&](size_t v, const DeviationValues& deviation, RefineProblem* problem) {
     problem->views[v].view = Deviating(WithSharedLight(said_[v], shared), deviation);
   };
@@ -268,8 +250,8 @@ std::vector<DeviationProducts> Refiner::OfViews(size_t texel, const TexelValues&
   const double y_mm = plane.y_mm(static_cast<int>(texel) / plane.width);
   for (size_t i = 0; i < usable.size(); ++i) {
     products[i].view = usable[i];
-    products[i].by_shape = ByLightShape(problem_.views[static_cast<size_t>(usable[i])].view,
-                                        result_.summary.shared_light.distance_mm, x_mm, y_mm);
+    products[i].by_shared = ByShared(problem_.views[static_cast<size_t>(usable[i])].view,
+                                     result_.summary.shared_light.distance_mm, x_mm, y_mm);
   }
   return products;
 }

@@ -61,7 +61,7 @@ struct RefineOptions {
   // places across their directions, relative to their distance (view_deviations.h). 0: as said.
   double exposure_spread = 0;
   double light_spread = 0;
-  // Standard deviations expected of the shape of all views' light (shared_light.h). 0: as said.
+  // Standard deviations expected of all views' light (shared_light.h). 0: as said.
   double flash_beam = 0, distance_power = 0;
   double prior = 1.0;         // factor on the priors' weight; 0: none
   double robust_scale = 0.1;  // residuals (log units) beyond it count linearly

@@ -23,10 +23,6 @@ constexpr double kSeenAlready = 3;
 constexpr double kNormalSpread = 0.05;
 constexpr double kNormalTexels = 20;  // that this belief is worth, of a substance
 
-// Of log radiance, by which vignetting and the flash's beam may differ across the sample.
-constexpr double kCommonShading = 0.1;
-constexpr double kMostTiltStep = 0.05;  // of the sample's mean normal, in one round
-
 // By which spreads are tried.
 constexpr std::array<double, 4> kSpreadFactors = {0.25, 0.5, 1.0, 2.0};
 
@@ -140,7 +136,8 @@ SampleModel::SampleModel(const RefineProblem& problem, const SvbrdfMaps& initial
       normal_spreads_(static_cast<size_t>(substances_.count()), kNormalSpread),
       deviations_(static_cast<int>(problem.views.size()),
                   {options.exposure_spread, options.light_spread, options.light_spread},
-                  {options.flash_beam, options.flash_beam, options.distance_power}) {
+                  {options.flash_offset, options.flash_offset, options.flash_beam,
+                   options.flash_beam, options.distance_power}) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   means_.mean = InitialMeans(initial, substances_);
 }
@@ -153,8 +150,8 @@ TexelGaussian SampleModel::Knowledge(size_t texel) const {
     gaussian.Multiply(kSharedParameters[p], mean[p], 1 / variances[p]);
   }
   const double precision = NormalPrecision(texel);
-  gaussian.Multiply(kSlopeX, tilt_[0], precision);
-  gaussian.Multiply(kSlopeY, tilt_[1], precision);
+  gaussian.Multiply(kSlopeX, 0, precision);
+  gaussian.Multiply(kSlopeY, 0, precision);
   return gaussian;
 }
 
@@ -225,7 +222,6 @@ void SampleModel::Fit(std::span<const int> views, int rounds, bool update_residu
           sampling->solver->solve(texel, PriorOf(texel), sampling->solved[k].values, views, worker);
     });
     UpdateSubstances(*sampling);
-    if (tilts_) UpdateTilt(*sampling);
     if (update_residuals) UpdateDeviations(*sampling);
     if (update_residuals && learns_normals_) UpdateNormalSpreads(*sampling);
     if (update_residuals) UpdateResiduals(*sampling);
@@ -321,8 +317,8 @@ void SampleModel::UpdateNormalSpreads(const Sampling& sampling) {
     NormalOfSlopes(solved.values[kSlopeX], solved.values[kSlopeY], normal);
     double square = 0;
     for (int axis = 0; axis < 2; ++axis) {
-      const double off = normal[axis] - tilt_[static_cast<size_t>(axis)];
-      square += 0.5 * (off * off + variance * inverse(kSlopeX + axis, kSlopeX + axis));
+      square += 0.5 * (normal[axis] * normal[axis] +
+                       variance * inverse(kSlopeX + axis, kSlopeX + axis));
     }
     for (size_t k = 0; k < count; ++k) {
       const double share = substances_.shares(sampling.texels[i])[k];
@@ -331,43 +327,6 @@ void SampleModel::UpdateNormalSpreads(const Sampling& sampling) {
     }
   }
   for (size_t k = 0; k < count; ++k) normal_spreads_[k] = std::sqrt(squares[k] / weights[k]);
-}
-
-// A Newton step on the marginal likelihood of the mean normal, as UpdateMeans takes one: a flash
-// that is o of its distance aside tilts half vectors, and so the normals found, by o/2.
-//
-// Matte texels see a tilt by a few per cent of radiance, no more than what vignetting and the
-// flash's beam, alike in all views, are off by. That error is common to all texels, so n of them
-// know no more than one does: each is given n times its variance.
-void SampleModel::UpdateTilt(const Sampling& sampling) {
-  const double variance = residuals_.scale() * residuals_.scale();
-  const double worth = SampleWorth(sampling.texels);
-  const double expected = 0.5 * options_.flash_offset;
-  const auto n = static_cast<double>(sampling.texels.size());
-  for (int axis = 0; axis < 2; ++axis) {
-    const int parameter = kSlopeX + axis;
-    double& tilt = tilt_[static_cast<size_t>(axis)];
-    double information = 1 / (expected * expected), gradient = -tilt * information;
-    for (size_t i = 0; i < sampling.solved.size(); ++i) {
-      const SampledTexel& solved = sampling.solved[i];
-      if (solved.views == 0) continue;
-      const double precision = NormalPrecision(sampling.texels[i]);
-      const double posterior = variance * InverseInformation(solved)(parameter, parameter);
-      const double own = worth * std::max(0.0, precision - precision * precision * posterior);
-      // Mean square derivative of log radiance by the normal.
-      const double steepness =
-          (solved.gram[static_cast<size_t>(parameter)][static_cast<size_t>(parameter)] -
-           solved.prior_diagonal[static_cast<size_t>(parameter)]) /
-          (3 * solved.views);
-      const double common = kCommonShading * kCommonShading / std::max(steepness, 1e-9);
-      const double share = 1 / (1 + own * n * common);
-      double normal[2];
-      NormalOfSlopes(solved.values[kSlopeX], solved.values[kSlopeY], normal);
-      information += share * own;
-      gradient += share * worth * precision * (normal[axis] - tilt);
-    }
-    tilt += std::clamp(gradient / information, -kMostTiltStep, kMostTiltStep);
-  }
 }
 
 void SampleModel::UpdateDeviations(const Sampling& sampling) {
@@ -453,13 +412,6 @@ double SampleModel::CrossValidatedResiduals(const Sampling& sampling) const {
   const double channels =
       3 / (1 + 2 * residuals_.options().channel_correlation * residuals_.discrepancy_share());
   return SampleWorth(sampling.texels) * texels * views * channels;
-}
-
-void SampleModel::Begin(const SampleSolver& solver, int threads) {
-  Sampling sampling = Sample(kSampled, solver, threads);
-  tilts_ = true;
-  Fit(all_views_, options_.estimation_rounds, true, &sampling);
-  tilts_ = false;
 }
 
 void SampleModel::Estimate(const SampleSolver& solver, int threads) {

@@ -54,15 +54,9 @@ class SampleModel {
   // likelihood; spreads by cross-validation over the photographs, from three on. The same for any
   // number of threads.
   void Estimate(const SampleSolver& solver, int threads);
-  // The first rounds of it, with the sample's tilt as one more unknown.
-  void Begin(const SampleSolver& solver, int threads);
 
   const ResidualModel& residuals() const { return residuals_; }
-  // The sample's mean n_x and n_y, as estimated with its lights where they are said to be.
-  const std::array<double, 2>& tilt() const { return tilt_; }
   const ViewDeviations& deviations() const { return deviations_; }
-  // After the lights were moved to where the sample is level.
-  void Level() { tilt_ = {0, 0}; }
 
   // The texel's prior: without what its neighbours know, and with their values in `maps`.
   TexelPrior PriorOf(size_t texel) const;
@@ -80,7 +74,6 @@ class SampleModel {
   void UpdateResiduals(const Sampling& sampling);
   void UpdateNormalSpreads(const Sampling& sampling);
   double NormalPrecision(size_t texel) const;
-  void UpdateTilt(const Sampling& sampling);
   void UpdateDeviations(const Sampling& sampling);
   double SampleWorth(const std::vector<size_t>& texels) const;
   // Mean squared residual of held-out views.
@@ -100,11 +93,7 @@ class SampleModel {
   ResidualModel residuals_;
   Substances substances_;
   SubstanceMeans means_;
-  // Mean of n_x and n_y: of a sample that is level in truth, what a flash that is elsewhere looks
-  // like.
-  std::array<double, 2> tilt_{0, 0};
-  bool tilts_ = false;  // whether Fit estimates it
-  // Of n_x, n_y about the tilt, and about their neighbours' mean, by substance.
+  // Of n_x, n_y about 0, and about their neighbours' mean, by substance.
   std::vector<double> normal_spreads_;
   bool learns_normals_ = false;  // whether Fit estimates them
   ViewDeviations deviations_;

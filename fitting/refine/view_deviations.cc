@@ -11,7 +11,7 @@ namespace {
 constexpr double kExpectedViews = 2;
 constexpr double kMostDeviationStep = 0.2;  // of a deviation, in one step
 // What all views share is no deviation of theirs: exposures' mean is the albedos', and the lights'
-// is the flash's offset (flash_offset.h). The mean is held to 0 by so many times a view's own
+// is the flash's offset (shared_light.h). The mean is held to 0 by so many times a view's own
 // precision.
 constexpr double kHeldMean = 1e3;
 
@@ -21,10 +21,9 @@ constexpr double kShadingGradient = 0.1;
 
 using TexelMatrix = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
-// A view's deviations, then its shading's gradient along x and y, then the light's shape, which
-// all views share.
+// A view's deviations, then its shading's gradient along x and y, then what all views share.
 constexpr int kOwnUnknowns = kViewDeviations + 2;
-constexpr int kUnknowns = kOwnUnknowns + kLightShapes;
+constexpr int kUnknowns = kOwnUnknowns + kSharedLightValues;
 using UnknownsByTexel = Eigen::Matrix<double, kUnknowns, kTexelParameters>;
 
 struct OwnProducts {
@@ -34,7 +33,7 @@ struct OwnProducts {
   UnknownsByTexel by_values;
 };
 
-// Shading is an exposure that depends on the place, the light's shape is one in its own ways.
+// Shading is an exposure that depends on the place; what views share are deviations of each.
 OwnProducts WithShading(const DeviationProducts& products, const std::array<double, 2>& place) {
   Eigen::Matrix<double, kUnknowns, kViewDeviations> by =
       Eigen::Matrix<double, kUnknowns, kViewDeviations>::Zero();
@@ -42,8 +41,10 @@ OwnProducts WithShading(const DeviationProducts& products, const std::array<doub
   for (int axis = 0; axis < 2; ++axis) {
     by(kViewDeviations + axis, kLogExposure) = place[static_cast<size_t>(axis)];
   }
-  for (int i = 0; i < kLightShapes; ++i) {
-    by(kOwnUnknowns + i, kLogExposure) = products.by_shape[static_cast<size_t>(i)];
+  for (int i = 0; i < kSharedLightValues; ++i) {
+    for (int j = 0; j < kViewDeviations; ++j) {
+      by(kOwnUnknowns + i, j) = products.by_shared[static_cast<size_t>(i)][static_cast<size_t>(j)];
+    }
   }
   Eigen::Matrix<double, kViewDeviations, kViewDeviations> squared;
   Eigen::Matrix<double, kViewDeviations, 1> by_residual;
@@ -61,7 +62,7 @@ OwnProducts WithShading(const DeviationProducts& products, const std::array<doub
   return {products.view, by * squared * by.transpose(), by * by_residual, by * by_values};
 }
 
-// The light's shape is common to all views: sums over views' unknowns become sums over those that
+// Some unknowns are common to all views: sums over views' unknowns become sums over those that
 // are told apart.
 Eigen::MatrixXd SharingTheLight(int views) {
   Eigen::MatrixXd sharing =
@@ -108,15 +109,15 @@ std::vector<DeviationProducts> ProductsOf(const KernelRows& rows,
 }
 
 ViewDeviations::ViewDeviations(int views, const DeviationValues& expected,
-                               const LightShapeValues& expected_shape)
+                               const SharedLightValues& expected_shared)
     : expected_(expected),
       spreads_(expected),
-      expected_shape_(expected_shape),
+      expected_shared_(expected_shared),
       values_(static_cast<size_t>(views)) {
   const auto wide = [](double e) { return e > 0; };
   // Of one photograph there is no telling.
   any_ = views > 1 && (std::any_of(expected.begin(), expected.end(), wide) ||
-                       std::any_of(expected_shape.begin(), expected_shape.end(), wide));
+                       std::any_of(expected_shared.begin(), expected_shared.end(), wide));
 }
 
 void ViewDeviations::Update(std::span<const TexelOfViews> texels, double information) {
@@ -147,11 +148,11 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
   const auto at = [](int view, int i) {
     return static_cast<Eigen::Index>(kOwnUnknowns * view + i);
   };
-  for (int i = 0; i < kLightShapes; ++i) {
+  for (int i = 0; i < kSharedLightValues; ++i) {
     const auto k = static_cast<size_t>(i);
-    const double spread = std::max(expected_shape_[k], 1e-6);
+    const double spread = std::max(expected_shared_[k], 1e-6);
     hessian(at(views, i), at(views, i)) += 1 / (spread * spread);
-    gradient[at(views, i)] -= shape_[k] / (spread * spread);
+    gradient[at(views, i)] -= shared_[k] / (spread * spread);
   }
   for (int i = 0; i < kOwnUnknowns; ++i) {
     const bool shading = i >= kViewDeviations;
@@ -178,8 +179,8 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
       variances[k][static_cast<size_t>(i)] = covariance(at(v, i), at(v, i));
     }
   }
-  for (size_t i = 0; i < kLightShapes; ++i) {
-    shape_[i] +=
+  for (size_t i = 0; i < kSharedLightValues; ++i) {
+    shared_[i] +=
         std::clamp(step[at(views, static_cast<int>(i))], -kMostDeviationStep, kMostDeviationStep);
   }
   UpdateSpreads(variances);

@@ -6,7 +6,7 @@
 // flash's beam, unlike in every view. So a gradient of each view's shading is unknown as well; it
 // is not applied, and leaves the flash's place to the highlights.
 //
-// What all photographs share of their light's intensity (shared_light.h) is found with them.
+// What all photographs share of their light (shared_light.h) is found with them.
 //
 // Each deviation is Gaussian about 0 with a spread estimated of the capture (MacKay 1992, as the
 // residuals' variance is). The deviations are the most probable ones with all texels eliminated:
@@ -27,7 +27,7 @@ namespace glint {
 // derivatives by the view's deviations.
 struct DeviationProducts {
   int view = 0;
-  LightShapeValues by_shape{};  // ByLightShape()
+  DeviationsByShared by_shared{};
   std::array<std::array<double, kViewDeviations>, kViewDeviations> squared{};
   std::array<double, kViewDeviations> by_residual{};
   std::array<std::array<double, kTexelParameters>, kViewDeviations> by_values{};
@@ -37,7 +37,7 @@ struct DeviationProducts {
 inline constexpr double kDeviationStep = 1e-4;
 
 // `rows`: of the views as they are; `nudged`: residuals [channel][usable view], for each deviation
-// in turn a step longer, of as many usable views. Which views they are, and `by_shape`, is
+// in turn a step longer, of as many usable views. Which views they are, and `by_shared`, is
 // left to the caller.
 std::vector<DeviationProducts> ProductsOf(const KernelRows& rows,
                                           std::span<const std::vector<double>> nudged,
@@ -54,21 +54,21 @@ class ViewDeviations {
  public:
   // `expected`: standard deviations before anything is seen; 0: that one is as said.
   ViewDeviations(int views, const DeviationValues& expected,
-                 const LightShapeValues& expected_shape);
+                 const SharedLightValues& expected_shared);
 
   bool any() const { return any_; }
   // One step. `information`: what a squared residual of these texels is worth, 1 / variance.
   void Update(std::span<const TexelOfViews> texels, double information);
 
   const std::vector<DeviationValues>& values() const { return values_; }
-  const LightShapeValues& shape() const { return shape_; }
+  const SharedLightValues& shared() const { return shared_; }
   const DeviationValues& spreads() const { return spreads_; }
 
  private:
   void UpdateSpreads(const std::vector<DeviationValues>& variances);
 
   DeviationValues expected_, spreads_;
-  LightShapeValues expected_shape_, shape_{};
+  SharedLightValues expected_shared_, shared_{};
   std::vector<DeviationValues> values_;
   bool any_ = false;
 };

@@ -44,9 +44,11 @@ std::map<std::string, ViewCorrection> ReadCorrections(const std::filesystem::pat
 }
 
 Json JsonOf(const SharedLight& shared) {
-  return {{"offset_mm", shared.offset_mm},
-          {"beam", {shared.shape[kBeamX], shared.shape[kBeamY]}},
-          {"distance_power", shared.shape[kDistancePower]},
+  const SharedLightValues& values = shared.values;
+  return {{"offset_mm",
+           {values[kOffsetX] * shared.distance_mm, values[kOffsetY] * shared.distance_mm, 0}},
+          {"beam", {values[kBeamX], values[kBeamY]}},
+          {"distance_power", values[kDistancePower]},
           {"distance_mm", shared.distance_mm}};
 }
 
@@ -56,10 +58,9 @@ SharedLight ReadSharedLight(const std::filesystem::path& manifest_file, const Js
   const Json& light = data["shared_light"];
   const auto offset = RequireNumbers(manifest_file, light, "data.shared_light", "offset_mm", 3);
   const auto beam = RequireNumbers(manifest_file, light, "data.shared_light", "beam", 2);
-  std::copy(offset.begin(), offset.end(), shared.offset_mm.begin());
-  shared.shape = {beam[0], beam[1],
-                  RequireNumber(manifest_file, light, "data.shared_light", "distance_power")};
   shared.distance_mm = RequireNumber(manifest_file, light, "data.shared_light", "distance_mm");
+  shared.values = {offset[0] / shared.distance_mm, offset[1] / shared.distance_mm, beam[0], beam[1],
+                   RequireNumber(manifest_file, light, "data.shared_light", "distance_power")};
   return shared;
 }
 

@@ -2,27 +2,36 @@
 
 #include <cmath>
 
+#include "fitting/view_correction/flash_offset.h"
+
 namespace glint {
 namespace {
 
-double LogDistance(const View& view, double distance_mm) {
+double Distance_mm(const View& view) {
   const Vec3d& light = view.light_in_sample_mm;
-  return std::log(std::hypot(light[0], light[1], light[2]) / distance_mm);
+  return std::hypot(light[0], light[1], light[2]);
 }
 
 }  // namespace
 
 View WithSharedLight(const View& said, const SharedLight& shared) {
-  View view = WithFlashOffset(said, shared.offset_mm);
-  view.beam = {shared.shape[kBeamX], shared.shape[kBeamY]};
-  view.exposure *= std::exp(shared.shape[kDistancePower] * LogDistance(said, shared.distance_mm));
+  const SharedLightValues& values = shared.values;
+  View view = WithFlashOffset(
+      said, {values[kOffsetX] * shared.distance_mm, values[kOffsetY] * shared.distance_mm, 0});
+  view.beam = {values[kBeamX], values[kBeamY]};
+  view.exposure *= std::pow(Distance_mm(said) / shared.distance_mm, values[kDistancePower]);
   return view;
 }
 
-LightShapeValues ByLightShape(const View& view, double distance_mm, double x_mm, double y_mm) {
+DeviationsByShared ByShared(const View& view, double distance_mm, double x_mm, double y_mm) {
   const Vec3d& light = view.light_in_sample_mm;
-  return {(x_mm - light[0]) / light[2], (y_mm - light[1]) / light[2],
-          LogDistance(view, distance_mm)};
+  const double own_distance_mm = Distance_mm(view);
+  DeviationsByShared by{};
+  by[kOffsetX][kLightAcrossX] = by[kOffsetY][kLightAcrossY] = distance_mm / own_distance_mm;
+  by[kBeamX][kLogExposure] = (x_mm - light[0]) / light[2];
+  by[kBeamY][kLogExposure] = (y_mm - light[1]) / light[2];
+  by[kDistancePower][kLogExposure] = std::log(own_distance_mm / distance_mm);
+  return by;
 }
 
 }  // namespace glint

@@ -6,23 +6,23 @@
 #include <array>
 
 #include "fitting/reflectance/view.h"
-#include "fitting/view_correction/flash_offset.h"
+#include "fitting/view_correction/deviating_view.h"
 
 namespace glint {
 
-// Of the logarithm of the light's intensity.
-enum LightShape : int {
+enum SharedLightValue : int {
+  kOffsetX,        // of the flash across the light's direction (flash_offset.h), of `distance_mm`:
+  kOffsetY,        // the camera's place, or one measured by hand, is often stated for it
   kBeamX,          // View::beam: telephones' flashes and lenses fall off toward the edges, and one
   kBeamY,          // whose axis passes beside the sample lights one side of it more
-  kDistancePower,  // by the logarithm of the light's distance: an automatic exposure makes up for
+  kDistancePower,  // of the light's intensity, by its distance: an automatic exposure makes up for
                    // distance, and distances that are not known well do not vary as much as said
-  kLightShapes
+  kSharedLightValues
 };
-using LightShapeValues = std::array<double, kLightShapes>;
+using SharedLightValues = std::array<double, kSharedLightValues>;
 
 struct SharedLight {
-  FlashOffset offset_mm{0, 0, 0};
-  LightShapeValues shape{};
+  SharedLightValues values{};
   double distance_mm = 1;  // at which kDistancePower changes nothing
 
   bool operator==(const SharedLight&) const = default;
@@ -30,8 +30,9 @@ struct SharedLight {
 
 View WithSharedLight(const View& said, const SharedLight& shared);
 
-// Derivatives by the shape's values of the logarithm of what a texel receives, the light where
-// `view` has it.
-LightShapeValues ByLightShape(const View& view, double distance_mm, double x_mm, double y_mm);
+// What the shared values do to one view at one place, as deviations of its own (deviating_view.h):
+// derivatives [shared value][deviation], the light where `view` has it.
+using DeviationsByShared = std::array<DeviationValues, kSharedLightValues>;
+DeviationsByShared ByShared(const View& view, double distance_mm, double x_mm, double y_mm);
 
 }  // namespace glint

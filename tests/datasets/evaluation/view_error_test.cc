@@ -126,7 +126,7 @@ TEST_F(FittedMapsTest, ViewsAreComparedAsTheyWereCorrected) {
 
 // What is found of the flash is known of views that were not fitted, too.
 TEST_F(FittedMapsTest, EveryViewIsLitByTheFlashThatWasFound) {
-  const SharedLight shared{{3, -2, 0}, {0.4, -0.3, 1.5}, 250};
+  const SharedLight shared{{3. / 256, -2. / 256, 0.4, -0.3, 1.5}, 256};
   const FittedMaps fit = ReadFittedMaps(WriteFit("refine", {{"shared_light", JsonOf(shared)}}));
   for (const RectifiedView& view : set_.views) {
     std::vector<float> expected(3 * material_.maps.texels());

@@ -299,18 +299,18 @@ TEST(Refine, FindsWhereTheFlashStands) {
       truth.plane(kSpecularR + c)[t] = 0.05f;
     }
   }
-  const Vec3d offset{0.12, -0.06, 0};  // of a distance of 2.1 to 2.7
-  SyntheticScene scene = Photograph(truth, 10, 8, 5, {.offset_mm = offset});
+  const SharedLightValues offset{0.05, -0.025};
+  SyntheticScene scene = Photograph(truth, 10, 8, 5, {.values = offset, .distance_mm = 2.4});
   RefineOptions options;
   options.flash_offset = 0.05;
   const RefineResult found = Refine(scene.Problem(), truth, options, 1);
   for (size_t i = 0; i < 2; ++i) {
     // Expected beforehand at 0.11, so that it is drawn toward 0.
-    EXPECT_NEAR(found.summary.shared_light.offset_mm[i], offset[i], 0.5 * std::abs(offset[i])) << i;
+    EXPECT_NEAR(found.summary.shared_light.values[i], offset[i], 0.5 * std::abs(offset[i])) << i;
   }
   options.flash_offset = 0;
   const RefineResult believed = Refine(scene.Problem(), truth, options, 1);
-  EXPECT_EQ(believed.summary.shared_light.offset_mm, (Vec3d{0, 0, 0}));
+  EXPECT_EQ(believed.summary.shared_light.values, SharedLightValues{});
   EXPECT_LT(MeanSquare(found.maps, truth, kNormalX, kNormalY),
             0.3 * MeanSquare(believed.maps, truth, kNormalX, kNormalY));
 }
@@ -319,18 +319,18 @@ TEST(Refine, LeavesAFlashWhereItStands) {
   const SyntheticScene scene = Photograph(QuarteredMaps(24, 26), 8, 8);
   RefineOptions options;
   options.flash_offset = 0.05;
-  const FlashOffset found =
+  const SharedLightValues found =
       Refine(scene.Problem(), DisturbedMaps(scene.truth, 0.5f, 27), options, 1)
-          .summary.shared_light.offset_mm;
-  // Within twice the error of the mean of normals that scatter by 0.17: 2.1 · 2 · 2 · 0.17 / 24.
-  EXPECT_NEAR(found[0], 0, 0.06);
-  EXPECT_NEAR(found[1], 0, 0.06);
+          .summary.shared_light.values;
+  // Within twice the error of the mean of normals that scatter by 0.17: 2 · 2 · 0.17 / 24.
+  EXPECT_NEAR(found[kOffsetX], 0, 0.028);
+  EXPECT_NEAR(found[kOffsetY], 0, 0.028);
 }
 
 // A flash whose beam passes beside the sample, and an exposure that makes up for distance: alike in
 // all photographs, so that those which were not fitted are predicted too.
 TEST(Refine, FindsTheShapeOfTheFlashsLight) {
-  const SharedLight light{.shape = {0.4, -0.2, 1.0}, .distance_mm = 2.4};
+  const SharedLight light{.values = {0, 0, 0.4, -0.2, 1.0}, .distance_mm = 2.4};
   const SyntheticScene scene = Photograph(QuarteredMaps(24, 26), 8, 8, 5, light);
   const SvbrdfMaps start = DisturbedMaps(scene.truth, 0.5f, 27);
   RefineOptions options;
@@ -340,11 +340,11 @@ TEST(Refine, FindsTheShapeOfTheFlashsLight) {
   options.flash_beam = 0.3;
   options.distance_power = 1;
   const RefineResult found = Refine(scene.Problem(), start, options, 1);
-  const LightShapeValues& shape = found.summary.shared_light.shape;
+  const SharedLightValues& values = found.summary.shared_light.values;
   // Exposures are expected to scatter by 0.045 at least (0.1, worth two of ten views), tangents do
   // by 0.37 and logarithms of distances by 0.08: standard deviations of 0.05 and 0.2, thrice.
-  for (size_t i = 0; i < 2; ++i) EXPECT_NEAR(shape[i], light.shape[i], 0.15) << i;
-  EXPECT_NEAR(shape[kDistancePower], 1.0, 0.6);
+  for (size_t i = kBeamX; i <= kBeamY; ++i) EXPECT_NEAR(values[i], light.values[i], 0.15) << i;
+  EXPECT_NEAR(values[kDistancePower], 1.0, 0.6);
   EXPECT_LT(MeanSquare(found.maps, scene.truth, kDiffuseR, kDiffuseB), 0.7 * believed);
 }
 
@@ -354,12 +354,12 @@ TEST(Refine, LeavesTheShapeOfALightThatIsAsSaid) {
   options.exposure_spread = 0.1;
   options.flash_beam = 0.3;
   options.distance_power = 1;
-  const LightShapeValues shape =
+  const SharedLightValues values =
       Refine(scene.Problem(), DisturbedMaps(scene.truth, 0.5f, 27), options, 1)
-          .summary.shared_light.shape;
-  EXPECT_NEAR(shape[kBeamX], 0, 0.03);
-  EXPECT_NEAR(shape[kBeamY], 0, 0.03);
-  EXPECT_NEAR(shape[kDistancePower], 0, 0.1);
+          .summary.shared_light.values;
+  EXPECT_NEAR(values[kBeamX], 0, 0.03);
+  EXPECT_NEAR(values[kBeamY], 0, 0.03);
+  EXPECT_NEAR(values[kDistancePower], 0, 0.1);
 }
 
 double RootMeanSquareLog(const std::vector<double>& factors) {
