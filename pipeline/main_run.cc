@@ -1,6 +1,7 @@
 // glint-run: every stage that is not up to date.
 #include <string>
 
+#include "pipeline/contract/errors.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/driver/run.h"
 #include "pipeline/driver/status.h"
@@ -10,6 +11,7 @@ namespace {
 struct RunArguments {
   glint::RunOptions run;
   bool dry_run = false;
+  bool quick = false;
   int jobs = 0;
 };
 
@@ -19,9 +21,13 @@ void AddOptions(glint::OptionSet* options, RunArguments* o) {
   options->Add("until", &o->run.until, "end after this stage");
   options->Add("dry-run", &o->dry_run, "only say which stages would run and why");
   options->AddRange("jobs,-j", &o->jobs, 0, 1024, "same as --threads");
-  options->AddChoice("method", &o->run.choices.method, {"classic", "latent", "refined"},
-                     "classic: maps fitted texel by texel; latent: in the learned space; refined: "
-                     "latent, then per texel (what is done without this option)");
+  options->AddChoice("method", &o->run.choices.method, {"start", "classic", "latent", "refined"},
+                     "start: maps as a network estimates them, nothing fitted; classic: maps "
+                     "fitted texel by texel; latent: in the learned space; refined: latent, then "
+                     "per texel (what is done without this option)");
+  options->Add("quick", &o->quick,
+               "a first look in seconds, while the sample still lies on the table: the same as "
+               "--method start; a run without it then fits");
   options->Add("exclude", &o->run.choices.exclude,
                "photographs (file or view names) held out from fit and refine");
   options->Add("views", &o->run.choices.views, "use only these photographs in fit and refine");
@@ -34,6 +40,15 @@ glint::ProgramResult DryRun(const RunArguments& o) {
       glint::SelectSteps(glint::StageSteps(capture, o.run.choices), o.run.from, o.run.until);
   const glint::CaptureStatus status = glint::LookAtCapture(capture, steps);
   return {status.Plan(), status.ToJson()};
+}
+
+void ApplyQuick(RunArguments* o) {
+  std::string& method = o->run.choices.method;
+  if (!o->quick) return;
+  if (!method.empty() && method != "start") {
+    throw glint::UserError("--quick: found with --method " + method + "; give one of the two");
+  }
+  method = "start";
 }
 
 int ThreadsForStages(int argc, char** argv, const glint::CommonOptions& common, int jobs) {
@@ -50,24 +65,25 @@ int main(int argc, char** argv) {
   RunArguments o;
   glint::OptionSet options;
   AddOptions(&options, &o);
-  return glint::RunProgram(argc, argv,
-                           {"glint-run",
-                            "Runs every stage of a capture that is out of date: calib, rectify, "
-                            "fit, refine, tile (with a "
-                            "section [tile] in capture.toml), export, report.",
-                            GLINT_VERSION,
-                            "Examples:\n  glint run wood\n  glint run wood --until rectify\n"
-                            "  glint run wood --exclude img_003.jpg,img_007.jpg --method latent"},
-                           &options,
-                           [&](const glint::CommonOptions& common) -> glint::ProgramResult {
-                             o.run.force = common.force;
-                             o.run.choices.seed = common.seed;
-                             if (o.dry_run) return DryRun(o);
-                             o.run.threads = ThreadsForStages(argc, argv, common, o.jobs);
-                             o.run.memory_gb = common.memory_gb;
-                             o.run.log_level = common.log_level;
-                             o.run.quiet_stdout = common.json;
-                             const glint::RunSummary summary = glint::RunCapture(o.run);
-                             return {summary.BriefReport(), summary.ToJson()};
-                           });
+  return glint::RunProgram(
+      argc, argv,
+      {"glint-run",
+       "Runs every stage of a capture that is out of date: calib, rectify, "
+       "fit, refine, tile (with a "
+       "section [tile] in capture.toml), export, report.",
+       GLINT_VERSION,
+       "Examples:\n  glint run wood\n  glint run wood --quick\n  glint run wood --until rectify\n"
+       "  glint run wood --exclude img_003.jpg,img_007.jpg --method latent"},
+      &options, [&](const glint::CommonOptions& common) -> glint::ProgramResult {
+        o.run.force = common.force;
+        o.run.choices.seed = common.seed;
+        ApplyQuick(&o);
+        if (o.dry_run) return DryRun(o);
+        o.run.threads = ThreadsForStages(argc, argv, common, o.jobs);
+        o.run.memory_gb = common.memory_gb;
+        o.run.log_level = common.log_level;
+        o.run.quiet_stdout = common.json;
+        const glint::RunSummary summary = glint::RunCapture(o.run);
+        return {summary.BriefReport(), summary.ToJson()};
+      });
 }

@@ -53,8 +53,8 @@ CaptureEstimate EstimateCapture(const Capture& capture, const std::vector<StageS
   CaptureEstimate estimate;
   estimate.size = SizeOf(capture);
   for (const StageStep& step : steps) {
-    estimate.stages.push_back({step.stage, PredictedSeconds(step.stage, estimate.size),
-                               PredictedMemory_bytes(step.stage, estimate.size, threads)});
+    estimate.stages.push_back({step.stage, PredictedSeconds(step.cost, estimate.size),
+                               PredictedMemory_bytes(step.cost, estimate.size, threads)});
   }
   return estimate;
 }

@@ -177,7 +177,7 @@ RunPlan PlanOf(const Capture& capture, const std::vector<NinjaEdge>& edges) {
     for (const std::string& earlier : step.waits_for) runs |= running.count(earlier) > 0;
     if (!runs) continue;
     running.insert(step.stage);
-    plan.stages.emplace_back(step.stage, PredictedSeconds(step.stage, size));
+    plan.stages.emplace_back(step.stage, PredictedSeconds(step.cost, size));
   }
   return plan;
 }

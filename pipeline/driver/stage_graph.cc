@@ -17,7 +17,7 @@ std::string Joined(const std::vector<std::string>& words, const std::string& sep
 StageStep Step(const std::string& stage, std::vector<std::string> files,
                std::vector<std::string> waits_for) {
   StageStep step;
-  step.stage = stage;
+  step.stage = step.cost = stage;
   step.manifest = ManifestPath(stage);
   step.inputs = {"capture.toml"};
   step.inputs.insert(step.inputs.end(), files.begin(), files.end());
@@ -103,6 +103,7 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
   const std::string& method = choices.method;
   if (!method.empty()) {
     steps.back().arguments = {"--method", method == "refined" ? "latent" : method};
+    if (method == "start") steps.back().cost = "start";
     // Nothing comes after it that finds what is finer.
     if (method == "latent")
       steps.back().arguments.insert(steps.back().arguments.end(), {"--finest-size", "0"});

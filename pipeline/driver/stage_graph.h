@@ -12,8 +12,8 @@ namespace glint {
 
 // What a person chose for the whole run; capture.toml's tables hold everything else.
 struct RunChoices {
-  // "refined": latent fit, then refinement per texel; "latent", "classic": the fit alone, with that
-  // method; "": as "refined", but the fit's method is left to capture.toml.
+  // "refined": latent fit, then refinement per texel; "latent", "classic", "start": the fit alone,
+  // with that method; "": as "refined", but the fit's method is left to capture.toml.
   std::string method;
   std::vector<std::string> exclude;  // photographs held out from fit and refine
   std::vector<std::string> views;    // the only photographs fit and refine see; empty: all
@@ -32,6 +32,7 @@ struct StageStep {
   std::vector<std::string> inputs;     // files; those of earlier stages are their manifests
   std::vector<std::string> waits_for;  // stages among the steps whose manifests are inputs
   std::string manifest;                // "glint/fit/manifest.json"
+  std::string cost;                    // what it costs, by the names of cost_model.h
 };
 
 // "calib", "rectify", … in order, whether or not a capture needs them.

@@ -118,6 +118,15 @@ std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
   return Section("Fit quality", "", figures);
 }
 
+// Maps that nothing was fitted to must not pass for the result.
+std::string FirstLookNote(const ReportInput& input) {
+  if (input.Has("refine") || !input.Has("fit")) return "";
+  if (input.manifests.at("fit").data.value("method", "") != "start") return "";
+  return "<p><strong>A first look:</strong> these maps are what a network estimates; they were not "
+         "fitted to the photographs. <code>glint run</code> without <code>--quick</code> fits "
+         "them.</p>\n";
+}
+
 std::string TitleSection(const ReportInput& input) {
   const Trace rectify{ManifestLink("rectify"), "data"};
   return "<h1>" + HtmlText(MaterialName(input)) + "</h1>\n<p>" +
@@ -126,7 +135,8 @@ std::string TitleSection(const ReportInput& input) {
          FigureHtml(input.fit.maps.width, rectify.Field("width")) + " × " +
          FigureHtml(input.fit.maps.height, rectify.Field("height")) + " texels, from " +
          std::to_string(input.used_views.size()) +
-         (input.used_views.size() == 1 ? " photograph" : " photographs") + ".</p>\n";
+         (input.used_views.size() == 1 ? " photograph" : " photographs") + ".</p>\n" +
+         FirstLookNote(input);
 }
 
 std::string Folded(const std::string& title, const std::string& body) {

@@ -317,6 +317,17 @@ TEST_F(RunTest, MethodsWithoutRefinementLeaveItOut) {
   EXPECT_THAT(outcome.err, HasSubstr("found 'refine', which this run does not have"));
 }
 
+TEST_F(RunTest, QuickEstimatesAndARunAfterItFits) {
+  EXPECT_THAT(RunJson({"--quick"}).computed,
+              ElementsAre("calib", "rectify", "fit", "export", "report"));
+  EXPECT_EQ(Json::parse(test::ReadAll(manifest("fit")))["options"]["method"], "start");
+  EXPECT_THAT(RunJson({"--method", "start"}).started, IsEmpty());
+  EXPECT_THAT(RunJson().computed, ElementsAre("fit", "refine", "export", "report"));
+  const Outcome both = Glint({"run", capture().string(), "--quick", "--method", "latent"});
+  EXPECT_EQ(both.code, 2);
+  EXPECT_THAT(both.err, HasSubstr("--quick: found with --method latent; give one of the two"));
+}
+
 TEST_F(RunTest, AnImportedCaptureStartsAtFit) {
   RunJson();
   const fs::path imported = folder_.path() / "imported";

@@ -78,14 +78,16 @@ class ReportTest : public testing::Test {
     stage.Commit(ToJson(set), Json::object());
   }
 
-  void WriteFit(const SvbrdfMaps& maps) {
+  void WriteFit(const SvbrdfMaps& maps, const std::string& method = "latent") {
     OptionSet options;
     Stage stage(work() / "fit", {"fit", 1}, options, CommonOptions(),
                 {work() / "rectify/manifest.json"}, true);
     WriteSvbrdf(stage.Output("svbrdf.exr"), maps, ReflectanceConvention());
     Json curve = Json::array();
     for (int i = 0; i < 50; ++i) curve.push_back(1.0 / (1 + i));
-    stage.Commit({{"views", {"view_000", "view_001"}}, {"light_scale_rgb", {1.0, 1.0, 1.0}}},
+    stage.Commit({{"views", {"view_000", "view_001"}},
+                  {"light_scale_rgb", {1.0, 1.0, 1.0}},
+                  {"method", method}},
                  {{"loss", curve}, {"seconds_per_step", 0.25}});
   }
 
@@ -138,6 +140,12 @@ TEST_F(ReportTest, TheViewersDataIsJsonThatEndsWhereItShould) {
   EXPECT_EQ(material["views"][0]["photo"], "photos/<0>.jpg");
   EXPECT_EQ(material["views"][2]["fitted"], false);
   EXPECT_EQ(material["size_texel"], Json({kSize, kSize}));
+}
+
+TEST_F(ReportTest, MapsThatWereNotFittedAreCalledAFirstLook) {
+  EXPECT_THAT(Make().html, Not(HasSubstr("first look")));
+  WriteFit(Maps(), "start");
+  EXPECT_THAT(Make().html, HasSubstr("<strong>A first look:</strong>"));
 }
 
 TEST_F(ReportTest, LinksToWhatWasExportedFromTheseMaps) {
