@@ -9,6 +9,7 @@ include(GNUInstallDirs)
 file(GLOB glint_models CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fitting/models/*.safetensors)
 install(FILES ${glint_models} DESTINATION share/glint/models)
 install(FILES pipeline/contract/manifest.schema.json DESTINATION share/glint/schemas)
+install(DIRECTORY workflow DESTINATION share/glint)
 install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs FILES_MATCHING PATTERN "*.md")
 

@@ -24,6 +24,7 @@ ProgramResult WriteReport(const std::filesystem::path& folder, OptionSet* set,
   const ReportInput input = ReadReportInput(capture.work(), options->from);
   const Report report = MakeReport(input, *options, common.threads);
   WriteFileAtomically(stage.Output("index.html"), report.html);
+  WriteFileAtomically(stage.Output("thumbnail.jpg"), report.thumbnail_jpeg);
   stage.Commit(Json::object(), report.metrics);
   return {"report: " + page,
           {{"stage", "report"}, {"up_to_date", false}, {"page", page}, {"metrics", report.metrics}},

@@ -28,7 +28,7 @@ std::string CaptureEstimate::ToText() const {
   };
   std::string text;
   for (const StageEstimate& stage : stages) {
-    text += line(stage.stage, stage.seconds, stage.memory_bytes);
+    text += line(stage.step.stage, stage.seconds, stage.memory_bytes);
   }
   return text + line("all", seconds(), memory_bytes()) +
          "on two cores of a Xeon of 2.8 GHz; other machines differ by one factor\n";
@@ -37,8 +37,13 @@ std::string CaptureEstimate::ToText() const {
 Json CaptureEstimate::ToJson() const {
   Json list = Json::array();
   for (const StageEstimate& stage : stages) {
-    list.push_back(
-        {{"stage", stage.stage}, {"seconds", stage.seconds}, {"memory_bytes", stage.memory_bytes}});
+    list.push_back({{"stage", stage.step.stage},
+                    {"arguments", stage.step.arguments},
+                    {"inputs", stage.step.inputs},
+                    {"waits_for", stage.step.waits_for},
+                    {"manifest", stage.step.manifest},
+                    {"seconds", stage.seconds},
+                    {"memory_bytes", stage.memory_bytes}});
   }
   return {{"photographs", size.photographs},
           {"photograph_px", size.photograph_px},
@@ -53,7 +58,7 @@ CaptureEstimate EstimateCapture(const Capture& capture, const std::vector<StageS
   CaptureEstimate estimate;
   estimate.size = SizeOf(capture);
   for (const StageStep& step : steps) {
-    estimate.stages.push_back({step.stage, PredictedSeconds(step.cost, estimate.size),
+    estimate.stages.push_back({step, PredictedSeconds(step.cost, estimate.size),
                                PredictedMemory_bytes(step.cost, estimate.size, threads)});
   }
   return estimate;

@@ -10,7 +10,7 @@
 namespace glint {
 
 struct StageEstimate {
-  std::string stage;
+  StageStep step;
   double seconds = 0, memory_bytes = 0;
 };
 

@@ -38,6 +38,7 @@ constexpr KnownVerb kKnownVerbs[] = {
     {"report", "stage: one HTML page of the whole result"},
     {"estimate", "estimate the time and memory of every stage"},
     {"view", "open the page of a result"},
+    {"overview", "write one page about many captures"},
     {"completion", "print a shell completion script"},
     {"manual", "write manual pages"},
     {"eval", "compare maps or re-rendered views with the truth"},

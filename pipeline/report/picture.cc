@@ -30,14 +30,17 @@ cv::Mat Bytes(const Image& image) {
   return bytes;
 }
 
-std::string Encoded(const Image& image, const std::string& extension, const std::string& type,
+std::string Encoded(const Image& image, const std::string& extension,
                     const std::vector<int>& parameters) {
   std::vector<unsigned char> bytes;
   if (!cv::imencode(extension, Bytes(image), bytes, parameters)) {
-    throw ComputationError("report: a picture cannot be encoded as " + type);
+    throw ComputationError("report: a picture cannot be encoded as " + extension);
   }
-  return "data:image/" + type + ";base64," +
-         Base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return {bytes.begin(), bytes.end()};
+}
+
+std::string DataUri(const std::string& type, const std::string& bytes) {
+  return "data:image/" + type + ";base64," + Base64(bytes);
 }
 
 }  // namespace
@@ -59,12 +62,16 @@ Image Shrunk(const Image& image, int largest_side) {
   return small;
 }
 
+std::string JpegBytes(const Image& image, int quality) {
+  return Encoded(image, ".jpg", {cv::IMWRITE_JPEG_QUALITY, quality});
+}
+
 std::string JpegUri(const Image& image, int quality) {
-  return Encoded(image, ".jpg", "jpeg", {cv::IMWRITE_JPEG_QUALITY, quality});
+  return DataUri("jpeg", JpegBytes(image, quality));
 }
 
 std::string PngUri(const Image& image) {
-  return Encoded(image, ".png", "png", {cv::IMWRITE_PNG_COMPRESSION, 9});
+  return DataUri("png", Encoded(image, ".png", {cv::IMWRITE_PNG_COMPRESSION, 9}));
 }
 
 std::string ImageHtml(const std::string& uri, const std::string& alternative) {

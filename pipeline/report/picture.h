@@ -12,7 +12,9 @@ namespace glint {
 // Shrinks to at most `largest_side` pixels a side (area average); never enlarges.
 Image Shrunk(const Image& image, int largest_side);
 
-// The image (one or three channels, display values, clamped to [0, 1]) as a data: URI.
+// The image (one or three channels, display values, clamped to [0, 1]) as a JPEG file's bytes, and
+// as a data: URI.
+std::string JpegBytes(const Image& image, int quality);
 std::string JpegUri(const Image& image, int quality = 88);
 std::string PngUri(const Image& image);
 

@@ -6,6 +6,7 @@
 #include "pipeline/report/guidance_section.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/sections.h"
+#include "pipeline/report/thumbnail.h"
 #include "pipeline/report/viewer_section.h"
 
 namespace glint {
@@ -95,6 +96,7 @@ Report MakeReport(const ReportInput& input, const ReportOptions& options, int th
   }
   body += Folded("Photographs, cameras and every stage in detail", details);
   report.html = HtmlPage(MaterialName(input) + ": material report", body + ViewerScript());
+  report.thumbnail_jpeg = ThumbnailJpeg(input.fit.maps, input.fit.convention);
   return report;
 }
 

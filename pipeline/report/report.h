@@ -18,7 +18,7 @@
 
 namespace glint {
 
-inline constexpr int kReportVersion = 4;
+inline constexpr int kReportVersion = 5;
 
 struct ReportOptions {
   std::string from = "refine";  // stage whose maps are shown: refine, fit
@@ -48,6 +48,7 @@ ReportInput ReadReportInput(const std::filesystem::path& work, const std::string
 
 struct Report {
   std::string html;
+  std::string thumbnail_jpeg;
   Json metrics;  // for the report's manifest: errors of the views
 };
 

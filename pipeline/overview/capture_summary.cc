@@ -1,0 +1,168 @@
+#include "pipeline/overview/capture_summary.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "pipeline/contract/capture.h"
+#include "pipeline/contract/errors.h"
+#include "pipeline/contract/hash.h"
+#include "pipeline/contract/manifest.h"
+#include "pipeline/driver/ninja_file.h"
+#include "pipeline/driver/stage_graph.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+using State = CaptureSummary::State;
+
+constexpr std::uintmax_t kMostThumbnail_bytes = 1 << 20;
+
+std::string TextOf(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+// A program's last line is its error, by contract; what comes before is progress.
+std::string LastLine(const std::string& text) {
+  std::istringstream lines(text);
+  std::string last;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+  }
+  return last;
+}
+
+std::optional<double> NumberAt(const Json& json, const std::string& pointer) {
+  const Json::json_pointer at(pointer);
+  if (!json.contains(at) || !json[at].is_number()) return std::nullopt;
+  return json[at].get<double>();
+}
+
+Json JsonIn(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return Json::object();
+  const Json json = Json::parse(TextOf(file), nullptr, false);
+  return json.is_object() ? json : Json::object();
+}
+
+// The first stage that has no result, or one made from another stage's earlier result.
+void FindState(const Capture& capture, const std::vector<StageStep>& steps,
+               CaptureSummary* summary) {
+  summary->state = State::kDone;
+  for (const StageStep& step : steps) {
+    summary->stage = step.stage;
+    const fs::path failure = capture.folder / FailureFile(step.stage);
+    if (fs::exists(failure)) {
+      summary->state = State::kFailed;
+      summary->message = LastLine(TextOf(failure));
+      return;
+    }
+    const fs::path file = capture.folder / step.manifest;
+    if (!fs::exists(file)) {
+      summary->state = State::kUnfinished;
+      return;
+    }
+    const Manifest manifest = ReadManifest(file, step.stage);
+    for (const ManifestInput& input : manifest.inputs) {
+      const fs::path read = (file.parent_path() / input.path).lexically_normal();
+      if (read.filename() != "manifest.json") continue;
+      if (fs::exists(read) && HashFile(read) == input.hash) continue;
+      summary->state = State::kOutOfDate;
+      return;
+    }
+  }
+  summary->stage.clear();
+}
+
+void AddFigures(const Capture& capture, const std::vector<StageStep>& steps,
+                CaptureSummary* summary) {
+  const fs::path work = capture.work();
+  const Json calib = JsonIn(work / "calib" / "manifest.json");
+  const Json::json_pointer verdict("/metrics/guidance/verdict");
+  if (calib.contains(verdict) && calib[verdict].is_string()) summary->verdict = calib[verdict];
+  summary->reprojection_px = NumberAt(calib, "/metrics/rms_px");
+  const Json rectify = JsonIn(work / "rectify" / "manifest.json");
+  summary->texels_across = NumberAt(rectify, "/data/width");
+  summary->texels_down = NumberAt(rectify, "/data/height");
+  summary->width_mm = NumberAt(rectify, "/data/width_mm");
+  summary->height_mm = NumberAt(rectify, "/data/height_mm");
+  const Json report = JsonIn(work / "report" / "manifest.json");
+  summary->photographs = NumberAt(report, "/metrics/fitted/photographs");
+  summary->log_l1 = NumberAt(report, "/metrics/fitted/log_l1");
+  summary->held_out_log_l1 = NumberAt(report, "/metrics/held_out/log_l1");
+  for (const StageStep& step : steps) {
+    const Json run = JsonIn(work / step.stage / "run.json");
+    if (const auto seconds = NumberAt(run, "/seconds")) {
+      summary->seconds = summary->seconds.value_or(0) + *seconds;
+    }
+  }
+  std::error_code error;
+  const fs::path page = work / "report" / "index.html", picture = work / "report" / "thumbnail.jpg";
+  if (fs::is_regular_file(page, error)) summary->page = page;
+  if (fs::is_regular_file(picture, error) && fs::file_size(picture) <= kMostThumbnail_bytes) {
+    summary->thumbnail_jpeg = TextOf(picture);
+  }
+}
+
+}  // namespace
+
+std::string ToText(State state) {
+  switch (state) {
+    case State::kFailed:
+      return "failed";
+    case State::kUnfinished:
+      return "unfinished";
+    case State::kOutOfDate:
+      return "out of date";
+    case State::kDone:
+      return "done";
+  }
+  return "";
+}
+
+fs::path FailureFile(const std::string& stage) {
+  return fs::path("glint") / "workflow" / (stage + ".failed");
+}
+
+CaptureSummary SummariseCapture(const fs::path& folder) {
+  CaptureSummary summary;
+  summary.folder = folder;
+  summary.name = fs::absolute(folder).lexically_normal().filename().string();
+  if (summary.name.empty()) {
+    summary.name = fs::absolute(folder).lexically_normal().parent_path().filename().string();
+  }
+  try {
+    const Capture capture = ReadCapture(folder);
+    const auto steps = StageSteps(capture, ReadChoices(capture.work() / "build.ninja"));
+    AddFigures(capture, steps, &summary);
+    FindState(capture, steps, &summary);
+  } catch (const Error& error) {
+    summary.state = State::kFailed;
+    summary.message = error.what();
+  }
+  return summary;
+}
+
+Json ToJson(const CaptureSummary& summary) {
+  Json json = {{"capture", summary.folder.generic_string()},
+               {"name", summary.name},
+               {"state", ToText(summary.state)},
+               {"stage", summary.stage},
+               {"message", summary.message},
+               {"verdict", summary.verdict}};
+  const auto add = [&](const char* name, const std::optional<double>& value) {
+    json[name] = value ? Json(*value) : Json();
+  };
+  add("photographs", summary.photographs);
+  add("reprojection_px", summary.reprojection_px);
+  add("log_l1", summary.log_l1);
+  add("held_out_log_l1", summary.held_out_log_l1);
+  add("seconds", summary.seconds);
+  return json;
+}
+
+}  // namespace glint
