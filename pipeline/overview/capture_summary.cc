@@ -26,14 +26,21 @@ std::string TextOf(const fs::path& file) {
   return text.str();
 }
 
-// A program's last line is its error, by contract; what comes before is progress.
-std::string LastLine(const std::string& text) {
-  std::istringstream lines(text);
-  std::string last;
+// From the program's error to the end; without one (killed, say) the last line. What comes before
+// is progress.
+std::string ErrorIn(const std::string& log) {
+  std::istringstream lines(log);
+  std::string error, last;
   for (std::string line; std::getline(lines, line);) {
-    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    last = line;
+    if (line.find(": error: ") != std::string::npos) {
+      error = line;
+    } else if (!error.empty()) {
+      error += "\n" + line;
+    }
   }
-  return last;
+  return error.empty() ? last : error;
 }
 
 std::optional<double> NumberAt(const Json& json, const std::string& pointer) {
@@ -58,7 +65,7 @@ void FindState(const Capture& capture, const std::vector<StageStep>& steps,
     const fs::path failure = capture.folder / FailureFile(step.stage);
     if (fs::exists(failure)) {
       summary->state = State::kFailed;
-      summary->message = LastLine(TextOf(failure));
+      summary->message = ErrorIn(TextOf(failure));
       return;
     }
     const fs::path file = capture.folder / step.manifest;

@@ -19,7 +19,7 @@ constexpr char kStyle[] = R"(<style>
 .captures td { vertical-align: middle; } .captures td.number { white-space: nowrap; } .captures img { width: 96px; display: block; border-radius: 4px; }
 .captures th button { all: unset; cursor: pointer; } .captures th button:focus-visible { outline: 2px solid var(--link); }
 .captures th[aria-sort=ascending] button::after { content: " ▲"; } .captures th[aria-sort=descending] button::after { content: " ▼"; }
-.captures .message { color: var(--soft); max-width: 44ch; overflow-wrap: anywhere; }
+.captures .message { color: var(--soft); max-width: 44ch; overflow-wrap: anywhere; white-space: pre-line; }
 </style>
 )";
 

@@ -69,13 +69,15 @@ TEST_F(CaptureSummaryTest, WhatWasNeverRunIsUnfinished) {
   EXPECT_EQ(SummariseCapture(capture() / "").name, "wood");
 }
 
-TEST_F(CaptureSummaryTest, AFailureIsToldByItsLastLine) {
+TEST_F(CaptureSummaryTest, AFailureIsToldByTheProgramsError) {
   test::WriteAll(capture() / FailureFile("calib"),
-                 "glint-calib: info: reading\nglint-calib: error: no board is seen\n\n");
+                 "glint-calib: info: reading\nglint-calib: error: no board is seen\n  a.jpg\n\n");
   const CaptureSummary summary = SummariseCapture(capture());
   EXPECT_EQ(summary.state, State::kFailed);
   EXPECT_EQ(summary.stage, "calib");
-  EXPECT_EQ(summary.message, "glint-calib: error: no board is seen");
+  EXPECT_EQ(summary.message, "glint-calib: error: no board is seen\n  a.jpg");
+  test::WriteAll(capture() / FailureFile("calib"), "reading\nKilled\n");
+  EXPECT_EQ(SummariseCapture(capture()).message, "Killed");
 }
 
 TEST_F(CaptureSummaryTest, WhatCannotBeReadHasFailedWithTheReason) {
