@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
   glint::ImportOptions options;
   glint::OptionSet set;
   set.AddPositional("source", &source,
-                    "folder or file of the set: views.json, MaterialGAN's, or DIR's wlv", true);
+                    "folder or file of the set: views.json, a MaterialGAN folder, or the paper's .wlv file", true);
   set.AddPositional("capture", &folder, "the capture's folder to write", true);
   glint::AddImportOptions(&set, &options);
   const glint::ProgramInfo info{

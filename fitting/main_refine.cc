@@ -68,10 +68,11 @@ int main(int argc, char** argv) {
   glint::OptionSet set;
   set.AddPositional("capture", &folder, "the capture's folder", false);
   glint::AddRefineOptions(&set, &options);
-  const glint::ProgramInfo info{
-      "glint-refine",
-      "Refines the fitted maps texel by texel, held to them where the photographs tell little.",
-      GLINT_VERSION, "Example: glint refine wood --exclude view_003,view_007"};
+  const glint::ProgramInfo info{"glint-refine",
+                                "Refines the fitted maps texel by texel, staying close to them "
+                                "where the photographs say little.",
+                                GLINT_VERSION,
+                                "Example: glint refine wood --exclude view_003,view_007"};
   return glint::RunProgram(argc, argv, info, &set, [&](const glint::CommonOptions& common) {
     return glint::Run(folder, &set, &options, common);
   });

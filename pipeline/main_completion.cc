@@ -14,7 +14,8 @@ int main(int argc, char** argv) {
        "Examples:\n"
        "  glint completion bash > ~/.local/share/bash-completion/completions/glint\n"
        "  glint completion zsh > ~/.zfunc/_glint        # with fpath+=~/.zfunc\n"
-       "  glint completion fish > ~/.config/fish/completions/glint.fish"},
+       "  glint completion fish > ~/.config/fish/completions/glint.fish",
+       false},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         const std::string script = glint::CompletionScript(shell, glint::DescribeCommands());
         return {script, {{"shell", shell}, {"script", script}}};

@@ -30,7 +30,8 @@ glint::ProgramResult Demo(const fs::path& folder) {
       throw glint::UserError(folder, "", "a folder that holds other things",
                              "name one that does not exist yet");
     }
-    Step("A synthetic capture: 12 photographs of a board with a leather sample in it", "glint-synth",
+    Step("A synthetic capture: 12 photographs of a board with a leather sample in it",
+         "glint-synth",
          {"capture", folder.string(), "--family", "leather", "--seed", "3", "--resolution", "512"});
   }
   Step("Every stage on it", "glint-run", {folder.string()});
@@ -59,6 +60,6 @@ int main(int argc, char** argv) {
       {"glint-demo",
        "Makes a synthetic phone capture, runs every stage on it and compares the result with the "
        "truth.",
-       GLINT_VERSION, "Example: glint demo leather && glint view leather"},
+       GLINT_VERSION, "Example: glint demo leather && glint view leather", false},
       &options, [&](const glint::CommonOptions&) { return Demo(folder); });
 }

@@ -10,9 +10,9 @@ int main(int argc, char** argv) {
   return glint::RunProgram(
       argc, argv,
       {"glint-estimate",
-       "Says how long every stage of glint run will take and how much memory it needs at most, by "
-       "the number and size of the photographs and of the maps.",
-       GLINT_VERSION, "Example: glint estimate wood --json"},
+       "Estimates the time and peak memory of every stage of glint run from the number and size of "
+       "the photographs and maps.",
+       GLINT_VERSION, "Example: glint estimate wood --json", false},
       &options, [&](const glint::CommonOptions& common) -> glint::ProgramResult {
         const glint::Capture capture = glint::ReadCapture(folder);
         const auto choices = glint::ReadChoices(capture.work() / "build.ninja");

@@ -49,9 +49,10 @@ int main(int argc, char** argv) {
        GLINT_VERSION,
        "If the folder contains a board.json (glint board), it defines the board; otherwise the "
        "options do.\nExamples:\n  glint init wood --squares 12,12 --square-mm "
-       "15 --sample-mm 100,100\n"
+       "15 --sample-mm 90,90\n"
        "  glint init wood --single --width-mm 120\n"
-       "  glint init wood --list"},
+       "  glint init wood --list",
+       false},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         if (list) {
           const auto photos = glint::ListPhotos(o.folder);

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   return glint::RunProgram(
       argc, argv,
       {"glint-manual", "Writes manual pages: one of glint, and one of each verb.", GLINT_VERSION,
-       "Example: glint manual ~/.local/share/man/man1 && man glint-run"},
+       "Example: glint manual ~/.local/share/man/man1 && man glint-run", false},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         const auto files = glint::WriteManual(folder, glint::DescribeCommands(), GLINT_VERSION);
         glint::Json list = glint::Json::array();

@@ -35,10 +35,11 @@ int main(int argc, char** argv) {
   OptionSet options;
   options.AddPositional("CAPTURES", &folders, "folders of captures", true);
   options.Add("out", &page, "the page to write");
-  return RunProgram(argc, argv,
-                    {"glint-overview",
-                     "Writes one page about many captures: what failed and why, the verdict on "
-                     "the photographs, key figures, and a link to each capture's page.",
-                     GLINT_VERSION, "Example: glint overview captures/* --out captures.html"},
-                    &options, [&](const CommonOptions&) { return Write(folders, page); });
+  return RunProgram(
+      argc, argv,
+      {"glint-overview",
+       "Writes one page about many captures: what failed and why, the verdict on "
+       "the photographs, key figures, and a link to each capture's page.",
+       GLINT_VERSION, "Example: glint overview captures/* --out captures.html", false},
+      &options, [&](const CommonOptions&) { return Write(folders, page); });
 }

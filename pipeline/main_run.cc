@@ -23,8 +23,8 @@ void AddOptions(glint::OptionSet* options, RunArguments* o) {
   options->AddRange("jobs,-j", &o->jobs, 0, 1024, "same as --threads");
   options->AddChoice("method", &o->run.choices.method, {"start", "classic", "latent", "refined"},
                      "start: maps as a network estimates them, nothing fitted; classic: maps "
-                     "fitted texel by texel; latent: in the learned space; refined: latent, then "
-                     "per texel (what is done without this option)");
+                     "fitted texel by texel; latent: in the learned space; refined (default): "
+                     "latent, then per texel");
   options->Add("quick", &o->quick,
                "a first look in seconds, while the sample still lies on the table: the same as "
                "--method start; a run without it then fits");

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
       {"glint-status",
        "Says of each stage whether its result is up to date for the choices of the last glint run, "
        "why not, how large it is, and its main figures.",
-       GLINT_VERSION, ""},
+       GLINT_VERSION, "", false},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         const glint::Capture capture = glint::ReadCapture(folder);
         const auto choices = glint::ReadChoices(capture.work() / "build.ninja");

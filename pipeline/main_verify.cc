@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
       {"glint-verify",
        "Compares every file below CAPTURE/glint, and what it was made from, with the hashes of the "
        "manifests. Exit code 1: something has changed.",
-       GLINT_VERSION, ""},
+       GLINT_VERSION, "", false},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         const glint::Verification verification = glint::VerifyCapture(folder);
         intact = verification.intact();

@@ -57,6 +57,6 @@ int main(int argc, char** argv) {
   return glint::RunProgram(
       argc, argv,
       {"glint-view", "Opens the page of a capture's result, where its material can be relit.",
-       GLINT_VERSION, "Example: glint view wood"},
+       GLINT_VERSION, "Example: glint view wood", false},
       &options, [&](const glint::CommonOptions&) { return View(folder, print); });
 }

@@ -47,10 +47,10 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   set->AddChoice("export", &options->write, {"none", "colmap"},
                  "also write the calibration for another program: colmap, to glint/colmap",
                  Invalidates::kNo);
-  set->AddChoice(
-      "model", &options->model, {"auto", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV"},
-      "COLMAP's camera model; auto: the simplest that explains photos held out (of a board; "
-      "--poses colmap: OPENCV)");
+  set->AddChoice("model", &options->model,
+                 {"auto", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV"},
+                 "COLMAP's camera model; auto: the simplest that predicts held-out photos (boards "
+                 "only; with --poses colmap, OPENCV)");
   set->AddChoice(
       "cameras", &options->cameras, {"auto", "one", "each"},
       "auto: photos of the same size and EXIF focal length share their intrinsics; one: all "
@@ -77,8 +77,8 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
                  "white paper; camera: the light at the lens or at [light] offset_mm, exposures by "
                  "EXIF");
   set->AddRange("plane-tolerance", &options->plane_tolerance, 1e-5, 0.2,
-                "--poses colmap: points this share of the cameras' distance off the sample's plane "
-                "are none of it");
+                "--poses colmap: points farther from the sample's plane than this fraction of the "
+                "cameras' distance are not part of it");
   set->AddRange("feature-px", &options->feature_px, 200, 20000,
                 "--poses colmap: features are looked for in a copy whose longer side is at most "
                 "this");

@@ -115,19 +115,20 @@ void RequireSize(const LinearPhoto& photo, const ForeignView& view, PixelSize wa
 void AddImportOptions(OptionSet* set, ImportOptions* options) {
   set->AddRange("size", &options->size, 0, kLargest_px,
                 "resample to this width in texels; 0: as the images are");
-  set->AddRange(
-      "crop", &options->crop, 0, kLargest_px,
-      "the sample is this many pixels square in the images' middle; 0: as the layout says");
+  set->AddRange("crop", &options->crop, 0, kLargest_px,
+                "the sample is the central square of this many pixels; 0: as the layout says");
   set->Add("convention", &options->convention,
-           "reflectance convention: photograph, dir2019, materialgan, or its words; empty: the "
+           "reflectance convention: photograph, dir2019, materialgan, or keywords as in "
+           "docs/views.md; empty: the "
            "source's");
   set->Add("light-power", &options->light_power,
            "estimate, a number, or r,g,b in radiance·mm²; empty: the source's");
   set->AddChoice("encoding", &options->encoding, {"", "auto", "srgb", "gamma2.2", "linear"},
                  "of the images; empty: the source's");
-  set->AddRange("saturation-level", &options->saturation_level, 0.5, 1.01,
-                "stored value (of 1) from which a pixel of an 8 or 16 bit image counts as clipped; "
-                "above 1: none does");
+  set->AddRange(
+      "saturation-level", &options->saturation_level, 0.5, 1.01,
+      "stored value (full scale is 1) from which a pixel of an 8- or 16-bit image counts as "
+      "clipped; above 1: never");
   set->AddRange("float-saturation-level", &options->float_saturation_level, 0, 1e9,
                 "the same for float images; 0: they never clip");
 }

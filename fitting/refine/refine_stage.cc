@@ -171,7 +171,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
   set->AddRange("iterations", &refine->iterations, 1, 1000,
                 "most Levenberg-Marquardt steps of one solve");
   set->AddRange("starts", &refine->starts, 1, 8,
-                "solves per texel: the start, and so many less one of other roughness");
+                "solves per texel: one from the start, the others from different roughnesses");
   set->AddRange("neighbour-passes", &refine->neighbour_passes, 0, 16,
                 "how often a texel tries its neighbours' solutions");
   set->AddRange("substances", &refine->substances, 1, kMostSubstances,
@@ -181,26 +181,31 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
   set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the priors' weight; 0: none");
   set->AddRange("robust-scale", &refine->robust_scale, 1e-3, 100,
                 "residuals (logarithms) beyond it count linearly");
-  set->AddChoice("correct-views", &options->correction.when, {"auto", "always", "never"},
-                 "find from the photographs where lights, registration and ambient light are off; "
-                 "auto: from five distinct views on, and taken where it explains 2 % more");
+  set->AddChoice(
+      "correct-views", &options->correction.when, {"auto", "always", "never"},
+      "estimate errors of lights, registration and ambient light from the photographs; "
+      "auto: with five or more distinct views, and applied only where it lowers the cost "
+      "by 2 %");
   set->AddRange("flash-offset", &options->flash_offset, 0, 1,
-                "expected standard deviation of the flash's place beside where it is said to be, "
-                "relative to its distance, where the light was not calibrated; the offset is found "
-                "from the photographs, alike in all; 0: none");
+                "expected standard deviation of the flash's offset from its stated position, "
+                "relative to its distance, if the light was not calibrated; one offset is "
+                "estimated for all photographs; 0: none");
   set->AddRange("exposure-spread", &options->exposure_spread, 0, 1,
-                "expected standard deviation of single photographs' exposures (logarithm), where "
-                "the light was not calibrated; the spread and the exposures are found from the "
-                "photographs; 0: as they are said to be");
+                "expected standard deviation of single photographs' log exposures, if the light "
+                "was not calibrated; both spread and exposures are estimated from the "
+                "photographs; 0: keep the stated exposures");
   set->AddRange("light-spread", &options->light_spread, 0, 1,
-                "likewise of their lights' places across their directions, relative to distance");
+                "expected standard deviation of each photograph's light position, perpendicular "
+                "to the light's direction, relative to its distance, if the light was not "
+                "calibrated; 0: keep the stated positions");
   set->AddRange("flash-beam", &options->flash_beam, 0, 10,
-                "expected standard deviation of the gradient of the flash's intensity (logarithm) "
-                "by the tangent of its direction, where the light was not calibrated; it is found "
-                "from the photographs, alike in all; 0: none");
+                "expected standard deviation of the slope of the flash's log intensity against "
+                "the tangent of its direction, if the light was not calibrated; one slope is "
+                "estimated for all photographs; 0: none");
   set->AddRange("distance-power", &options->distance_power, 0, 10,
-                "likewise of the power of the light's distance that an automatic exposure, or "
-                "distances that are not known well, multiply its intensity by; 0: none");
+                "expected standard deviation of the exponent p, if the light was not calibrated: "
+                "automatic exposure or uncertain distances scale its intensity by distance^p; "
+                "0: none");
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");
   set->Add("views", &options->views, "views to use, by name or photo (default: those of fit)");

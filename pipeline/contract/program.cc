@@ -105,7 +105,7 @@ int RunBody(const ProgramInfo& info, const CommonOptions& common,
 
 }  // namespace
 
-OptionSet CommonOptionSet(CommonOptions* common) {
+OptionSet CommonOptionSet(CommonOptions* common, bool keeps_results) {
   OptionSet set;
   set.AddRange("threads", &common->threads, 0, kMaxThreads,
                "threads to use; 0: one per core; never changes a result");
@@ -116,8 +116,9 @@ OptionSet CommonOptionSet(CommonOptions* common) {
   set.AddChoice("log-level", &common->log_level, {"debug", "info", "warning", "error", "off"},
                 "verbosity on stderr");
   set.Add("json", &common->json, "write the result to stdout as JSON");
-  set.Add("force", &common->force, "stages: run even if the result is up to date");
-  set.Add("status", &common->check, "stages: only report whether the result is up to date");
+  if (!keeps_results) return set;
+  set.Add("force", &common->force, "compute even if the result is up to date");
+  set.Add("status", &common->check, "only report whether the result is up to date");
   return set;
 }
 
@@ -135,7 +136,7 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info, OptionSet* option
   app.set_version_flag("--version", info.name + " " + info.version);
   if (!info.footer.empty()) app.footer(info.footer);
   options->Register(&app);
-  OptionSet common_options = CommonOptionSet(&common);
+  OptionSet common_options = CommonOptionSet(&common, info.keeps_results);
   common_options.Register(&app, "Common");
   try {
     app.parse(argc, argv);

@@ -22,7 +22,7 @@ struct CommonOptions {
 };
 
 // The command line's side of them.
-OptionSet CommonOptionSet(CommonOptions* common);
+OptionSet CommonOptionSet(CommonOptions* common, bool keeps_results = true);
 
 // What a program leaves on stdout: `text` for a person, or `json` with --json. A stage also sums up
 // its result in a few words, which are all that `glint run` shows of it.
@@ -44,6 +44,8 @@ struct ProgramInfo {
   std::string description;  // first paragraph of --help
   std::string version;      // GLINT_VERSION
   std::string footer;       // examples, shown after the options
+  // Whether its results may be up to date: it has --force and --status.
+  bool keeps_results = true;
 };
 
 // Parses, runs `body`, prints its result, and returns the exit code. Messages go to stderr as

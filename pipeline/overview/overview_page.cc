@@ -98,15 +98,23 @@ std::string NameCell(const CaptureSummary& capture, const fs::path& page) {
   return Cell(html, capture.name, false);
 }
 
+// Its first line; the others unfold.
+std::string MessageHtml(const std::string& message) {
+  const size_t end = message.find('\n');
+  std::string html = "<div class=\"message\">" + HtmlText(message.substr(0, end));
+  if (end != std::string::npos) {
+    html += "<details><summary>more</summary>" + HtmlText(message.substr(end + 1)) + "</details>";
+  }
+  return html + "</div>";
+}
+
 std::string StateCell(const CaptureSummary& capture) {
   std::string html = ToText(capture.state);
   if (!capture.stage.empty()) {
     html += (capture.state == State::kFailed ? " in " : ": ") + HtmlText(capture.stage);
   }
   if (capture.state != State::kDone) html = "<span class=\"kept\">" + html + "</span>";
-  if (!capture.message.empty()) {
-    html += "<div class=\"message\">" + HtmlText(capture.message) + "</div>";
-  }
+  if (!capture.message.empty()) html += MessageHtml(capture.message);
   return Cell(html, std::to_string(static_cast<int>(capture.state)), false);
 }
 

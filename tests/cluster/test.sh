@@ -4,7 +4,7 @@
 # full. All others must come out with the bytes that `glint run` gives.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-project=$here/../..
+project=$(cd "$here/../.." && pwd)
 work=$project/build/cluster
 nodes=4 captures=20
 PATH=$project/build/bin:$PATH
