@@ -11,6 +11,7 @@
 #include "pipeline/contract/board_file.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/photo_name.h"
+#include "pipeline/contract/stages.h"
 #include "pipeline/contract/toml_file.h"
 #include "pipeline/contract/video.h"
 
@@ -450,9 +451,12 @@ void ReadPoses(const fs::path& file, const toml::table& document, Capture* captu
 }
 
 void RejectUnknownTables(const fs::path& file, const toml::table& document) {
-  static const std::set<std::string, std::less<>> known = {
-      "sample",  "photos", "poses",  "board", "radiometry", "light", "calib",
-      "rectify", "fit",    "refine", "tile",  "export",     "report"};
+  static const std::set<std::string, std::less<>> known = [] {
+    std::set<std::string, std::less<>> tables = {"sample", "photos",     "poses",
+                                                 "board",  "radiometry", "light"};
+    for (const StageKind& stage : Stages()) tables.emplace(stage.name);
+    return tables;
+  }();
   for (const auto& [key, node] : document) {
     if (known.count(std::string(key.str())) > 0) continue;
     std::string list;

@@ -9,45 +9,22 @@
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/memory_limit.h"
 #include "pipeline/contract/rectified_set.h"
+#include "pipeline/contract/stages.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A stage's work and memory are sums of parts. Fitted to five captures of 5 to 12 photographs of 2
-// and 12 megapixels at 256² to 2048², on two cores of a Xeon with AVX-512 and without bfloat16
-// (docs/experiments.md, "How long a run takes"); one with bfloat16 took about 0.6 of the time.
-struct StageCost {
-  const char* stage;
-  double start_s;              // programs, weights, files
-  double network_s;            // in the networks; twice as long without bfloat16
-  double photograph_px_us;     // per pixel of every photograph
-  double texel_us;             // per texel
-  double photograph_texel_us;  // per texel of every photograph
-  double start_bytes;
-  double decoded_px_bytes;        // per pixel of the photographs that are decoded at once
-  double texel_bytes;             // per texel
-  double photograph_texel_bytes;  // per texel of every photograph
-};
-
 constexpr double kMega = 1e6;
-constexpr StageCost kCosts[] = {
-    {"calib", 2.6, 0, 0.046, 0, 0, 200 * kMega, 15, 0, 0},
-    {"rectify", 0.6, 0, 0.02, 0, 0.5, 170 * kMega, 8, 0, 5},
-    {"fit", 1, 11.5, 0, 2, 0, 330 * kMega, 0, 146, 17},
-    {"start", 0.6, 0.3, 0, 2, 0.2, 330 * kMega, 0, 146, 17},
-    {"refine", 2.5, 0, 0, 22, 0.4, 140 * kMega, 0, 226, 16},
-    {"tile", 0.2, 0, 0, 3.2, 0, 140 * kMega, 0, 300, 0},
-    {"export", 0.8, 0, 0, 8, 0, 136 * kMega, 0, 210, 0},
-    {"report", 1.6, 0, 0, 7, 0.25, 280 * kMega, 0, 130, 3},
-};
+
+// Stage fit with the method "start": no fitting.
+constexpr StageCost kStart = {0.6, 0.3, 0, 2, 0.2, 330, 0, 146, 17};
 
 const StageCost* CostOf(const std::string& stage) {
-  for (const StageCost& cost : kCosts) {
-    if (stage == cost.stage) return &cost;
-  }
-  return nullptr;
+  if (stage == "start") return &kStart;
+  const StageKind* kind = FindStage(stage);
+  return kind == nullptr ? nullptr : &kind->cost;
 }
 
 }  // namespace
@@ -89,7 +66,7 @@ double PredictedSeconds(const std::string& stage, const CaptureSize& size) {
 double PredictedMemory_bytes(const std::string& stage, const CaptureSize& size, int threads) {
   const StageCost* cost = CostOf(stage);
   if (cost == nullptr) return 0;
-  return cost->start_bytes +
+  return kMega * cost->start_MB +
          cost->decoded_px_bytes * std::min(threads, size.photographs) * size.photograph_px +
          cost->texel_bytes * size.texels +
          cost->photograph_texel_bytes * size.photographs * size.texels;

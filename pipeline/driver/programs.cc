@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/stages.h"
 
 namespace glint {
 namespace {
@@ -19,7 +20,8 @@ struct KnownVerb {
   std::string_view name, summary;
 };
 
-// In the order in which a person meets them.
+// In the order in which a person meets them; the stages stand where "stages" does.
+constexpr std::string_view kStagesHere = "stages";
 constexpr KnownVerb kKnownVerbs[] = {
     {"demo", "make a synthetic capture and run everything on it"},
     {"board", "print a calibration board"},
@@ -27,15 +29,9 @@ constexpr KnownVerb kKnownVerbs[] = {
     {"run", "run every stage that is out of date"},
     {"status", "report which results are out of date, and why"},
     {"verify", "compare everything on disk with the manifests' hashes"},
-    {"calib", "stage: cameras, poses and lights from the board"},
+    {kStagesHere, ""},
     {"response", "measure a camera's tone curve"},
-    {"rectify", "stage: linear top views of the sample"},
     {"import", "import rectified photographs from other software"},
-    {"fit", "stage: material maps by latent or classic fitting"},
-    {"refine", "stage: material maps per texel"},
-    {"tile", "stage: seamlessly tiling maps (section [tile] in capture.toml)"},
-    {"export", "stage: maps and materials for other programs"},
-    {"report", "stage: one HTML page of the whole result"},
     {"estimate", "estimate the time and memory of every stage"},
     {"view", "open the page of a result"},
     {"overview", "write one page about many captures"},
@@ -109,11 +105,18 @@ std::vector<ProgramVerb> ListVerbs() {
       if (name.rfind("glint-", 0) == 0 && IsProgram(entry.path())) others.insert(name.substr(6));
     }
   }
-  for (const KnownVerb& known : kKnownVerbs) {
-    const auto found = others.find(std::string(known.name));
-    if (found == others.end()) continue;
-    verbs.push_back({*found, std::string(known.summary)});
+  const auto add = [&](std::string_view name, const std::string& summary) {
+    const auto found = others.find(std::string(name));
+    if (found == others.end()) return;
+    verbs.push_back({*found, summary});
     others.erase(found);
+  };
+  for (const KnownVerb& known : kKnownVerbs) {
+    if (known.name != kStagesHere) {
+      add(known.name, std::string(known.summary));
+      continue;
+    }
+    for (const StageKind& stage : Stages()) add(stage.name, "stage: " + std::string(stage.summary));
   }
   for (const std::string& name : others) verbs.push_back({name, ""});
   return verbs;

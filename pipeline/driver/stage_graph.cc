@@ -4,6 +4,7 @@
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/photo_name.h"
+#include "pipeline/contract/stages.h"
 
 namespace glint {
 namespace {
@@ -37,10 +38,9 @@ void AddSelection(const RunChoices& choices, StageStep* step) {
 
 size_t Find(const std::vector<StageStep>& steps, const std::string& stage,
             const std::string& option) {
-  const auto known = StageNames();
-  if (std::find(known.begin(), known.end(), stage) == known.end()) {
+  if (FindStage(stage) == nullptr) {
     throw UserError("--" + option + ": found the unknown stage '" + stage +
-                    "'; use one of: " + Joined(known, ", "));
+                    "'; use one of: " + StageNamesText());
   }
   const auto found = std::find_if(steps.begin(), steps.end(),
                                   [&](const StageStep& step) { return step.stage == stage; });
@@ -72,8 +72,11 @@ RunChoices RunChoicesFromJson(const Json& json) {
 }
 
 const std::vector<std::string>& StageNames() {
-  static const std::vector<std::string> names = {"calib", "rectify", "fit",   "refine",
-                                                 "tile",  "export",  "report"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const StageKind& stage : Stages()) list.emplace_back(stage.name);
+    return list;
+  }();
   return names;
 }
 

@@ -1,0 +1,38 @@
+#include "pipeline/contract/stages.h"
+
+#include <algorithm>
+
+namespace glint {
+namespace {
+
+constexpr StageKind kStages[] = {
+    {"calib", "cameras, poses and lights from the board", {2.6, 0, 0.046, 0, 0, 200, 15, 0, 0}},
+    {"rectify", "linear top views of the sample", {0.6, 0, 0.02, 0, 0.5, 170, 8, 0, 5}},
+    {"fit", "material maps by latent or classic fitting", {1, 11.5, 0, 2, 0, 330, 0, 146, 17}},
+    {"refine", "material maps per texel", {2.5, 0, 0, 22, 0.4, 140, 0, 226, 16}},
+    {"tile",
+     "seamlessly tiling maps (section [tile] in capture.toml)",
+     {0.2, 0, 0, 3.2, 0, 140, 0, 300, 0}},
+    {"export", "maps and materials for other programs", {0.8, 0, 0, 8, 0, 136, 0, 210, 0}},
+    {"report", "one HTML page of the whole result", {1.6, 0, 0, 7, 0.25, 280, 0, 130, 3}},
+};
+
+}  // namespace
+
+std::span<const StageKind> Stages() { return kStages; }
+
+const StageKind* FindStage(std::string_view name) {
+  const auto found = std::find_if(std::begin(kStages), std::end(kStages),
+                                  [&](const StageKind& stage) { return stage.name == name; });
+  return found == std::end(kStages) ? nullptr : found;
+}
+
+std::string StageNamesText() {
+  std::string text;
+  for (const StageKind& stage : kStages) {
+    text += (text.empty() ? "" : ", ") + std::string(stage.name);
+  }
+  return text;
+}
+
+}  // namespace glint

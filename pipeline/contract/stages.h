@@ -1,0 +1,44 @@
+// The stages of a capture: the one list of them. What each reads and with which options it runs is
+// pipeline/driver/stage_graph.h's to say.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace glint {
+
+// A stage's work and memory are sums of parts (cost_model.h). Fitted to five captures of 5 to 12
+// photographs of 2 and 12 megapixels at 256² to 2048², on two cores of a Xeon with AVX-512 and
+// without bfloat16 (docs/experiments.md, "How long a run takes"); one with bfloat16 took about 0.6
+// of the time.
+struct StageCost {
+  double start_s;              // programs, weights, files
+  double network_s;            // in the networks; twice as long without bfloat16
+  double photograph_px_us;     // per pixel of every photograph
+  double texel_us;             // per texel
+  double photograph_texel_us;  // per texel of every photograph
+  double start_MB;
+  double decoded_px_bytes;        // per pixel of the photographs that are decoded at once
+  double texel_bytes;             // per texel
+  double photograph_texel_bytes;  // per texel of every photograph
+};
+
+// A stage's program is glint-NAME, its folder CAPTURE/glint/NAME, its options are the table [NAME]
+// of capture.toml.
+struct StageKind {
+  std::string_view name;
+  std::string_view summary;  // one line, for lists of commands
+  StageCost cost;
+};
+
+// In the order in which they run, whether or not a capture needs them.
+std::span<const StageKind> Stages();
+
+// Null for a name that is no stage's.
+const StageKind* FindStage(std::string_view name);
+
+// "calib, rectify, …", for messages.
+std::string StageNamesText();
+
+}  // namespace glint
