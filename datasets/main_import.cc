@@ -79,8 +79,10 @@ int main(int argc, char** argv) {
   std::filesystem::path source, folder;
   glint::ImportOptions options;
   glint::OptionSet set;
-  set.AddPositional("source", &source,
-                    "folder or file of the set: views.json, a MaterialGAN folder, or the paper's .wlv file", true);
+  set.AddPositional(
+      "source", &source,
+      "folder or file of the set: views.json, a MaterialGAN folder, or the paper's .wlv file",
+      true);
   set.AddPositional("capture", &folder, "the capture's folder to write", true);
   glint::AddImportOptions(&set, &options);
   const glint::ProgramInfo info{

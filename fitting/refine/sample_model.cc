@@ -317,8 +317,8 @@ void SampleModel::UpdateNormalSpreads(const Sampling& sampling) {
     NormalOfSlopes(solved.values[kSlopeX], solved.values[kSlopeY], normal);
     double square = 0;
     for (int axis = 0; axis < 2; ++axis) {
-      square += 0.5 * (normal[axis] * normal[axis] +
-                       variance * inverse(kSlopeX + axis, kSlopeX + axis));
+      square +=
+          0.5 * (normal[axis] * normal[axis] + variance * inverse(kSlopeX + axis, kSlopeX + axis));
     }
     for (size_t k = 0; k < count; ++k) {
       const double share = substances_.shares(sampling.texels[i])[k];
