@@ -237,7 +237,7 @@ TEST_F(Trials, InvalidationMatrix) {
       {"rectify", "[rectify]\nfilter = \"soft\"\n"},
       {"fit", ""},
       {"refine", ""},
-      {"export", "[export]\nbits = \"16\"\n"},
+      {"export", ""},
       {"report", "[report]\npicture-px = 300\n"}};
   RunTrials(
       "another option of each stage: it and later stages are computed, no "
@@ -247,6 +247,7 @@ TEST_F(Trials, InvalidationMatrix) {
         Reset();
         if (stage == "fit") EditToml("iterations = 12", "iterations = 13");
         if (stage == "refine") EditToml("iterations = 8", "iterations = 9");
+        if (stage == "export") EditToml("[export]\n", "[export]\nbits = \"16\"\n");
         WriteAll(capture() / "capture.toml", ReadAll(capture() / "capture.toml") + toml);
         const Outcome outcome = RunCapture({"--json"});
         if (outcome.code != 0) return outcome.err;
