@@ -7,6 +7,7 @@
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/hash.h"
+#include "pipeline/contract/json_file.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/stage_graph.h"
@@ -52,7 +53,7 @@ std::optional<double> NumberAt(const Json& json, const std::string& pointer) {
 Json JsonIn(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return Json::object();
-  const Json json = Json::parse(TextOf(file), nullptr, false);
+  const Json json = ReadJsonFile(file, "run glint run again");
   return json.is_object() ? json : Json::object();
 }
 
@@ -63,7 +64,7 @@ void FindState(const Capture& capture, const std::vector<StageStep>& steps,
   for (const StageStep& step : steps) {
     summary->stage = step.stage;
     const fs::path failure = capture.folder / FailureFile(step.stage);
-    if (fs::exists(failure)) {
+    if (fs::is_regular_file(failure)) {
       summary->state = State::kFailed;
       summary->message = ErrorIn(TextOf(failure));
       return;
