@@ -131,8 +131,7 @@ void CompareSpeed(int threads, int size, int views) {
   };
   const Times fused_times = MedianTimes(fused), torch_times = MedianTimes(reference);
   std::printf("%dx%d, %d views, %d thread%s, %s: forward + adjoint, median of %d\n", size, size,
-              views, threads, threads == 1 ? "" : "s", Name(BestInstructionSet()),
-              kRepeats);
+              views, threads, threads == 1 ? "" : "s", Name(BestInstructionSet()), kRepeats);
   std::printf("                      wall ms   processor ms   loss\n");
   std::printf("  torch operations %10.2f %14.2f   %.7f\n", torch_times.wall, torch_times.processor,
               reference_loss);

@@ -59,6 +59,10 @@ SharedLight ReadSharedLight(const std::filesystem::path& manifest_file, const Js
   const auto offset = RequireNumbers(manifest_file, light, "data.shared_light", "offset_mm", 3);
   const auto beam = RequireNumbers(manifest_file, light, "data.shared_light", "beam", 2);
   shared.distance_mm = RequireNumber(manifest_file, light, "data.shared_light", "distance_mm");
+  if (!(shared.distance_mm > 0)) {
+    throw UserError(manifest_file, "data.shared_light.distance_mm", light["distance_mm"].dump(),
+                    "run glint-refine again");
+  }
   shared.values = {offset[0] / shared.distance_mm, offset[1] / shared.distance_mm, beam[0], beam[1],
                    RequireNumber(manifest_file, light, "data.shared_light", "distance_power")};
   return shared;

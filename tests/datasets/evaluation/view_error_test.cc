@@ -136,6 +136,9 @@ TEST_F(FittedMapsTest, EveryViewIsLitByTheFlashThatWasFound) {
   }
   EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"shared_light", {{"offset_mm", {1, 2}}}}})),
                UserError);
+  Json nowhere = JsonOf(shared);
+  nowhere["distance_mm"] = 0;
+  EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"shared_light", nowhere}})), UserError);
 }
 
 // The room lights held-out views, too.
