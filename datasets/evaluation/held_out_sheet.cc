@@ -43,11 +43,10 @@ cv::Mat Triple(const FittedMaps& fit, const RectifiedSet& set, const RectifiedVi
   }
   cv::Mat triple(kThumb, 3 * kThumb + 2 * kGap, CV_8UC3, cv::Scalar(255, 255, 255));
   int left = 0;
-  for (const std::span<const float> rgb : {std::span<const float>(photograph.rgb),
-                                           std::span<const float>(rendered),
-                                           std::span<const float>(difference)}) {
-    Thumb(rgb, set.plane.width, set.plane.height)
-        .copyTo(triple(cv::Rect(left, 0, kThumb, kThumb)));
+  for (const std::span<const float> rgb :
+       {std::span<const float>(photograph.rgb), std::span<const float>(rendered),
+        std::span<const float>(difference)}) {
+    Thumb(rgb, set.plane.width, set.plane.height).copyTo(triple(cv::Rect(left, 0, kThumb, kThumb)));
     left += kThumb + kGap;
   }
   return triple;
@@ -80,8 +79,8 @@ Image DrawHeldOutSheet(const HoldoutResult& result, const std::string& split,
     for (int column = 0; column < std::ssize(entry.held_out_names); ++column) {
       const std::string& name = entry.held_out_names[static_cast<size_t>(column)];
       const cv::Mat triple = Triple(fit, set, SelectViews(set, {name}, {}).front(), threads);
-      triple.copyTo(canvas(cv::Rect(kGap + column * block_width, top + kTextHeight, triple.cols,
-                                    triple.rows)));
+      triple.copyTo(canvas(
+          cv::Rect(kGap + column * block_width, top + kTextHeight, triple.cols, triple.rows)));
     }
   }
   return ImageOf(canvas);

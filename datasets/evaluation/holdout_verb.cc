@@ -67,8 +67,8 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
     experiment.splits = ParseSplits(pairs, false);
     for (const HoldoutSplit& split : ParseSplits(fitted, true)) experiment.splits.push_back(split);
     for (const std::string& text : programs) experiment.programs.push_back(ParsePrograms(text));
-    const HoldoutResult result = RunHoldout(
-        experiment, common, [](const std::string& text) { spdlog::info("{}", text); });
+    const HoldoutResult result =
+        RunHoldout(experiment, common, [](const std::string& text) { spdlog::info("{}", text); });
     WriteResult(experiment, result, common.threads);
     return ProgramResult{result.Markdown(), result.ToJson()};
   });

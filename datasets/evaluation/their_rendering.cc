@@ -19,7 +19,8 @@ std::vector<float> ReadTheirRendering(const std::filesystem::path& file, int wid
   });
   if (picture.cols != width || picture.rows != height) {
     const bool smaller = width < picture.cols;
-    cv::resize(picture, picture, {width, height}, 0, 0, smaller ? cv::INTER_AREA : cv::INTER_LINEAR);
+    cv::resize(picture, picture, {width, height}, 0, 0,
+               smaller ? cv::INTER_AREA : cv::INTER_LINEAR);
   }
   std::vector<float> rgb(3 * picture.total());
   for (size_t i = 0; i < picture.total(); ++i) {
