@@ -77,6 +77,21 @@ std::vector<Taps> TentTaps(int input, int output) {
   return all;
 }
 
+std::vector<TapGroup> GroupTaps(std::span<const Taps> taps, int most_inputs) {
+  std::vector<TapGroup> groups;
+  for (size_t i = 0; i < taps.size(); ++i) {
+    const int end = taps[i].first + static_cast<int>(taps[i].weights.size());
+    if (groups.empty() || end - groups.back().first_input > most_inputs) {
+      groups.push_back({static_cast<int>(i), taps[i].first, 0, {}});
+    }
+    TapGroup& group = groups.back();
+    group.inputs = std::max(group.inputs, end - group.first_input);
+    group.taps.push_back(taps[i]);
+    group.taps.back().first -= group.first_input;
+  }
+  return groups;
+}
+
 std::vector<float> ResamplePlanes(std::span<const float> planes, int width, int height,
                                   std::span<const Taps> across, std::span<const Taps> down) {
   const size_t in_size = static_cast<size_t>(width) * height;

@@ -29,6 +29,17 @@ std::vector<Taps> AreaTaps(int input, int output);
 // Triangle filter as wide as two samples of the coarser grid: bilinear up, tent-averaged down.
 std::vector<Taps> TentTaps(int input, int output);
 
+// Consecutive output samples and the input samples that make them, as few at a time as fit into
+// memory.
+struct TapGroup {
+  int first_output = 0;
+  int first_input = 0, inputs = 0;
+  std::vector<Taps> taps;  // of the outputs, `first` counted from first_input
+};
+// At most `most_inputs` in a group, more only where one output needs more. `taps` as those above:
+// later ones never begin earlier.
+std::vector<TapGroup> GroupTaps(std::span<const Taps> taps, int most_inputs);
+
 // `planes` holds blocks of width × height samples, row by row; returns as many blocks of
 // across.size() × down.size(), in the same order.
 std::vector<float> ResamplePlanes(std::span<const float> planes, int width, int height,

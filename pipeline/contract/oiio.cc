@@ -38,20 +38,19 @@ bool LacksDecoder(const std::string& reason) {
   return false;
 }
 
-// A small file may ask for a large image.
-void RequireMemoryForImage(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
-  const double needed =
-      static_cast<double>(sizeof(float)) * spec.width * spec.height * spec.nchannels;
+}  // namespace
+
+void RequireMemoryForRows(const std::filesystem::path& file, const OIIO::ImageSpec& spec,
+                          int rows) {
+  const double needed = static_cast<double>(sizeof(float)) * spec.width * rows * spec.nchannels;
   const auto limit = static_cast<double>(MemoryLimit_bytes());
   if (needed <= limit) return;
   throw UserError(file, "size",
-                  std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels of " +
+                  std::to_string(spec.width) + "x" + std::to_string(rows) + " pixels of " +
                       std::to_string(spec.nchannels) + " channels, which need " +
                       MemoryText(needed) + " of memory",
                   "Glint may use " + MemoryText(limit) + " here (--memory); scale it down");
 }
-
-}  // namespace
 
 void RejectUnreadable(const std::filesystem::path& file, std::string reason,
                       const std::string& formats) {
@@ -82,7 +81,7 @@ void SetUpOiio() {
   static std::once_flag once;
   std::call_once(once, [] {
     OIIO::attribute("limits:channels", 64);
-    OIIO::attribute("limits:imagesize_MB", 8192);
+    OIIO::attribute("limits:imagesize_MB", 16384);  // kMaxPixels are refused before
     OIIO::attribute("threads", 1);
     OIIO::attribute("exr_threads", -1);
     // OpenEXR makes a table with an entry for every line of an image before anyone sees its size.
@@ -127,14 +126,15 @@ void RequireAttributesWithinFile(const std::filesystem::path& file) {
   }
 }
 
-void RequireSize(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
+void RequireSize(const std::filesystem::path& file, const OIIO::ImageSpec& spec,
+                 HowRead how = HowRead::kWhole) {
   if (spec.width < 1 || spec.height < 1 || spec.depth != 1 || spec.nchannels < 1 ||
       static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) > kMaxPixels) {
     throw UserError(file, "size",
                     std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels",
                     "images of at most " + std::to_string(kMaxPixels >> 20) + " Mpx are read");
   }
-  RequireMemoryForImage(file, spec);
+  if (how == HowRead::kWhole) RequireMemoryForRows(file, spec, spec.height);
 }
 
 }  // namespace
@@ -151,7 +151,7 @@ std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
   return input;
 }
 
-std::unique_ptr<OIIO::ImageInput> OpenExr(const std::filesystem::path& file) {
+std::unique_ptr<OIIO::ImageInput> OpenExr(const std::filesystem::path& file, HowRead how) {
   SetUpOiio();
   RequireFile(file);
   RequireAttributesWithinFile(file);
@@ -163,7 +163,7 @@ std::unique_ptr<OIIO::ImageInput> OpenExr(const std::filesystem::path& file) {
     throw UserError(file, "format", "no OpenEXR image that can be read (" + reason + ")",
                     "an OpenEXR image is expected here");
   }
-  RequireSize(file, spec);
+  RequireSize(file, spec, how);
   return input;
 }
 

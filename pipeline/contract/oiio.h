@@ -20,8 +20,16 @@ std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
                                             const OIIO::ImageSpec* configuration = nullptr);
 
 // The same for OpenEXR alone: no other format's reader looks at the file, which some allocate
-// gigabytes for.
-std::unique_ptr<OIIO::ImageInput> OpenExr(const std::filesystem::path& file);
+// gigabytes for. What is read by rows need not fit into memory.
+enum class HowRead { kWhole, kByRows };
+std::unique_ptr<OIIO::ImageInput> OpenExr(const std::filesystem::path& file,
+                                          HowRead how = HowRead::kWhole);
+// Throws UserError where so many rows need more memory than allowed: a small file may ask for a
+// large image.
+void RequireMemoryForRows(const std::filesystem::path& file, const OIIO::ImageSpec& spec, int rows);
+
+// A fixed date keeps the library from writing the present one.
+inline constexpr char kNoDate[] = "1970:01:01 00:00:00";
 
 // What OpenImage throws for a file that does not open. `reason` is OpenImageIO's own, and `formats`
 // the formats it was built with ("bmp,heif,jpeg,…").

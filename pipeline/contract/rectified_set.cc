@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/photo_name.h"
+#include "pipeline/contract/rectified_rows.h"
 
 namespace glint {
 namespace {
@@ -153,32 +153,7 @@ RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file) {
 }
 
 RectifiedImage ReadRectifiedImage(const RectifiedSet& set, const RectifiedView& view) {
-  const std::filesystem::path file = set.manifest_file.parent_path() / view.file;
-  const Image image = ReadExr(file);
-  if (image.width != set.plane.width || image.height != set.plane.height) {
-    throw UserError(file, "size", std::to_string(image.width) + "x" + std::to_string(image.height),
-                    "the manifest says " + std::to_string(set.plane.width) + "x" +
-                        std::to_string(set.plane.height) + "; run rectify again");
-  }
-  RectifiedImage result{image.width, image.height, {}, {}};
-  result.rgb.resize(3 * image.pixels());
-  int next = 0;
-  for (const char* name : {"R", "G", "B", "mask.Y"}) {
-    const int channel = image.ChannelIndex(name);
-    if (channel < 0) throw UserError(file, name, "no such channel", "run rectify again");
-    const auto plane = image.channel(channel);
-    if (!std::all_of(plane.begin(), plane.end(), [](float v) { return std::isfinite(v); })) {
-      throw UserError(file, name, "a value that is not a number", "run rectify again");
-    }
-    if (next < 3) {
-      std::copy(plane.begin(), plane.end(),
-                result.rgb.begin() + static_cast<std::ptrdiff_t>(next * image.pixels()));
-    } else {
-      result.mask.assign(plane.begin(), plane.end());
-    }
-    ++next;
-  }
-  return result;
+  return RectifiedReader(set, view).Read(0, set.plane.height);
 }
 
 void AdmitClippedTexels(const RectifiedView& view, RectifiedImage* image) {
@@ -192,12 +167,11 @@ void AdmitClippedTexels(const RectifiedView& view, RectifiedImage* image) {
   }
 }
 
-void WriteRectifiedImage(const std::filesystem::path& file, const RectifiedImage& rectified,
+void WriteRectifiedImage(const std::filesystem::path& file, const RectifiedImage& image,
                          const RectifiedSet& set) {
-  Image image(rectified.width, rectified.height, {"R", "G", "B", "mask.Y"});
-  std::copy(rectified.rgb.begin(), rectified.rgb.end(), image.samples.begin());
-  std::copy(rectified.mask.begin(), rectified.mask.end(), image.channel(3).begin());
-  WriteExr(file, image, {{"reflectance_convention", ToString(set.convention)}});
+  RectifiedWriter writer(file, set);
+  writer.Write(image);
+  writer.Close();
 }
 
 std::vector<RectifiedView> SelectViews(const RectifiedSet& set,

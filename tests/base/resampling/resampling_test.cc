@@ -68,5 +68,22 @@ TEST(ResamplePlanes, AveragesEachPlaneAlongBothAxes) {
   EXPECT_EQ(small, (std::vector<float>{3.5f, 5.5f, 20, 30}));
 }
 
+TEST(GroupTaps, HoldsEveryOutputOnceAndItsInputs) {
+  for (const auto& taps : {AreaTaps(1000, 7), TentTaps(10, 333), TentTaps(100, 100)}) {
+    size_t next = 0;
+    for (const TapGroup& group : GroupTaps(taps, 50)) {
+      EXPECT_EQ(group.first_output, static_cast<int>(next));
+      EXPECT_TRUE(group.inputs <= 50 || group.taps.size() == 1);
+      for (const Taps& own : group.taps) {
+        EXPECT_EQ(own.first + group.first_input, taps[next].first);
+        EXPECT_LE(own.first + static_cast<int>(own.weights.size()), group.inputs);
+        EXPECT_EQ(own.weights, taps[next].weights);
+        ++next;
+      }
+    }
+    EXPECT_EQ(next, taps.size());
+  }
+}
+
 }  // namespace
 }  // namespace glint

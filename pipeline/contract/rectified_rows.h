@@ -1,0 +1,34 @@
+// Rectified views read and written by rows: views of 16384² texels need 4 GB each.
+#pragma once
+
+#include "pipeline/contract/exr_rows.h"
+#include "pipeline/contract/rectified_set.h"
+
+namespace glint {
+
+class RectifiedReader {
+ public:
+  // Throws UserError when size or channels do not fit the set.
+  RectifiedReader(const RectifiedSet& set, const RectifiedView& view);
+  // Rows first_row … first_row + rows − 1. Throws UserError: values that are not finite.
+  RectifiedImage Read(int first_row, int rows);
+
+ private:
+  std::filesystem::path file_;
+  ExrReader reader_;
+  std::array<int, 4> channels_;  // of R, G, B and the mask
+};
+
+class RectifiedWriter {
+ public:
+  // Throws EnvironmentError, as all that follows.
+  RectifiedWriter(const std::filesystem::path& file, const RectifiedSet& set);
+  // The next rows, from the top.
+  void Write(const RectifiedImage& rows);
+  void Close() { writer_.Close(); }
+
+ private:
+  ExrWriter writer_;
+};
+
+}  // namespace glint
