@@ -26,16 +26,46 @@ struct View {
   std::array<double, 2> beam{0, 0};
 };
 
-// The plane z = 0 of a rectified sample cut into texels; row 0 is at +y.
+// What a part of a plane of texels is a part of, in the whole's texels.
+struct PlaneOfPart {
+  int width = 0, height = 0;                        // 0: it is the whole
+  int first_column = 0, first_row = 0, stride = 1;  // of the part
+};
+
+// The plane z = 0 of a rectified sample cut into texels; row 0 is at +y. Or a part of it, whose
+// texels lie where they lie in the whole: consecutive rows, or every so many-th texel.
 struct SamplePlane {
   int width = 0;
   int height = 0;
-  double width_mm = 0;
+  double width_mm = 0;  // of the whole, as height_mm
   double height_mm = 0;
   TexelSampling sampling = TexelSampling::kPixelCentres;
+  PlaneOfPart whole = {};
 
-  double x_mm(int column) const { return Coordinate(column, width) * width_mm; }
-  double y_mm(int row) const { return -Coordinate(row, height) * height_mm; }
+  double x_mm(int column) const {
+    return Coordinate(whole.first_column + whole.stride * column, whole_width()) * width_mm;
+  }
+  double y_mm(int row) const {
+    return -Coordinate(whole.first_row + whole.stride * row, whole_height()) * height_mm;
+  }
+  int whole_width() const { return whole.width > 0 ? whole.width : width; }
+  int whole_height() const { return whole.height > 0 ? whole.height : height; }
+
+  // Of the whole plane: `rows` rows from `first_row` on.
+  SamplePlane Rows(int first_row, int rows) const {
+    SamplePlane part = *this;
+    part.height = rows;
+    part.whole = {width, height, 0, first_row, 1};
+    return part;
+  }
+  // Of the whole plane: the texel in the middle of every stride × stride.
+  SamplePlane Every(int stride) const {
+    SamplePlane part = *this;
+    part.width = (width + stride - 1 - stride / 2) / stride;
+    part.height = (height + stride - 1 - stride / 2) / stride;
+    part.whole = {width, height, stride / 2, stride / 2, stride};
+    return part;
+  }
 
  private:
   // Position of sample i of n in [-1/2, 1/2].

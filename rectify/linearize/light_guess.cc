@@ -40,16 +40,28 @@ LightGuess::LightGuess(const SamplePlane& plane, LightFalloff falloff)
       rows_(Spread(plane.height)) {}
 
 void LightGuess::Add(const RectifiedImage& image) {
-  const size_t texels = static_cast<size_t>(image.width) * image.height;
-  std::vector<float>& radiance = radiance_.emplace_back();
-  radiance.reserve(points());
+  BeginView();
+  AddRows(image);
+}
+
+void LightGuess::BeginView() {
+  radiance_.emplace_back().reserve(points());
+  next_row_ = 0;
+}
+
+void LightGuess::AddRows(const RectifiedImage& rows) {
+  const size_t texels = static_cast<size_t>(rows.width) * static_cast<size_t>(rows.height);
+  const int end = next_row_ + rows.height;
   for (const int row : rows_) {
+    if (row < next_row_ || row >= end) continue;
     for (const int column : columns_) {
-      const size_t i = static_cast<size_t>(row) * image.width + column;
-      const float mean = (image.rgb[i] + image.rgb[texels + i] + image.rgb[2 * texels + i]) / 3;
-      radiance.push_back(image.mask[i] < 0.5f ? -1.0f : mean);
+      const size_t i = static_cast<size_t>(row - next_row_) * static_cast<size_t>(rows.width) +
+                       static_cast<size_t>(column);
+      const float mean = (rows.rgb[i] + rows.rgb[texels + i] + rows.rgb[2 * texels + i]) / 3;
+      radiance_.back().push_back(rows.mask[i] < 0.5f ? -1.0f : mean);
     }
   }
+  next_row_ = end;
 }
 
 double LightGuess::Power(const std::vector<View>& views) const {

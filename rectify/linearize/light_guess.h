@@ -18,9 +18,12 @@ class LightGuess {
 
   // The next view; the grid is all that is kept of it.
   void Add(const RectifiedImage& image);
+  // The same by rows, from the top.
+  void BeginView();
+  void AddRows(const RectifiedImage& rows);
 
-  // `views` in the order of Add; their positions and exposures are used, not their light_rgb.
-  // 0 when no view had a usable texel that is not black.
+  // `views` in the order in which they were added; their positions and exposures are used, not
+  // their light_rgb. 0 when no view had a usable texel that is not black.
   double Power(const std::vector<View>& views) const;
 
  private:
@@ -30,6 +33,7 @@ class LightGuess {
   LightFalloff falloff_;
   std::vector<int> columns_, rows_;           // of the grid's points
   std::vector<std::vector<float>> radiance_;  // per view and point; negative: not usable
+  int next_row_ = 0;                          // of the last view
 };
 
 // Gives the views the power that `guess` ends with, white; without one they stay as they are.

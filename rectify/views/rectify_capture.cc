@@ -9,6 +9,7 @@
 #include "pipeline/contract/hash.h"
 #include "pipeline/contract/photo_name.h"
 #include "pipeline/contract/progress.h"
+#include "pipeline/contract/rectified_rows.h"
 #include "rectify/linearize/light_guess.h"
 #include "rectify/views/frame_mask.h"
 #include "rectify/views/photo_stream.h"
@@ -29,13 +30,14 @@ void CheckSize(const fs::path& file, const Camera& camera) {
                       std::to_string(camera.height_px) + "; run calib again");
 }
 
-// The frame's mask for a view; empty without a frame.
-std::vector<TexelStatus> FrameStatus(const RectifyTask& task, const RectifyOptions& options,
-                                     const SamplePlane& plane, const View& view) {
+// Of the frame that the view shows; none without a frame. `task` and `view` must outlive it.
+FrameStatus FrameOf(const RectifyTask& task, const RectifyOptions& options, const View& view) {
   if (task.board_opening_mm.empty()) return {};
   const BoardRectangle opening{task.board_opening_mm[0], task.board_opening_mm[1],
                                task.board_opening_mm[2], task.board_opening_mm[3]};
-  return MaskFrame(plane, opening, options.frame_height_mm, options.frame_margin_mm, view);
+  return [opening, &options, &view](const SamplePlane& rows) {
+    return MaskFrame(rows, opening, options.frame_height_mm, options.frame_margin_mm, view);
+  };
 }
 
 // Exposures relative to the first photograph's: as calib found them or else, where EXIF gives them
@@ -123,14 +125,16 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     const CameraProjection projection(camera, calibrated.camera_from_sample);
     ResampleOptions resample = ResampleOptionsOf(options, common.threads);
     if (camera.vignetting != std::array<double, 3>{}) resample.vignetting = camera;
-    ViewCounts counts;
-    const RectifiedImage image =
-        RectifyPhoto(photo.photo, projection, set.plane, resample,
-                     FrameStatus(task, options, set.plane, view.view), files[i], &counts);
+    RectifiedWriter writer(stage->Output(view.file), set);
+    guess.BeginView();
+    const ViewCounts counts =
+        RectifyByRows(photo.photo, projection, set.plane, resample,
+                      FrameOf(task, options, view.view), files[i], [&](const RectifiedImage& rows) {
+                        writer.Write(rows);
+                        guess.AddRows(rows);
+                      });
+    writer.Close();
     Warn(files[i], counts);
-    WriteRectifiedImage(stage->Output(view.file), image, set);
-
-    guess.Add(image);
     exposures.push_back(photo.exposure);
     Json metrics = {{"name", view.name}};
     metrics.update(ToJson(counts));

@@ -1,6 +1,7 @@
 #include "rectify/views/rectify_photo.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -22,28 +23,36 @@ double PixelsPerTexel(const PlaneProjection& projection, const SamplePlane& plan
   return std::sqrt(std::abs(jacobian.determinant()));
 }
 
-ViewCounts Count(const ResampledView& view) {
-  const size_t texels = view.status.size();
-  size_t by_status[4] = {0, 0, 0, 0};
-  size_t black = 0;
-  for (size_t i = 0; i < texels; ++i) {
-    ++by_status[static_cast<size_t>(view.status[i])];
-    if (view.status[i] == TexelStatus::kUsable && view.rgb[i] < kBlack &&
-        view.rgb[texels + i] < kBlack && view.rgb[2 * texels + i] < kBlack) {
-      ++black;
+// Counts texels as rows go by.
+class TexelCounter {
+ public:
+  void Add(const ResampledView& rows) {
+    const size_t texels = rows.status.size();
+    texels_ += texels;
+    for (size_t i = 0; i < texels; ++i) {
+      ++by_status_[static_cast<size_t>(rows.status[i])];
+      if (rows.status[i] == TexelStatus::kUsable && rows.rgb[i] < kBlack &&
+          rows.rgb[texels + i] < kBlack && rows.rgb[2 * texels + i] < kBlack) {
+        ++black_;
+      }
     }
   }
-  const auto fraction = [&](TexelStatus status) {
-    return static_cast<double>(by_status[static_cast<size_t>(status)]) /
-           static_cast<double>(texels);
-  };
-  return {fraction(TexelStatus::kUsable),
-          fraction(TexelStatus::kOutside),
-          fraction(TexelStatus::kSaturated),
-          fraction(TexelStatus::kMasked),
-          static_cast<double>(black) / static_cast<double>(texels),
-          0};
-}
+  ViewCounts counts() const {
+    return {Share(by_status_[static_cast<size_t>(TexelStatus::kUsable)]),
+            Share(by_status_[static_cast<size_t>(TexelStatus::kOutside)]),
+            Share(by_status_[static_cast<size_t>(TexelStatus::kSaturated)]),
+            Share(by_status_[static_cast<size_t>(TexelStatus::kMasked)]),
+            Share(black_),
+            0};
+  }
+
+ private:
+  double Share(size_t count) const {
+    return static_cast<double>(count) / static_cast<double>(texels_);
+  }
+  size_t texels_ = 0, black_ = 0;
+  size_t by_status_[4] = {0, 0, 0, 0};
+};
 
 void RequireUsable(const ViewCounts& counts, const std::filesystem::path& file) {
   if (counts.usable > 0) {
@@ -62,6 +71,15 @@ void RequireUsable(const ViewCounts& counts, const std::filesystem::path& file) 
   }
   throw UserError(file, "sample", "a sample that lies under the board's frame",
                   "check [sample] size_mm and centre_mm and [board] window");
+}
+
+RectifiedImage WithMask(ResampledView view) {
+  RectifiedImage image{view.width, view.height, std::move(view.rgb), {}};
+  image.mask.reserve(view.status.size());
+  for (const TexelStatus status : view.status) {
+    image.mask.push_back(status == TexelStatus::kUsable ? 1.0f : 0.0f);
+  }
+  return image;
 }
 
 }  // namespace
@@ -97,24 +115,40 @@ View ViewOf(const Calibration& calibration, const CalibratedPhoto& photo,
 }
 
 RectifiedImage MaskView(ResampledView view, const std::filesystem::path& file, ViewCounts* counts) {
-  *counts = Count(view);
+  TexelCounter counter;
+  counter.Add(view);
+  *counts = counter.counts();
   RequireUsable(*counts, file);
-  RectifiedImage image{view.width, view.height, std::move(view.rgb), {}};
-  image.mask.reserve(view.status.size());
-  for (const TexelStatus status : view.status) {
-    image.mask.push_back(status == TexelStatus::kUsable ? 1.0f : 0.0f);
-  }
-  return image;
+  return WithMask(std::move(view));
 }
 
 RectifiedImage RectifyPhoto(const LinearPhoto& photo, const PlaneProjection& projection,
                             const SamplePlane& plane, const ResampleOptions& options,
-                            const std::vector<TexelStatus>& status_before,
-                            const std::filesystem::path& file, ViewCounts* counts) {
+                            const FrameStatus& frame, const std::filesystem::path& file,
+                            ViewCounts* counts) {
+  const std::vector<TexelStatus> before = frame ? frame(plane) : std::vector<TexelStatus>();
   RectifiedImage image =
-      MaskView(ResampleToPlane(photo, projection, plane, options, status_before), file, counts);
+      MaskView(ResampleToPlane(photo, projection, plane, options, before), file, counts);
   counts->pixels_per_texel = PixelsPerTexel(projection, plane);
   return image;
+}
+
+ViewCounts RectifyByRows(const LinearPhoto& photo, const PlaneProjection& projection,
+                         const SamplePlane& plane, const ResampleOptions& options,
+                         const FrameStatus& frame, const std::filesystem::path& file,
+                         const std::function<void(const RectifiedImage& rows)>& take) {
+  TexelCounter counter;
+  for (int first = 0; first < plane.height; first += kRowsAtOnce) {
+    const SamplePlane rows = plane.Rows(first, std::min(kRowsAtOnce, plane.height - first));
+    const std::vector<TexelStatus> before = frame ? frame(rows) : std::vector<TexelStatus>();
+    ResampledView view = ResampleToPlane(photo, projection, rows, options, before);
+    counter.Add(view);
+    take(WithMask(std::move(view)));
+  }
+  ViewCounts counts = counter.counts();
+  RequireUsable(counts, file);
+  counts.pixels_per_texel = PixelsPerTexel(projection, plane);
+  return counts;
 }
 
 }  // namespace glint

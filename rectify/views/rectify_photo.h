@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/json.h"
@@ -32,10 +34,21 @@ View ViewOf(const Calibration& calibration, const CalibratedPhoto& photo,
 // black.
 RectifiedImage MaskView(ResampledView view, const std::filesystem::path& file, ViewCounts* counts);
 
-// ResampleToPlane and MaskView. `status_before` as MaskFrame gives it (or empty).
+// What a frame covers of rows of the plane, as MaskFrame gives it; empty: no frame.
+using FrameStatus = std::function<std::vector<TexelStatus>(const SamplePlane& rows)>;
+
+// ResampleToPlane, MaskView.
 RectifiedImage RectifyPhoto(const LinearPhoto& photo, const PlaneProjection& projection,
                             const SamplePlane& plane, const ResampleOptions& options,
-                            const std::vector<TexelStatus>& status_before,
-                            const std::filesystem::path& file, ViewCounts* counts);
+                            const FrameStatus& frame, const std::filesystem::path& file,
+                            ViewCounts* counts);
+
+// The same by rows from the top, of which `take` is given kRowsAtOnce, in the end fewer: a view of
+// 16384² texels need not be whole in memory. Throws at the end where RectifyPhoto throws.
+inline constexpr int kRowsAtOnce = 512;
+ViewCounts RectifyByRows(const LinearPhoto& photo, const PlaneProjection& projection,
+                         const SamplePlane& plane, const ResampleOptions& options,
+                         const FrameStatus& frame, const std::filesystem::path& file,
+                         const std::function<void(const RectifiedImage& rows)>& take);
 
 }  // namespace glint

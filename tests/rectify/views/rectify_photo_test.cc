@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "pipeline/contract/errors.h"
 #include "tests/rectify/plane_photo.h"
 
@@ -59,6 +61,42 @@ TEST(RectifyPhoto, CountsWhereTexelsWent) {
   EXPECT_NEAR(counts.pixels_per_texel, 3, 1e-9);
   EXPECT_EQ(image.mask[20 * 40 + 5], 0);
   EXPECT_EQ(image.mask[20 * 40 + 35], 1);
+}
+
+// A view that is written by rows is the view.
+TEST(RectifyPhoto, RowsAreThoseOfTheWhole) {
+  Photo photo = FlatPhoto(300, 300, 0.5f, 8);
+  for (size_t i = 0; i < photo.image.samples.size(); ++i) {
+    photo.image.samples[i] = 0.5f + 0.4f * std::sin(0.01f * static_cast<float>(i));
+  }
+  const LinearPhoto linear(photo, Encoding::kGamma22);
+  const CameraProjection projection(TestCamera(300, 300), LookAtSample(100, 20, 0));
+  SamplePlane plane = Plane();
+  plane.height = kRowsAtOnce + 100;
+  plane.width = 24;
+  const FrameStatus frame = [](const SamplePlane& rows) {
+    std::vector<TexelStatus> status;
+    for (int i = 0; i < rows.width * rows.height; ++i) {
+      const bool covered = rows.y_mm(i / rows.width) < -15;
+      status.push_back(covered ? TexelStatus::kMasked : TexelStatus::kOutside);
+    }
+    return status;
+  };
+  ViewCounts counts;
+  const RectifiedImage whole = RectifyPhoto(linear, projection, plane, {}, frame, "a.jpg", &counts);
+  size_t texels = 0;
+  const ViewCounts by_rows =
+      RectifyByRows(linear, projection, plane, {}, frame, "a.jpg", [&](const RectifiedImage& rows) {
+        const size_t count = rows.mask.size();
+        for (size_t i = 0; i < count; ++i) {
+          ASSERT_EQ(rows.mask[i], whole.mask[texels + i]);
+          ASSERT_EQ(rows.rgb[count + i], whole.rgb[whole.mask.size() + texels + i]);
+        }
+        texels += count;
+      });
+  EXPECT_EQ(texels, whole.mask.size());
+  EXPECT_EQ(ToJson(by_rows), ToJson(counts));
+  EXPECT_GT(counts.masked, 0.1);
 }
 
 TEST(RectifyPhoto, PutsCameraAndLightIntoTheSampleFrame) {
