@@ -6,15 +6,18 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "fitting/bootstrap/bootstrap.h"
 #include "fitting/estimator/estimator.h"
 #include "fitting/latent/levels.h"
+#include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/weights/find_model.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/contract/svbrdf_rows.h"
 
 namespace glint {
 namespace {
@@ -57,22 +60,37 @@ auto AsUserError(const Action& action) {
   }
 }
 
-PhotographSet Load(const RectifiedSet& set, const std::vector<RectifiedView>& views) {
-  PhotographSet photographs;
-  photographs.plane = set.plane;
-  photographs.convention = set.convention;
-  photographs.light_power_known = set.light_power_known;
-  for (const RectifiedView& view : views) {
-    RectifiedImage image = ReadRectifiedImage(set, view);
-    AdmitClippedTexels(view, &image);
-    photographs.photographs.push_back(
-        {view.view, view.ldr, std::move(image.rgb), std::move(image.mask)});
-  }
+// What fitting looks at: the size of its last level; finer detail is left to refinement.
+PhotographSet Load(const RectifiedSet& set, const std::vector<RectifiedView>& views,
+                   const FitStageOptions& options, const FitOptions& fit, int threads) {
+  RectifiedPhotographs source(set, views);
+  const auto [width, height] =
+      options.method == "start"
+          ? std::pair(set.plane.width, set.plane.height)
+          : LevelSizes(set.plane.width, set.plane.height, fit.coarse_size, fit.finest_size).back();
+  PhotographSet photographs = source.Downsampled(width, height, threads);
   if (const std::string wrong = photographs.Check(); !wrong.empty()) {
     throw UserError(set.manifest_file, "data.views", wrong,
                     "check the photographs and run rectify again");
   }
   return photographs;
+}
+
+// svbrdf.exr at the set's size, by rows.
+void WriteAtSize(const fs::path& file, const SvbrdfMaps& maps, const RectifiedSet& set) {
+  const SamplePlane& plane = set.plane;
+  if (maps.width == plane.width && maps.height == plane.height) {
+    WriteSvbrdf(file, maps, set.convention);
+    return;
+  }
+  constexpr int kRowsAtOnce = 256;
+  const EncodedMaps encoded = EncodeMaps(maps);
+  SvbrdfWriter writer(file, plane.width, plane.height, set.convention);
+  for (int first = 0; first < plane.height; first += kRowsAtOnce) {
+    const int rows = std::min(kRowsAtOnce, plane.height - first);
+    writer.Write(DecodeMaps(ResizedRows(encoded, plane.width, plane.height, first, rows)));
+  }
+  writer.Close();
 }
 
 fs::path EstimatorWeights(const FitStageOptions& options) {
@@ -207,10 +225,10 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
                            int threads, Stage* stage) {
   const RectifiedSet set = ReadRectifiedSet(rectify_manifest);
   const std::vector<RectifiedView> views = SelectViews(set, options.views, options.exclude);
-  const PhotographSet photographs = Load(set, views);
   const FitOptions fit_options = Resolved(options, views.size(), threads);
   if (const std::string wrong = fit_options.Check(); !wrong.empty())
     throw UserError("fit: " + wrong);
+  const PhotographSet photographs = Load(set, views, options, fit_options, threads);
 
   const auto began = std::chrono::steady_clock::now();
   const SvbrdfMaps start = InitialMaps(options, fit_options, photographs, threads);
@@ -232,11 +250,11 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
     }
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  result.width = result.fit.maps.width;
-  result.height = result.fit.maps.height;
+  result.width = set.plane.width;
+  result.height = set.plane.height;
   result.data = Data(result.fit, set, options, views);
   result.metrics = Metrics(result.fit, views);
-  WriteSvbrdf(stage->Output("svbrdf.exr"), result.fit.maps, set.convention);
+  WriteAtSize(stage->Output("svbrdf.exr"), result.fit.maps, set);
   stage->Commit(result.data, result.metrics);
   return result;
 }

@@ -18,5 +18,7 @@ std::vector<std::pair<int, int>> LevelSizes(int width, int height, int coarse_si
 // Encoded maps at another size: bilinear where larger, tent-averaged where smaller (slopes
 // average as they should; a normal's length plays no part).
 EncodedMaps Resized(const EncodedMaps& maps, int width, int height);
+// Rows first_row … first_row + rows − 1 of those.
+EncodedMaps ResizedRows(const EncodedMaps& maps, int width, int height, int first_row, int rows);
 
 }  // namespace glint

@@ -10,38 +10,48 @@
 namespace glint {
 namespace {
 
-Photograph Downsample(const Photograph& from, const SamplePlane& big, int width, int height,
-                      int threads) {
-  const size_t texels = static_cast<size_t>(width) * height;
-  const size_t big_texels = static_cast<size_t>(big.width) * big.height;
-  Photograph to{from.view, from.ldr, std::vector<float>(3 * texels), std::vector<float>(texels)};
-  const std::vector<Overlaps> across = AreaOverlaps(big.width, width);
-  const std::vector<Overlaps> down = AreaOverlaps(big.height, height);
-  ForEachBlock(height, 16, threads, [&](int begin, int end) {
-    for (int row = begin; row < end; ++row) {
-      for (int column = 0; column < width; ++column) {
+// Which samples of a picture make those of the smaller one.
+struct Averaging {
+  const SamplePlane& big;
+  std::vector<Overlaps> across, down;
+};
+
+// Output rows begin … end, all of whose input rows are among `from`'s.
+void AverageRows(const Averaging& averaging, const Photograph& from, int first_row, int begin,
+                 int end, int threads, Photograph* to) {
+  const size_t width = averaging.across.size(), texels = width * averaging.down.size();
+  const size_t big_texels = from.mask.size();
+  const auto big_width = static_cast<size_t>(averaging.big.width);
+  ForEachBlock(end - begin, 16, threads, [&](int block_begin, int block_end) {
+    for (int row = begin + block_begin; row < begin + block_end; ++row) {
+      const Overlaps& down = averaging.down[static_cast<size_t>(row)];
+      const size_t top = static_cast<size_t>(down.first - first_row);
+      for (size_t column = 0; column < width; ++column) {
+        const Overlaps& across = averaging.across[column];
         double area = 0, usable = 0, sum[3] = {0, 0, 0};
-        for (size_t u = 0; u < down[row].shares.size(); ++u) {
-          for (size_t v = 0; v < across[column].shares.size(); ++v) {
-            const size_t i = (down[row].first + u) * big.width + across[column].first + v;
-            const double weight = down[row].shares[u] * across[column].shares[v];
+        for (size_t u = 0; u < down.shares.size(); ++u) {
+          for (size_t v = 0; v < across.shares.size(); ++v) {
+            const size_t i = (top + u) * big_width + static_cast<size_t>(across.first) + v;
+            const double weight = down.shares[u] * across.shares[v];
             const double used = weight * from.mask[i];
             area += weight;
             if (used <= 0) continue;
             usable += used;
-            for (int c = 0; c < 3; ++c) sum[c] += used * from.rgb[c * big_texels + i];
+            for (size_t c = 0; c < 3; ++c) sum[c] += used * from.rgb[c * big_texels + i];
           }
         }
         const size_t o = static_cast<size_t>(row) * width + column;
-        to.mask[o] = static_cast<float>(usable / area);
-        for (int c = 0; c < 3; ++c) {
-          to.rgb[c * texels + o] = usable > 0 ? static_cast<float>(sum[c] / usable) : 0.0f;
+        to->mask[o] = static_cast<float>(usable / area);
+        for (size_t c = 0; c < 3; ++c) {
+          to->rgb[c * texels + o] = usable > 0 ? static_cast<float>(sum[c] / usable) : 0.0f;
         }
       }
     }
   });
-  return to;
 }
+
+// Of a picture read at once; more where one output row takes more.
+constexpr int kRowsAtOnce = 256;
 
 std::string CheckPhotograph(const Photograph& p, size_t texels) {
   if (p.rgb.size() != 3 * texels || p.mask.size() != texels) return "is not of the set's size";
@@ -77,10 +87,33 @@ std::string PhotographSet::Check() const {
   return bad == photographs.size() ? unusable : "";
 }
 
-PhotographSet Downsampled(const PhotographSet& set, int width, int height, int threads) {
-  if (width < 1 || height < 1 || width > set.plane.width || height > set.plane.height) {
+Photograph DownsampledByRows(const ReadRows& read, const SamplePlane& plane, int width, int height,
+                             int threads) {
+  if (width < 1 || height < 1 || width > plane.width || height > plane.height) {
     throw std::invalid_argument("Downsampled: the size must be from 1 to the set's");
   }
+  const Averaging averaging{plane, AreaOverlaps(plane.width, width),
+                            AreaOverlaps(plane.height, height)};
+  const size_t texels = static_cast<size_t>(width) * static_cast<size_t>(height);
+  Photograph to{{}, true, std::vector<float>(3 * texels), std::vector<float>(texels)};
+  const auto end_of = [&](int row) {
+    const Overlaps& down = averaging.down[static_cast<size_t>(row)];
+    return down.first + static_cast<int>(down.shares.size());
+  };
+  for (int begin = 0; begin < height;) {
+    const int first_row = averaging.down[static_cast<size_t>(begin)].first;
+    int end = begin + 1;
+    while (end < height && end_of(end) - first_row <= kRowsAtOnce) ++end;
+    const Photograph from = read(first_row, end_of(end - 1) - first_row);
+    to.view = from.view;
+    to.ldr = from.ldr;
+    AverageRows(averaging, from, first_row, begin, end, threads, &to);
+    begin = end;
+  }
+  return to;
+}
+
+PhotographSet Downsampled(const PhotographSet& set, int width, int height, int threads) {
   if (width == set.plane.width && height == set.plane.height) return set;
   PhotographSet small;
   small.plane = set.plane;
@@ -89,8 +122,21 @@ PhotographSet Downsampled(const PhotographSet& set, int width, int height, int t
   small.convention = set.convention;
   small.light_power_known = set.light_power_known;
   small.room = set.room;
+  const size_t texels =
+      static_cast<size_t>(set.plane.width) * static_cast<size_t>(set.plane.height);
   for (const Photograph& p : set.photographs) {
-    small.photographs.push_back(Downsample(p, set.plane, width, height, threads));
+    const ReadRows rows = [&](int first_row, int count) {
+      const size_t begin = static_cast<size_t>(first_row) * static_cast<size_t>(set.plane.width);
+      const size_t size = static_cast<size_t>(count) * static_cast<size_t>(set.plane.width);
+      Photograph part{p.view, p.ldr, {}, {}};
+      for (size_t c = 0; c < 4; ++c) {
+        const float* from = (c < 3 ? p.rgb.data() + c * texels : p.mask.data()) + begin;
+        std::vector<float>& to = c < 3 ? part.rgb : part.mask;
+        to.insert(to.end(), from, from + size);
+      }
+      return part;
+    };
+    small.photographs.push_back(DownsampledByRows(rows, set.plane, width, height, threads));
   }
   return small;
 }

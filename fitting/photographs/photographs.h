@@ -1,6 +1,7 @@
 // The photographs that maps are fitted to, in memory: rectified, linear, with known geometry.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,15 @@ struct PhotographSet {
   std::string Check() const;
 };
 
+// Rows first_row … first_row + rows − 1 of a photograph.
+using ReadRows = std::function<Photograph(int first_row, int rows)>;
+
 // Area averages of the usable texels; a texel's mask becomes the usable share of its area.
 // width and height at most the set's. Works tile by tile; results do not depend on `threads`.
+// Throws std::invalid_argument for other sizes.
 PhotographSet Downsampled(const PhotographSet& set, int width, int height, int threads);
+// The same of one photograph of the plane's size that need not be whole in memory.
+Photograph DownsampledByRows(const ReadRows& read, const SamplePlane& plane, int width, int height,
+                             int threads);
 
 }  // namespace glint

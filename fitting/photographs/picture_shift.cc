@@ -50,14 +50,15 @@ bool CornerShifts::any() const {
   return std::any_of(column, column + 4, moved) || std::any_of(row, row + 4, moved);
 }
 
-LookedUp LookUp(const float* plane, int width, int height, double column, double row) {
+LookedUp LookUp(const float* plane, int width, int height, double column, double row,
+                const PictureRows& rows) {
   const double c0 = std::floor(column), r0 = std::floor(row);
   double across[4], down[4], across_slopes[4], down_slopes[4];
   CubicWeights(column - c0, across, across_slopes);
   CubicWeights(row - r0, down, down_slopes);
   LookedUp sum{0, 0, 0};
   for (int j = 0; j < 4; ++j) {
-    const int r = std::clamp(static_cast<int>(r0) + j - 1, 0, height - 1);
+    const int r = std::clamp(static_cast<int>(r0) + j - 1 - rows.first, 0, height - 1);
     double line = 0, line_slope = 0;
     for (int i = 0; i < 4; ++i) {
       const int c = std::clamp(static_cast<int>(c0) + i - 1, 0, width - 1);
@@ -90,17 +91,18 @@ double NoiseLeft(const CornerShifts& shifts) {
   return sum / (kPlaces * kPlaces);
 }
 
-void ShiftPicture(const CornerShifts& shifts, int width, int height,
-                  std::vector<float>* rgb_planar) {
+void ShiftPicture(const CornerShifts& shifts, int width, int height, std::vector<float>* rgb_planar,
+                  const PictureRows& rows) {
   const std::vector<float> source = *rgb_planar;
   const size_t texels = static_cast<size_t>(width) * height;
+  const int whole_height = rows.of > 0 ? rows.of : height;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const CornerShifts::Shift shift = shifts.At(x, y, width, height);
+      const CornerShifts::Shift shift = shifts.At(x, rows.first + y, width, whole_height);
       for (size_t c = 0; c < 3; ++c) {
-        const double value =
-            LookUp(source.data() + c * texels, width, height, x + shift.column, y + shift.row)
-                .value;
+        const double value = LookUp(source.data() + c * texels, width, height, x + shift.column,
+                                    rows.first + y + shift.row, rows)
+                                 .value;
         (*rgb_planar)[c * texels + static_cast<size_t>(y) * width + x] =
             static_cast<float>(std::max(value, 0.0));
       }
@@ -108,17 +110,20 @@ void ShiftPicture(const CornerShifts& shifts, int width, int height,
   }
 }
 
-void ShiftMask(const CornerShifts& shifts, int width, int height, std::vector<float>* mask) {
+void ShiftMask(const CornerShifts& shifts, int width, int height, std::vector<float>* mask,
+               const PictureRows& rows) {
   const std::vector<float> source = *mask;
+  const int whole_height = rows.of > 0 ? rows.of : height;
   const auto usable = [&](int c, int r) {
+    r -= rows.first;
     return c >= 0 && c < width && r >= 0 && r < height &&
            source[static_cast<size_t>(r) * width + c] >= 0.5f;
   };
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const CornerShifts::Shift shift = shifts.At(x, y, width, height);
+      const CornerShifts::Shift shift = shifts.At(x, rows.first + y, width, whole_height);
       // A hundredth of a texel outside still counts as the texel.
-      const double column = x + shift.column, row = y + shift.row;
+      const double column = x + shift.column, row = rows.first + y + shift.row;
       const int left = static_cast<int>(std::floor(column + 0.01));
       const int right = static_cast<int>(std::ceil(column - 0.01));
       const int top = static_cast<int>(std::floor(row + 0.01));
@@ -129,6 +134,13 @@ void ShiftMask(const CornerShifts& shifts, int width, int height, std::vector<fl
       }
     }
   }
+}
+
+int RowsReached(const CornerShifts& shifts) {
+  if (!shifts.any()) return 0;
+  double most = 0;
+  for (const double row : shifts.row) most = std::max(most, std::abs(row));
+  return static_cast<int>(std::ceil(most)) + 2;  // of the cubic's four taps
 }
 
 }  // namespace glint

@@ -22,21 +22,33 @@ struct CornerShifts {
 // The weights of the four corners at (u, v) in [0, 1]² from the top left.
 void CornerWeights(double u, double v, double weights[4]);
 
+// Which rows of a picture of `of` rows are at hand: from `first` on.
+struct PictureRows {
+  int first = 0;
+  int of = 0;  // 0: all are
+};
+
 // A plane looked up between its texels (Catmull-Rom, edges repeated), and its derivatives.
 struct LookedUp {
   double value, by_column, by_row;
 };
-LookedUp LookUp(const float* plane, int width, int height, double column, double row);
+// `row` counts from the picture's top; what is not at hand is as the nearest row that is.
+LookedUp LookUp(const float* plane, int width, int height, double column, double row,
+                const PictureRows& rows = {});
 
 // Share of the variance of white noise that looking up there leaves, mean over the picture: 1 at
 // whole texels, .41 in the middle between four.
 double NoiseLeft(const CornerShifts& shifts);
 
-// `rgb_planar` looked up where the shifts say; not below 0.
-void ShiftPicture(const CornerShifts& shifts, int width, int height,
-                  std::vector<float>* rgb_planar);
+// `rgb_planar` looked up where the shifts say; not below 0. Of rows of a picture, the outermost
+// RowsReached() at a cut are wrong.
+void ShiftPicture(const CornerShifts& shifts, int width, int height, std::vector<float>* rgb_planar,
+                  const PictureRows& rows = {});
 // A mask likewise: 0 where any of the texels that the lookup weighs most (its 2×2) is below ½ or
 // outside.
-void ShiftMask(const CornerShifts& shifts, int width, int height, std::vector<float>* mask);
+void ShiftMask(const CornerShifts& shifts, int width, int height, std::vector<float>* mask,
+               const PictureRows& rows = {});
+// How many rows away a lookup may reach.
+int RowsReached(const CornerShifts& shifts);
 
 }  // namespace glint
