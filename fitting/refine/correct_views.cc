@@ -11,16 +11,6 @@
 namespace glint {
 namespace {
 
-PhotographSet AtWorkingSize(const PhotographSet& set, int working_size, int threads) {
-  const int longer = std::max(set.plane.width, set.plane.height);
-  if (longer <= working_size) return set;
-  const double scale = static_cast<double>(working_size) / longer;
-  const auto scaled = [&](int texels) {
-    return std::max(1, static_cast<int>(std::lround(texels * scale)));
-  };
-  return Downsampled(set, scaled(set.plane.width), scaled(set.plane.height), threads);
-}
-
 // What is to be put right, and what was found of it.
 struct Finding {
   ViewCorrectionOptions options;
@@ -40,6 +30,16 @@ Finding Find(const PhotographSet& set, const SvbrdfMaps& start, const Correction
 }
 
 }  // namespace
+
+std::pair<int, int> CorrectionOptions::WorkingSize(const SamplePlane& plane) const {
+  const int longer = std::max(plane.width, plane.height);
+  if (longer <= working_size) return {plane.width, plane.height};
+  const double scale = static_cast<double>(working_size) / longer;
+  const auto scaled = [&](int texels) {
+    return std::max(1, static_cast<int>(std::lround(texels * scale)));
+  };
+  return {scaled(plane.width), scaled(plane.height)};
+}
 
 bool CorrectionOptions::Wanted(double distinct_views_of_set) const {
   return when == "always" || (when == "auto" && distinct_views_of_set >= distinct_views);
@@ -81,8 +81,8 @@ CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& sta
     if (progress) progress(done, steps);
   };
   report(0);
-  const PhotographSet small = AtWorkingSize(set, options.working_size, threads);
-  const int width = small.plane.width, height = small.plane.height;
+  const auto [width, height] = options.WorkingSize(set.plane);
+  const PhotographSet small = Downsampled(set, width, height, threads);
   ViewCorrectionOptions view = options.view;
   view.robust_scale = refine.robust_scale;
   const SvbrdfMaps small_start = ResampleSvbrdf(start, width, height);

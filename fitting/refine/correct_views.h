@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fitting/photographs/photographs.h"
@@ -15,7 +16,7 @@ namespace glint {
 
 struct CorrectionOptions {
   std::string when = "auto";  // auto: with views enough; always; never
-  double distinct_views = 5;  // of the set (refine_prior.h) from which on "auto" looks
+  double distinct_views = 5;  // of the set (residual_model.h) from which on "auto" looks
   // ViewCorrectionResult::GainOver() up to which nothing is taken: views that are right stay
   // untouched.
   double least_gain = 0.02;
@@ -32,6 +33,8 @@ struct CorrectionOptions {
   ViewCorrectionOptions view;
 
   bool Wanted(double distinct_views_of_set) const;
+  // Width and height that corrections are found at.
+  std::pair<int, int> WorkingSize(const SamplePlane& plane) const;
   // Empty: all is well; otherwise what is wrong.
   std::string Check() const;
 };

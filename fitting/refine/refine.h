@@ -1,20 +1,18 @@
-// Refinement: every texel's reflectance fitted to its own observations, held to where it started.
+// Refinement: every texel's reflectance solved for from its own observations and what the sample as
+// a whole tells of it (docs/model.md).
 //
-// Per texel: min over x of  Σ ρ(log(R(x) + 0.01) − log(I + 0.01)) + prior(x − start).
-// What a photograph cannot tell (one photograph has three numbers for nine unknowns) stays with the
-// start, usually the result of latent fitting; what the photographs tell together replaces it.
-//   1. A sample of texels is solved with a weak prior; what remains tells how well photographs and
-//      model agree at all, and so how much the start is worth against them (refine_prior.h).
-//   2. Every texel is solved from its start, and from the roughness that a search proposes, with
-//      albedos fitted to it: too rough with too little specular is a minimum of its own
-//      (Gao et al. 2019, Fig. 16) that more photographs do not cure.
-//   3. Every texel tries the solutions of its neighbours, in checkerboard order.
+//   1. EstimateSample(): on texels that stand for the sample, its substances, variances and
+//   spreads,
+//      and what deviates about the views.
+//   2. Every texel is solved, min over x of  Σ ρ(log(R(x) + 0.01) − log(I + 0.01)) + prior(x), from
+//      its start and from the roughness that a search proposes, with albedos fitted to it: too
+//      rough with too little specular is a minimum of its own (Gao et al. 2019, Fig. 16) that more
+//      photographs do not cure.
+//   3. Every texel tries the solutions of its neighbours, in checkerboard order, its prior now
+//      holding what they know.
 //   4. Standard deviations from the final normal equations.
-//   5. All again, `pooling_passes` times, from a start in which each texel's highlight is what its
-//      neighbours of like colour know of it (highlight_pool.h): one that no photograph shows near
-//      its highlight learns from those that were seen. Not with fewer photographs than
-//      kPoolingViews, which leave highlights too open for anyone to learn from.
-// Texels are independent within a step, so the result does not depend on the number of threads.
+// Texels are independent within a step, so the result depends neither on the number of threads nor
+// on where the sample is cut into rows (refine_rows.h).
 #pragma once
 
 #include <array>
@@ -54,6 +52,10 @@ struct RefineOptions {
   int neighbour_passes = 2;   // how often a texel tries its neighbours' solutions
   int substances = 8;         // at most, that share their roughness and specular albedo
   int estimation_rounds = 8;  // of variances and substances, on sampled texels
+  // Texels along the longer side among which those are sampled, at most; the sample as a whole is
+  // estimated from no others. A million texels: the few thousand that are solved are picked of
+  // them.
+  int estimation_size = 1024;
   // Standard deviation expected of the flash's place beside where it is said to be, relative to its
   // distance (flash_offset.h). 0: it is where it is said to be.
   double flash_offset = 0;

@@ -5,14 +5,18 @@
 #include <cmath>
 #include <memory>
 
+#include "fitting/refine/estimate_sample.h"
+#include "fitting/refine/refine_rows.h"
+#include "fitting/refine/residual_model.h"
+#include "fitting/refine/sample_source.h"
 #include "fitting/refine/substances.h"
 #include "fitting/reflectance/brdf.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/contract/memory_limit.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/rectified_set.h"
-#include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/contract/svbrdf_rows.h"
 
 namespace glint {
 namespace {
@@ -31,24 +35,6 @@ std::vector<RectifiedView> ChooseViews(const RectifiedSet& set, const RefineStar
                                        const RefineStageOptions& options) {
   const std::vector<std::string>& only = options.views.empty() ? start.views : options.views;
   return SelectViews(set, only, options.exclude);
-}
-
-PhotographSet Load(const RectifiedSet& set, const std::vector<RectifiedView>& views,
-                   const ReflectanceConvention& convention, const Vec3d& light_scale_rgb) {
-  PhotographSet loaded;
-  loaded.plane = set.plane;
-  loaded.convention = convention;
-  for (const RectifiedView& view : views) {
-    RectifiedImage image = ReadRectifiedImage(set, view);
-    AdmitClippedTexels(view, &image);
-    Photograph& added = loaded.photographs.emplace_back();
-    added.view = view.view;
-    for (int c = 0; c < 3; ++c) added.view.light_rgb[c] *= light_scale_rgb[c];
-    added.ldr = view.ldr;
-    added.rgb = std::move(image.rgb);
-    added.mask = std::move(image.mask);
-  }
-  return loaded;
 }
 
 Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& views) {
@@ -147,21 +133,83 @@ void DescribeCorrection(const CorrectionResult& found, const RectifiedSet& set,
                                         {"ambient_of_flash", room / flash}});
 }
 
-CorrectionResult CorrectViewsWithBar(const PhotographSet& photographs, const SvbrdfMaps& maps,
-                                     const RefineStageOptions& options, int threads) {
+CorrectionResult CorrectViewsWithBar(const RefineStageOptions& options, int threads,
+                                     SampleSource* source) {
+  if (!options.correction.Wanted(DistinctViews(ProblemOf(source->Views())))) return {};
+  const SamplePlane& plane = source->plane();
+  const auto [width, height] = options.correction.WorkingSize(plane);
+  const SampleSource::Part small = source->Downsampled(width, height, threads);
   std::unique_ptr<Progress> bar;
-  return FindCorrections(
-      photographs, maps, options.refine, options.correction, threads,
+  CorrectionResult found = FindCorrections(
+      small.photographs, small.start, options.refine, options.correction, threads,
       [&](std::int64_t done, std::int64_t total) {
         if (!bar) bar = std::make_unique<Progress>("views", total, Progress::Part{0, kViewsShare});
         bar->Set(done);
       });
+  found.corrections = AtSize(found.corrections, width, height, plane.width, plane.height);
+  return found;
 }
 
-Image ConfidenceImage(const RefineResult& result) {
-  Image image(result.maps.width, result.maps.height, kConfidenceChannels);
-  image.samples = result.confidence;
-  return image;
+SampleEstimate EstimateFrom(const RefineOptions& options, int threads, SampleSource* source) {
+  const int stride = EstimationStride(source->plane(), options.estimation_size);
+  const SampleSource::Part part = source->Every(stride, threads);
+  return EstimateSample(ProblemOf(part.photographs), part.start, options, threads);
+}
+
+// How many rows are refined at a time: as the memory that they need allows.
+int RowsAtOnce(const SamplePlane& plane, size_t views) {
+  constexpr double kMostBytes = 1e9, kShareOfLimit = 0.25;
+  // Of a texel: a photograph's colour and mask, and what is shifted of it or read ahead; maps at
+  // the start and in the end, confidence, substances.
+  const double texel_bytes = 20.0 * static_cast<double>(views) + 200;
+  const double bytes =
+      std::min(kMostBytes, kShareOfLimit * static_cast<double>(MemoryLimit_bytes()));
+  return static_cast<int>(std::clamp(bytes / texel_bytes / plane.width, 16.0, 1e9));
+}
+
+// Refines the sample by rows and writes svbrdf.exr and confidence.exr.
+RefineSummary RefineByRows(const RefineOptions& options, const ReflectanceConvention& convention,
+                           int rows_at_once, int threads, SampleSource* source, Stage* stage) {
+  const SamplePlane& plane = source->plane();
+  const SampleEstimate estimate = EstimateFrom(options, threads, source);
+  std::unique_ptr<Progress> bar;
+  const RowRefiner::ReportProgress progress = [&](std::int64_t done, std::int64_t total) {
+    if (!bar) bar = std::make_unique<Progress>("refine", total, Progress::Part{kViewsShare, 1});
+    bar->Set(done);
+  };
+  RowRefiner refiner(estimate, options, threads, progress);
+  SvbrdfWriter maps(stage->Output("svbrdf.exr"), plane.width, plane.height, convention);
+  ExrWriter confidence(stage->Output("confidence.exr"), plane.width, plane.height,
+                       kConfidenceChannels, {{"convention", ToString(convention)}});
+  const int reached = DependentRows(options);
+  for (int first = 0; first < plane.height; first += rows_at_once) {
+    const int last = std::min(first + rows_at_once, plane.height);
+    const int above = std::min(first, reached), below = std::min(plane.height - last, reached);
+    const SampleSource::Part part =
+        source->Rows(first - above, above + last - first + below, threads);
+    RowRefiner::Rows refined =
+        refiner.Refine(ProblemOf(part.photographs), part.start, above, below);
+    maps.Write(refined.maps);
+    Image deviations(plane.width, last - first, {});
+    deviations.channels = kConfidenceChannels;
+    deviations.samples = std::move(refined.confidence);
+    confidence.Write(deviations);
+  }
+  maps.Close();
+  confidence.Close();
+  return refiner.Summary();
+}
+
+// What is expected of views whose light nobody calibrated.
+RefineOptions OptionsFor(const RectifiedSet& set, const RefineStageOptions& options) {
+  RefineOptions refine = options.refine;
+  if (set.light_power_known) return refine;
+  refine.flash_offset = options.flash_offset;
+  refine.exposure_spread = options.exposure_spread;
+  refine.light_spread = options.light_spread;
+  refine.flash_beam = options.flash_beam;
+  refine.distance_power = options.distance_power;
+  return refine;
 }
 
 }  // namespace
@@ -178,6 +226,9 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "most substances whose texels share roughness and specular albedo");
   set->AddRange("estimation-rounds", &refine->estimation_rounds, 0, 100,
                 "steps that estimate variances and substances, on sampled texels");
+  set->AddRange("estimation-size", &refine->estimation_size, 16, 1 << 20,
+                "texels along the longer side among which those are sampled; a larger sample is "
+                "represented by evenly spaced ones");
   set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the priors' weight; 0: none");
   set->AddRange("robust-scale", &refine->robust_scale, 1e-3, 100,
                 "residuals (logarithms) beyond it count linearly");
@@ -206,6 +257,9 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "expected standard deviation of the exponent p, if the light was not calibrated: "
                 "automatic exposure or uncertain distances scale its intensity by distance^p; "
                 "0: none");
+  set->AddRange("rows-at-once", &options->rows_at_once, 0, 1 << 20,
+                "rows of texels that are in memory together; the result does not depend on it; 0: "
+                "as memory allows");
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");
   set->Add("views", &options->views, "views to use, by name or photo (default: those of fit)");
@@ -242,56 +296,29 @@ RefineStart ResolveRefineStart(const fs::path& work, const RefineStageOptions& o
 RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineStart& start,
                                  const RefineStageOptions& options, int threads, Stage* stage) {
   const RectifiedSet set = ReadRectifiedSet(rectify_manifest);
-  ReflectanceConvention convention = set.convention;
-  ReflectanceConvention of_maps;
-  SvbrdfMaps maps = ReadSvbrdf(start.maps_file, &of_maps);
-  convention.diffuse_weight = of_maps.diffuse_weight;
-  if (maps.width != set.plane.width || maps.height != set.plane.height) {
-    maps = ResampleSvbrdf(maps, set.plane.width, set.plane.height);
-  }
   const std::vector<RectifiedView> views = ChooseViews(set, start, options);
-  PhotographSet photographs = Load(set, views, convention, start.light_scale_rgb);
+  SampleSource source(set, views, start.light_scale_rgb, start.maps_file);
+  const ReflectanceConvention convention = source.Views().convention;
 
   const auto began = std::chrono::steady_clock::now();
-  RefineResult refined;
   RefineStageResult result;
-  result.correction = CorrectViewsWithBar(photographs, maps, options, threads);
-  if (result.correction.taken) {
-    photographs = Corrected(std::move(photographs), result.correction.corrections, threads);
-  }
-  {
-    std::unique_ptr<Progress> bar;
-    RefineOptions refine = options.refine;
-    if (!set.light_power_known) {
-      refine.flash_offset = options.flash_offset;
-      refine.exposure_spread = options.exposure_spread;
-      refine.light_spread = options.light_spread;
-      refine.flash_beam = options.flash_beam;
-      refine.distance_power = options.distance_power;
-    }
-    refined = Refine(
-        ProblemOf(photographs), maps, refine, threads, [&](std::int64_t done, std::int64_t total) {
-          if (!bar)
-            bar = std::make_unique<Progress>("refine", total, Progress::Part{kViewsShare, 1});
-          bar->Set(done);
-        });
-  }
+  result.correction = CorrectViewsWithBar(options, threads, &source);
+  if (result.correction.taken) source.Correct(result.correction.corrections);
+  const int rows_at_once =
+      options.rows_at_once > 0 ? options.rows_at_once : RowsAtOnce(set.plane, views.size());
+  result.summary =
+      RefineByRows(OptionsFor(set, options), convention, rows_at_once, threads, &source, stage);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  result.summary = refined.summary;
-  result.width = maps.width;
-  result.height = maps.height;
+  result.width = set.plane.width;
+  result.height = set.plane.height;
   for (const RectifiedView& view : views) result.views.push_back(view.name);
-
-  WriteSvbrdf(stage->Output("svbrdf.exr"), refined.maps, convention);
-  WriteExr(stage->Output("confidence.exr"), ConfidenceImage(refined),
-           {{"convention", ToString(convention)}});
   result.data = {{"convention", ToString(convention)},
                  {"light_scale_rgb", start.light_scale_rgb},
-                 {"shared_light", JsonOf(refined.summary.shared_light)},
+                 {"shared_light", JsonOf(result.summary.shared_light)},
                  {"views", result.views},
                  {"method", "refined"}};
-  result.metrics = Metrics(refined.summary, views);
-  AddCorrections(Corrections(result.correction, refined.summary), views, &result.data);
+  result.metrics = Metrics(result.summary, views);
+  AddCorrections(Corrections(result.correction, result.summary), views, &result.data);
   DescribeCorrection(result.correction, set, views, start.light_scale_rgb, &result);
   stage->Commit(result.data, result.metrics);
   return result;

@@ -13,7 +13,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 14;
+inline constexpr int kRefineVersion = 15;
 
 struct RefineStageOptions {
   RefineOptions refine;
@@ -26,6 +26,7 @@ struct RefineStageOptions {
   double light_spread = 0.02;
   double flash_beam = 0.3;
   double distance_power = 1;
+  int rows_at_once = 0;              // in memory; 0: as memory allows; never changes a value
   std::vector<std::string> views;    // names of those to use; empty: those that fit used
   std::vector<std::string> exclude;  // names of those held out
   std::filesystem::path from;        // maps to start from (svbrdf.exr); empty: the result of fit

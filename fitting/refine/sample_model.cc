@@ -47,36 +47,6 @@ std::array<double, 2> PlaceOf(const SamplePlane& plane, size_t texel) {
   return {2 * plane.x_mm(column) / plane.width_mm, 2 * plane.y_mm(row) / plane.height_mm};
 }
 
-// Median over the views of π·I/(E·NoL), the albedo of a matte texel: highlights are rare among
-// them.
-std::vector<float> MedianColour(const RefineProblem& problem) {
-  const SamplePlane& plane = problem.plane;
-  const size_t texels = static_cast<size_t>(plane.width) * static_cast<size_t>(plane.height);
-  std::vector<float> colour(3 * texels);
-  std::vector<float> seen[3];
-  for (size_t i = 0; i < texels; ++i) {
-    const int row = static_cast<int>(i) / plane.width, column = static_cast<int>(i) % plane.width;
-    for (auto& values : seen) values.clear();
-    for (const RefineView& view : problem.views) {
-      if (!(view.mask[i] >= 0.5f)) continue;
-      const TexelGeometry<double> g = TexelGeometryInView<double>(
-          view.view, problem.convention.falloff, plane.x_mm(column), plane.y_mm(row));
-      for (size_t c = 0; c < 3; ++c) {
-        const double received = g.irradiance[c] * std::max(0.05, g.light[2]);
-        seen[c].push_back(
-            static_cast<float>(std::numbers::pi * view.rgb[c * texels + i] / received));
-      }
-    }
-    for (size_t c = 0; c < 3; ++c) {
-      if (seen[c].empty()) continue;
-      const auto middle = seen[c].begin() + static_cast<std::ptrdiff_t>((seen[c].size() - 1) / 2);
-      std::nth_element(seen[c].begin(), middle, seen[c].end());
-      colour[c * texels + i] = *middle;
-    }
-  }
-  return colour;
-}
-
 SharedValues SharedOf(const TexelValues& values) {
   SharedValues shared;
   for (size_t p = 0; p < 4; ++p) shared[p] = values[static_cast<size_t>(kSharedParameters[p])];
@@ -98,13 +68,13 @@ InitialisationErrors ErrorsOfInitialisation(const RefineProblem& problem) {
 }
 
 // What each substance is in the mean of the initial maps.
-std::vector<SharedValues> InitialMeans(const SvbrdfMaps& initial, const Substances& substances) {
-  std::vector<SharedValues> means(static_cast<size_t>(substances.count()), SharedValues{});
+std::vector<SharedValues> InitialMeans(const SamplePart& part) {
+  std::vector<SharedValues> means(static_cast<size_t>(part.substances().count()), SharedValues{});
   std::vector<double> weights(means.size(), 1e-9);
-  for (size_t t = 0; t < initial.texels(); ++t) {
-    const SharedValues shared = SharedOf(ReadTexel(initial, t));
+  for (size_t t = 0; t < part.texels(); ++t) {
+    const SharedValues shared = SharedOf(ReadTexel(part.initial(), t));
     for (size_t k = 0; k < means.size(); ++k) {
-      const double share = substances.shares(t)[k];
+      const double share = part.shares(t)[k];
       weights[k] += share;
       for (size_t p = 0; p < 4; ++p) means[k][p] += share * shared[p];
     }
@@ -124,27 +94,30 @@ struct SampleModel::Sampling {
   int threads;
 };
 
-SampleModel::SampleModel(const RefineProblem& problem, const SvbrdfMaps& initial,
-                         const RefineOptions& options)
-    : problem_(problem),
-      initial_(initial),
+SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
+    : part_(&part),
       options_(options),
-      all_views_(problem.views.size()),
-      initial_errors_(ErrorsOfInitialisation(problem)),
-      residuals_(problem, {}),
-      substances_(MedianColour(problem), options.substances),
-      normal_spreads_(static_cast<size_t>(substances_.count()), kNormalSpread),
-      deviations_(static_cast<int>(problem.views.size()),
+      all_views_(part.problem().views.size()),
+      initial_errors_(ErrorsOfInitialisation(part.problem())),
+      residuals_(part.problem(), {}),
+      normal_spreads_(static_cast<size_t>(part.substances().count()), kNormalSpread),
+      deviations_(static_cast<int>(part.problem().views.size()),
                   {options.exposure_spread, options.light_spread, options.light_spread},
                   {options.flash_offset, options.flash_offset, options.flash_beam,
                    options.flash_beam, options.distance_power}) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
-  means_.mean = InitialMeans(initial, substances_);
+  means_.mean = InitialMeans(part);
+}
+
+SampleModel SampleModel::On(const SamplePart& part) const {
+  SampleModel model(*this);
+  model.part_ = &part;
+  return model;
 }
 
 TexelGaussian SampleModel::Knowledge(size_t texel) const {
-  TexelGaussian gaussian(ReadTexel(initial_, texel), initial_errors_);
-  const SharedValues mean = means_.Of(substances_.shares(texel));
+  TexelGaussian gaussian(ReadTexel(part_->initial(), texel), initial_errors_);
+  const SharedValues mean = means_.Of(part_->shares(texel));
   const SharedValues variances = means_.Variances(mean);
   for (size_t p = 0; p < 4; ++p) {
     gaussian.Multiply(kSharedParameters[p], mean[p], 1 / variances[p]);
@@ -170,7 +143,7 @@ void SampleModel::MultiplyNeighbours(size_t texel, const SvbrdfMaps& maps,
     normal[0] += maps.plane(kNormalX)[i];
     normal[1] += maps.plane(kNormalY)[i];
     const SharedValues shared = SharedOf(ReadTexel(maps, i));
-    const SharedValues mean = means_.Of(substances_.shares(i));
+    const SharedValues mean = means_.Of(part_->shares(i));
     for (size_t p = 0; p < 4; ++p) departure[p] += shared[p] - mean[p];
     ++count;
   };
@@ -182,7 +155,7 @@ void SampleModel::MultiplyNeighbours(size_t texel, const SvbrdfMaps& maps,
   for (int i = 0; i < 2; ++i) {
     gaussian->Multiply(kSlopeX + i, normal[i] / count, count * NormalPrecision(texel));
   }
-  const SharedValues mean = means_.Of(substances_.shares(texel));
+  const SharedValues mean = means_.Of(part_->shares(texel));
   const SharedValues variances = means_.Variances(mean);
   for (size_t p = 0; p < 4; ++p) {
     gaussian->Multiply(kSharedParameters[p], mean[p] + departure[p] / count, count / variances[p]);
@@ -204,10 +177,10 @@ TexelPrior SampleModel::PriorOf(size_t texel, const SvbrdfMaps& maps) const {
 SampleModel::Sampling SampleModel::Sample(size_t most, const SampleSolver& solver,
                                           int threads) const {
   Sampling sampling{{}, {}, &solver, threads};
-  const size_t texels = initial_.texels(), count = std::min(most, texels);
+  const size_t texels = part_->texels(), count = std::min(most, texels);
   for (size_t i = 0; i < count; ++i) {
     sampling.texels.push_back((2 * i + 1) * texels / (2 * count));
-    sampling.solved.emplace_back().values = ReadTexel(initial_, sampling.texels.back());
+    sampling.solved.emplace_back().values = ReadTexel(part_->initial(), sampling.texels.back());
   }
   return sampling;
 }
@@ -236,7 +209,7 @@ void SampleModel::UpdateSubstances(const Sampling& sampling) {
     if (solved.views == 0) continue;
     const Matrix9 inverse = InverseInformation(solved);
     SubstanceSample sample;
-    sample.shares = substances_.shares(sampling.texels[i]);
+    sample.shares = part_->shares(sampling.texels[i]);
     sample.value = SharedOf(solved.values);
     for (size_t p = 0; p < 4; ++p) {
       for (size_t q = 0; q < 4; ++q) {
@@ -256,12 +229,12 @@ double SampleModel::SampleWorth(const std::vector<size_t>& texels) const {
   const double cell = 0.5 * residuals_.options().half_vector_deg * std::numbers::pi / 180;
   std::vector<std::pair<int, int>> cells;
   for (const size_t t : texels) {
-    const int row = static_cast<int>(t) / initial_.width;
-    const int column = static_cast<int>(t) % initial_.width;
-    for (const RefineView& view : problem_.views) {
-      const TexelGeometry<double> g =
-          TexelGeometryInView<double>(view.view, problem_.convention.falloff,
-                                      problem_.plane.x_mm(column), problem_.plane.y_mm(row));
+    const int row = static_cast<int>(t) / part_->initial().width;
+    const int column = static_cast<int>(t) % part_->initial().width;
+    for (const RefineView& view : part_->problem().views) {
+      const TexelGeometry<double> g = TexelGeometryInView<double>(
+          view.view, part_->problem().convention.falloff, part_->problem().plane.x_mm(column),
+          part_->problem().plane.y_mm(row));
       cells.emplace_back(static_cast<int>(std::floor(g.half[0] / cell)),
                          static_cast<int>(std::floor(g.half[1] / cell)));
     }
@@ -298,7 +271,7 @@ void SampleModel::UpdateResiduals(const Sampling& sampling) {
 double SampleModel::NormalPrecision(size_t texel) const {
   double variance = 0;
   for (size_t k = 0; k < normal_spreads_.size(); ++k) {
-    variance += substances_.shares(texel)[k] * normal_spreads_[k] * normal_spreads_[k];
+    variance += part_->shares(texel)[k] * normal_spreads_[k] * normal_spreads_[k];
   }
   return 1 / variance;
 }
@@ -321,7 +294,7 @@ void SampleModel::UpdateNormalSpreads(const Sampling& sampling) {
           0.5 * (normal[axis] * normal[axis] + variance * inverse(kSlopeX + axis, kSlopeX + axis));
     }
     for (size_t k = 0; k < count; ++k) {
-      const double share = substances_.shares(sampling.texels[i])[k];
+      const double share = part_->shares(sampling.texels[i])[k];
       squares[k] += share * square;
       weights[k] += share;
     }
@@ -336,7 +309,7 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
     const SampledTexel& solved = sampling.solved[i];
     if (solved.views == 0) continue;
     TexelOfViews& texel = texels.emplace_back();
-    texel.place = PlaceOf(problem_.plane, sampling.texels[i]);
+    texel.place = PlaceOf(part_->problem().plane, sampling.texels[i]);
     Eigen::Map<Matrix9>(texel.inverse.data()) = InverseInformation(solved);
     texel.products = &solved.of_views;
   }
@@ -428,14 +401,14 @@ void SampleModel::Describe(RefineSummary* summary) const {
   summary->residual_sigma = std::sqrt(residuals_.variance());
   summary->discrepancy = residuals_.discrepancy();
   summary->effective_views = residuals_.effective_views();
-  summary->substances = substances_.count();
+  summary->substances = part_->substances().count();
   summary->roughness_spread = means_.roughness_spread;
   summary->specular_spread = means_.specular_spread;
   summary->exposure_spread = deviations_.spreads()[kLogExposure];
   summary->light_spread = deviations_.spreads()[kLightAcrossX];
   double squares = 0;
-  for (size_t t = 0; t < initial_.texels(); ++t) squares += 1 / NormalPrecision(t);
-  summary->normal_spread = std::sqrt(squares / static_cast<double>(initial_.texels()));
+  for (size_t t = 0; t < part_->texels(); ++t) squares += 1 / NormalPrecision(t);
+  summary->normal_spread = std::sqrt(squares / static_cast<double>(part_->texels()));
 }
 
 }  // namespace glint

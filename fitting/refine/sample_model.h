@@ -9,6 +9,7 @@
 
 #include "fitting/refine/refine.h"
 #include "fitting/refine/residual_model.h"
+#include "fitting/refine/sample_part.h"
 #include "fitting/refine/substances.h"
 #include "fitting/refine/view_deviations.h"
 #include "fitting/texel/texel_prior.h"
@@ -46,9 +47,10 @@ struct SampleSolver {
 
 class SampleModel {
  public:
-  // `problem`, `initial` and `options` must outlive this.
-  SampleModel(const RefineProblem& problem, const SvbrdfMaps& initial,
-              const RefineOptions& options);
+  // `part` must outlive this, or what On() gave.
+  SampleModel(const SamplePart& part, const RefineOptions& options);
+  // What has been estimated, for other texels of the sample.
+  SampleModel On(const SamplePart& part) const;
 
   // From sampled texels: substances' means and the residuals' variance by type-II maximum
   // likelihood; spreads by cross-validation over the photographs, from three on. The same for any
@@ -85,13 +87,11 @@ class SampleModel {
   void MultiplyNeighbours(size_t texel, const SvbrdfMaps& maps, TexelGaussian* gaussian) const;
   TexelPrior Scaled(const TexelGaussian& gaussian) const;
 
-  const RefineProblem& problem_;
-  const SvbrdfMaps& initial_;
-  const RefineOptions& options_;
+  const SamplePart* part_;
+  RefineOptions options_;
   std::vector<int> all_views_;
   InitialisationErrors initial_errors_;
   ResidualModel residuals_;
-  Substances substances_;
   SubstanceMeans means_;
   // Of n_x, n_y about 0, and about their neighbours' mean, by substance.
   std::vector<double> normal_spreads_;

@@ -92,20 +92,24 @@ Substances::Substances(const std::vector<float>& colour, int substances) {
   std::vector<Feature> sampled;
   for (size_t i = step / 2; i < texels; i += step) sampled.push_back(FeatureOf(colour, i));
   if (sampled.empty()) sampled.push_back(FeatureOf(colour, 0));
-  const std::vector<Feature> centres = Centres(sampled, substances);
-  count_ = static_cast<int>(centres.size());
-  shares_.resize(texels * centres.size());
+  centres_ = Centres(sampled, substances);
+}
+
+std::vector<float> Substances::SharesOf(const std::vector<float>& colour) const {
+  const size_t texels = colour.size() / 3;
+  std::vector<float> all(texels * centres_.size());
   for (size_t t = 0; t < texels; ++t) {
     const Feature x = FeatureOf(colour, t);
-    const float least = Distance2(centres[Nearest(centres, x)], x);
+    const float least = Distance2(centres_[Nearest(centres_, x)], x);
     float sum = 0;
-    float* shares = shares_.data() + t * centres.size();
-    for (size_t k = 0; k < centres.size(); ++k) {
-      const float d = Distance2(centres[k], x) - least;
+    float* shares = all.data() + t * centres_.size();
+    for (size_t k = 0; k < centres_.size(); ++k) {
+      const float d = Distance2(centres_[k], x) - least;
       sum += shares[k] = std::exp(-d / (2 * kMembershipWidth * kMembershipWidth));
     }
-    for (size_t k = 0; k < centres.size(); ++k) shares[k] /= sum;
+    for (size_t k = 0; k < centres_.size(); ++k) shares[k] /= sum;
   }
+  return all;
 }
 
 SharedValues SubstanceMeans::Of(const float* shares) const {

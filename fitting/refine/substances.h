@@ -20,20 +20,19 @@ inline constexpr std::array<int, 4> kSharedParameters = {SpecularParameter(0), S
                                                          SpecularParameter(2), kRough};
 using SharedValues = std::array<double, 4>;
 
-// Which substances each texel belongs to, by its colour.
+// Which substances there are, by colour.
 class Substances {
  public:
   // `colour`: 3 planes of what each texel reflects away from its highlight. k-means on the
   // logarithms of brightness and chroma; deterministic.
   Substances(const std::vector<float>& colour, int substances);
 
-  int count() const { return count_; }
-  // Shares of the texel, `count()` of them, sum 1.
-  const float* shares(size_t texel) const { return shares_.data() + texel * count_; }
+  int count() const { return static_cast<int>(centres_.size()); }
+  // Shares of each texel of such colours, `count()` of them one after the other, sum 1.
+  std::vector<float> SharesOf(const std::vector<float>& colour) const;
 
  private:
-  int count_ = 0;
-  std::vector<float> shares_;
+  std::vector<std::array<float, 3>> centres_;  // in the space of features
 };
 
 // What has been learned of them.

@@ -319,11 +319,18 @@ PhotographSet Corrected(PhotographSet set, const ViewCorrections& corrections, i
     const ViewCorrection& c = corrections.views[i];
     photograph.view = CorrectedView(photograph.view, c);
     if (!c.shifts.any()) return;
-    ShiftPicture(c.shifts, set.plane.width, set.plane.height, &photograph.rgb);
-    ShiftMask(c.shifts, set.plane.width, set.plane.height, &photograph.mask);
+    const PictureRows rows{set.plane.whole.first_row, set.plane.whole_height()};
+    ShiftPicture(c.shifts, set.plane.width, set.plane.height, &photograph.rgb, rows);
+    ShiftMask(c.shifts, set.plane.width, set.plane.height, &photograph.mask, rows);
   });
   set.room.Add(corrections.room);
   return set;
+}
+
+int RowsReached(const ViewCorrections& corrections) {
+  int most = 0;
+  for (const ViewCorrection& c : corrections.views) most = std::max(most, RowsReached(c.shifts));
+  return most;
 }
 
 ViewCorrections AtSize(ViewCorrections corrections, int from_width, int from_height, int to_width,

@@ -108,8 +108,10 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
 View CorrectedView(View view, const ViewCorrection& correction);
 
 // The photographs as the corrections say: lights moved, the room lit, pictures looked up anew.
+// Of rows of a sample, the outermost RowsReached() at a cut are wrong.
 // Throws std::invalid_argument unless there is a correction for every photograph.
 PhotographSet Corrected(PhotographSet set, const ViewCorrections& corrections, int threads);
+int RowsReached(const ViewCorrections& corrections);
 
 // The same corrections for pictures of another size.
 ViewCorrections AtSize(ViewCorrections corrections, int from_width, int from_height, int to_width,

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "fitting/refine/sample_source.h"
 #include "fitting/render/render_room.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/image.h"
@@ -149,6 +150,54 @@ TEST(RefineStage, ThreadsDoNotChangeABytes) {
               ReadAll(folder.path() / "b/glint/refine" / file))
         << file;
   }
+}
+
+TEST(RefineStage, RowsInMemoryDoNotChangeAByteOfTheMaps) {
+  const test::TemporaryFolder folder;
+  const auto maps = [&](const std::string& name, const std::vector<std::string>& more) {
+    WriteCapture(folder.path() / name);
+    EXPECT_EQ(Refine(folder.path() / name, more).code, 0);
+    const fs::path result = folder.path() / name / "glint/refine";
+    return ReadAll(result / "svbrdf.exr") + ReadAll(result / "confidence.exr");
+  };
+  const std::string whole = maps("whole", {"--estimation-size", "16"});
+  EXPECT_EQ(maps("few", {"--estimation-size", "16", "--rows-at-once", "3"}), whole);
+}
+
+// Rows, thinned out texels and displaced pictures are those of the whole.
+TEST(SampleSource, GivesPartsOfTheCorrectedWhole) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path());
+  const RectifiedSet set = ReadRectifiedSet(folder.path() / "glint/rectify/manifest.json");
+  SampleSource source(set, set.views, {2, 2, 2}, folder.path() / "glint/fit/svbrdf.exr");
+  ViewCorrections corrections;
+  corrections.views.resize(set.views.size());
+  for (int k = 0; k < 4; ++k) {
+    corrections.views[1].shifts.row[k] = 0.7 * k - 1.3;
+    corrections.views[1].shifts.column[k] = 0.4 - 0.3 * k;
+  }
+  source.Correct(corrections);
+  const SampleSource::Part whole = source.Rows(0, kSize, 2);
+  const auto same = [&](const SampleSource::Part& part, int first, int stride) {
+    const SamplePlane& plane = part.photographs.plane;
+    for (size_t v = 0; v < set.views.size(); ++v) {
+      const Photograph &all = whole.photographs.photographs[v],
+                       &some = part.photographs.photographs[v];
+      EXPECT_EQ(some.view.light_rgb[0], 2 * set.views[v].view.light_rgb[0]);
+      for (int row = 0; row < plane.height; ++row) {
+        for (int column = 0; column < plane.width; ++column) {
+          const auto i = static_cast<size_t>(row * plane.width + column);
+          const auto j = static_cast<size_t>((first + stride * row) * kSize +
+                                             (stride > 1 ? first : 0) + stride * column);
+          EXPECT_EQ(some.mask[i], all.mask[j]) << v << " " << i;
+          EXPECT_EQ(some.rgb[some.mask.size() + i], all.rgb[all.mask.size() + j]) << v << " " << i;
+          EXPECT_EQ(part.start.plane(kRoughness)[i], whole.start.plane(kRoughness)[j]);
+        }
+      }
+    }
+  };
+  same(source.Rows(4, 5, 1), 4, 1);
+  same(source.Every(3, 2), 1, 3);
 }
 
 TEST(RefineStage, BadInputEndsWith2AndKeepsTheEarlierResult) {

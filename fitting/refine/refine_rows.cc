@@ -1,0 +1,283 @@
+#include "fitting/refine/refine_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <utility>
+
+#include "base/parallel/parallel.h"
+#include "fitting/refine/confidence.h"
+#include "fitting/refine/gather.h"
+#include "fitting/refine/refine_worker.h"
+#include "fitting/texel/texel_parameters.h"
+
+namespace glint {
+namespace {
+
+RefineProblem WithViews(RefineProblem problem, const std::vector<View>& views) {
+  for (size_t v = 0; v < views.size(); ++v) problem.views[v].view = views[v];
+  return problem;
+}
+
+// Some rows of the sample.
+class PartRefiner {
+ public:
+  // `said`: views in the estimate's order, as they are said to be; `count`: called by texels done.
+  PartRefiner(const SampleEstimate& estimate, const RefineProblem& said, const SvbrdfMaps& start,
+              const RefineOptions& options, int threads, std::function<void(int row)> count);
+  void Run();
+
+  RowRefiner::Rows& result() { return result_; }
+  // By row: the cost at the start; cost, and log differences and their number by view; how many
+  // texels have the flag.
+  double start_cost(int row) const { return start_costs_[static_cast<size_t>(row)]; }
+  const double* sums(int row) const { return &sums_[static_cast<size_t>(row) * SumColumns()]; }
+  size_t SumColumns() const { return 1 + 2 * problem_.views.size(); }
+  enum Origin : unsigned char { kConverged = 1, kOtherStart = 2, kNeighbour = 4, kUnseen = 8 };
+  std::int64_t Count(int row, Origin flag) const;
+
+ private:
+  void SolveFromStarts();
+  void SolveFromNeighbours(int half_pass);
+  void Conclude();
+  void ConcludeTexel(size_t texel, RefineWorker* worker);
+  void ForEachTexel(const std::function<void(size_t texel, RefineWorker* worker)>& visit);
+  TexelPrior PriorOf(size_t texel) const { return model_.PriorOf(texel, result_.maps); }
+  TexelSolution Current(size_t texel, const TexelPrior& prior, RefineWorker* worker);
+  void Keep(size_t texel, const TexelSolution& solution);
+
+  std::vector<int> all_views_;
+  const SamplePart part_;
+  const SampleModel model_;
+  const RefineProblem problem_;  // views with their deviations
+  const SvbrdfMaps& start_;
+  const RefineOptions& options_;
+  const int threads_;
+  const int first_row_;  // in the whole sample
+  const std::function<void(int row)> count_;
+  std::vector<std::unique_ptr<RefineWorker>> workers_;
+  RowRefiner::Rows result_;
+  std::vector<unsigned char> origin_;
+  std::vector<double> start_costs_;
+  std::vector<double> sums_;
+};
+
+PartRefiner::PartRefiner(const SampleEstimate& estimate, const RefineProblem& said,
+                         const SvbrdfMaps& start, const RefineOptions& options, int threads,
+                         std::function<void(int row)> count)
+    : all_views_(said.views.size()),
+      part_(said, start, estimate.substances, options.substances),
+      model_(estimate.model.On(part_)),
+      problem_(WithViews(said, estimate.found)),
+      start_(start),
+      options_(options),
+      threads_(threads),
+      first_row_(said.plane.whole.first_row),
+      count_(std::move(count)),
+      workers_(RefineWorkers(said, options, threads)) {
+  std::iota(all_views_.begin(), all_views_.end(), 0);
+  for (auto& worker : workers_) {
+    worker->search.SetNoise(std::sqrt(model_.residuals().variance()));
+  }
+  result_.maps = start;
+  result_.confidence.assign(start.texels() * kConfidencePlanes, 0.0f);
+  origin_.assign(start.texels(), 0);
+  start_costs_.assign(static_cast<size_t>(start.height), 0.0);
+  sums_.assign(static_cast<size_t>(start.height) * SumColumns(), 0.0);
+}
+
+void PartRefiner::ForEachTexel(const std::function<void(size_t, RefineWorker*)>& visit) {
+  std::mutex mutex;
+  ForEachPieceByWorker(start_.height, threads_, [&](int row, int worker) {
+    const size_t width = static_cast<size_t>(start_.width);
+    const size_t first = static_cast<size_t>(row) * width;
+    for (size_t texel = first; texel < first + width; ++texel) {
+      visit(texel, workers_[static_cast<size_t>(worker)].get());
+    }
+    const std::lock_guard lock(mutex);
+    count_(row);
+  });
+}
+
+TexelSolution PartRefiner::Current(size_t texel, const TexelPrior& prior, RefineWorker* worker) {
+  TexelSolution solution;
+  solution.values = ReadTexel(result_.maps, texel);
+  solution.cost = worker->search.solver().Cost(worker->observations, prior, solution.values);
+  solution.converged = (origin_[texel] & kConverged) != 0;
+  return solution;
+}
+
+void PartRefiner::Keep(size_t texel, const TexelSolution& solution) {
+  WriteTexel(solution.values, texel, &result_.maps);
+  origin_[texel] = static_cast<unsigned char>((origin_[texel] & ~kConverged) |
+                                              (solution.converged ? kConverged : 0));
+}
+
+void PartRefiner::SolveFromStarts() {
+  ForEachTexel([&](size_t texel, RefineWorker* worker) {
+    GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
+    if (worker->observations.views() == 0) {
+      origin_[texel] = kConverged | kUnseen;  // the initial values stay
+      return;
+    }
+    const TexelValues start = ReadTexel(start_, texel);
+    const TexelPrior prior = model_.PriorOf(texel);
+    const TexelSearch::Found found = worker->search.FromStart(worker->observations, prior, start);
+    start_costs_[texel / static_cast<size_t>(start_.width)] += found.start_cost;
+    if (found.other_start) origin_[texel] |= kOtherStart;
+    Keep(texel, found.solution);
+  });
+}
+
+// One colour of the checkerboard: the neighbours of a texel all have the other, and stand still.
+// Half passes count from 1.
+void PartRefiner::SolveFromNeighbours(int half_pass) {
+  const int width = start_.width, height = start_.height;
+  ForEachTexel([&](size_t texel, RefineWorker* worker) {
+    const int column = static_cast<int>(texel % width);
+    const int row = static_cast<int>(texel / width);
+    if ((first_row_ + row + column + half_pass) % 2 != 0 || (origin_[texel] & kUnseen)) return;
+    std::array<TexelValues, 4> neighbours;
+    size_t count = 0;
+    const auto add = [&](int r, int c) {
+      if (r < 0 || r >= height || c < 0 || c >= width) return;
+      neighbours[count++] = ReadTexel(result_.maps, static_cast<size_t>(r) * width + c);
+    };
+    add(row - 1, column);
+    add(row, column - 1);
+    add(row, column + 1);
+    add(row + 1, column);
+    GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
+    const TexelPrior prior = PriorOf(texel);
+    // The prior is no longer the one it was solved with.
+    const TexelSolution current =
+        worker->search.Improved(worker->observations, prior, Current(texel, prior, worker));
+    const TexelSearch::Found found = worker->search.FromNeighbours(
+        worker->observations, prior, current, std::span(neighbours).first(count));
+    if (found.other_start) origin_[texel] |= kNeighbour;
+    Keep(texel, found.solution);
+  });
+}
+
+// Confidence and the texel's share of the summary, from the observations that `worker` holds.
+void PartRefiner::ConcludeTexel(size_t texel, RefineWorker* worker) {
+  const size_t texels = start_.texels();
+  const size_t views = problem_.views.size();
+  const TexelValues values = ReadTexel(result_.maps, texel);
+  const TexelPrior prior = PriorOf(texel);
+  TexelGram gram;
+  worker->search.solver().Gram(worker->observations, TexelPrior(), values, &gram);
+  const double squares = gram[kTexelParameters][kTexelParameters];
+  prior.AddTo(values, &gram);
+  const auto planes = TexelConfidence(gram, values, squares, model_.residuals().scale());
+  for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];
+
+  double* sum = &sums_[texel / static_cast<size_t>(start_.width) * SumColumns()];
+  sum[0] += 0.5 * gram[kTexelParameters][kTexelParameters];
+  const KernelRows& rows = worker->search.solver().rows();
+  const int usable = worker->observations.views();
+  std::vector<double>& differences = worker->differences;
+  for (int c = 0; c < 3; ++c) {
+    LogDifferences(rows.row(c, KernelRows::kResidual), usable, options_.robust_scale,
+                   differences.data() + c * usable);
+  }
+  int row = 0;
+  for (size_t v = 0; v < views; ++v) {
+    if (!(problem_.views[v].mask[texel] >= 0.5f)) continue;
+    for (int c = 0; c < 3; ++c) sum[1 + v] += differences[c * usable + row];
+    sum[1 + views + v] += 3.0;
+    ++row;
+  }
+}
+
+void PartRefiner::Conclude() {
+  ForEachTexel([&](size_t texel, RefineWorker* worker) {
+    GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
+    ConcludeTexel(texel, worker);
+  });
+}
+
+void PartRefiner::Run() {
+  SolveFromStarts();
+  for (int half = 1; half <= 2 * options_.neighbour_passes; ++half) SolveFromNeighbours(half);
+  Conclude();
+}
+
+std::int64_t PartRefiner::Count(int row, Origin flag) const {
+  const auto first = origin_.begin() + static_cast<std::ptrdiff_t>(row) * start_.width;
+  return std::count_if(first, first + start_.width,
+                       [flag](unsigned char origin) { return (origin & flag) != 0; });
+}
+
+// Rows first … last − 1 of `planes` planes of width × height.
+std::vector<float> RowsOf(const std::vector<float>& all, int width, int height, int first,
+                          int last) {
+  const size_t row = static_cast<size_t>(width), plane = row * static_cast<size_t>(height);
+  std::vector<float> rows;
+  rows.reserve(all.size() / static_cast<size_t>(height) * static_cast<size_t>(last - first));
+  for (size_t p = 0; p * plane < all.size(); ++p) {
+    const float* begin = all.data() + p * plane;
+    rows.insert(rows.end(), begin + static_cast<size_t>(first) * row,
+                begin + static_cast<size_t>(last) * row);
+  }
+  return rows;
+}
+
+}  // namespace
+
+RowRefiner::RowRefiner(const SampleEstimate& estimate, const RefineOptions& options, int threads,
+                       ReportProgress progress)
+    : estimate_(estimate),
+      options_(options),
+      threads_(std::max(threads, 1)),
+      progress_(std::move(progress)),
+      sums_(1 + 2 * estimate.order.size(), 0.0) {}
+
+RowRefiner::Rows RowRefiner::Refine(const RefineProblem& problem, const SvbrdfMaps& start,
+                                    int above, int below) {
+  const RefineProblem said = estimate_.InOrder(problem);
+  const int first = above, last = start.height - below;
+  const std::int64_t visits = static_cast<std::int64_t>(problem.plane.whole_height()) *
+                              start.width * (2 + 2 * options_.neighbour_passes);
+  PartRefiner part(estimate_, said, start, options_, threads_, [&](int row) {
+    if (row < first || row >= last) return;
+    done_ += start.width;
+    if (progress_) progress_(done_, visits);
+  });
+  part.Run();
+  for (int row = first; row < last; ++row) {
+    start_cost_ += part.start_cost(row);
+    for (size_t i = 0; i < sums_.size(); ++i) sums_[i] += part.sums(row)[i];
+    converged_ += part.Count(row, PartRefiner::kConverged);
+    other_start_ += part.Count(row, PartRefiner::kOtherStart);
+    neighbour_ += part.Count(row, PartRefiner::kNeighbour);
+  }
+  texels_ += static_cast<std::int64_t>(last - first) * start.width;
+  Rows& solved = part.result();
+  if (first == 0 && last == start.height) return std::move(solved);
+  Rows rows{SvbrdfMaps(start.width, last - first), {}};
+  rows.maps.planes = RowsOf(solved.maps.planes, start.width, start.height, first, last);
+  rows.confidence = RowsOf(solved.confidence, start.width, start.height, first, last);
+  return rows;
+}
+
+RefineSummary RowRefiner::Summary() const {
+  RefineSummary summary = estimate_.summary;
+  const size_t views = estimate_.order.size();
+  const auto texels = static_cast<double>(texels_);
+  summary.start_cost = start_cost_ / texels;
+  summary.final_cost = sums_[0] / texels;
+  summary.view_loss.assign(views, 0.0);
+  for (size_t v = 0; v < views; ++v) {
+    summary.view_loss[static_cast<size_t>(estimate_.order[v])] =
+        sums_[1 + v] / sums_[1 + views + v];
+  }
+  summary.converged = static_cast<double>(converged_) / texels;
+  summary.other_start = static_cast<double>(other_start_) / texels;
+  summary.neighbour = static_cast<double>(neighbour_) / texels;
+  return summary;
+}
+
+}  // namespace glint

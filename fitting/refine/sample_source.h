@@ -1,0 +1,47 @@
+// Photographs and initial maps of a capture as refinement takes them: by rows, thinned out or smaller.
+// Only what is asked for is ever in memory.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "fitting/rectified_photographs/rectified_photographs.h"
+#include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/view_correction/view_correction.h"
+#include "pipeline/contract/svbrdf_rows.h"
+
+namespace glint {
+
+class SampleSource {
+ public:
+  // `maps_file`: an svbrdf.exr, which is resampled to the set's size; its diffuse weight becomes
+  // that of the convention. Throws UserError; so do all that read.
+  SampleSource(const RectifiedSet& set, const std::vector<RectifiedView>& views,
+               const Vec3d& light_scale_rgb, std::filesystem::path maps_file);
+
+  struct Part {
+    PhotographSet photographs;
+    SvbrdfMaps start;
+  };
+  // From now on Rows() and Every() give photographs as the corrections say.
+  void Correct(ViewCorrections corrections);
+
+  // With views alone, as said.
+  PhotographSet Views() const { return photographs_.WithoutPixels(); }
+  const SamplePlane& plane() const { return photographs_.plane(); }
+  Part Rows(int first_row, int rows, int threads);
+  // The texel in the middle of every stride × stride.
+  Part Every(int stride, int threads);
+  // Averages, not corrected.
+  Part Downsampled(int width, int height, int threads);
+
+ private:
+  PhotographSet PhotographRows(int first_row, int rows, int threads);
+
+  std::filesystem::path maps_file_;
+  ResampledSvbrdf maps_;
+  RectifiedPhotographs photographs_;
+  ViewCorrections corrections_;  // no views: none
+};
+
+}  // namespace glint
