@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/colour/srgb.h"
 #include "base/parallel/parallel.h"
 #include "fitting/reflectance/border.h"
+#include "pipeline/contract/exr_rows.h"
+#include "pipeline/contract/png_rows.h"
 #include "pipeline/export/material_formats.h"
 
 namespace glint {
@@ -90,6 +93,9 @@ void AddExportOptions(OptionSet* set, ExportOptions* options) {
       "longer ones are mostly spurious curvature from systematic errors of normals; 0: all");
   set->AddRange("occlusion-reach", &options->occlusion_reach, 0.001, 1,
                 "search radius of ambient occlusion, as a fraction of the sample's shorter side");
+  set->AddRange("material-size", &options->material_size, 16, 16384,
+                "largest side, in texels, at which height and ambient occlusion are computed and "
+                "pictures are put into the .glb; larger maps are averaged for that");
   set->AddRange("metal-radius", &options->metal.radius, 0, 64,
                 "radius, in texels, of like-coloured neighbours that decide metalness together");
   set->AddRange("metal-colour-width", &options->metal.colour_width, 0.001, 10,
@@ -154,13 +160,6 @@ namespace {
 
 constexpr int kExrBits = 32;
 
-// One picture at one depth.
-struct MapFile {
-  const MapPicture* picture;
-  int bits;
-  std::filesystem::path path;
-};
-
 bool Wanted(const MapPicture& picture, int bits, const std::string& chosen) {
   if (bits == kExrBits) return chosen == "exr";
   if (picture.bits > 0) return picture.bits == bits;
@@ -178,45 +177,81 @@ std::string EncodingOf(const MapPicture& picture, int bits) {
   return bits == kExrBits && picture.encoding == "sRGB" ? "linear" : picture.encoding;
 }
 
-void WriteMapFile(const MapFile& file, double texels_per_m) {
-  const bool srgb = file.picture->encoding == "sRGB";
-  if (file.bits != kExrBits) {
-    WritePng(file.path, file.picture->image, file.bits,
-             {srgb ? PngTransfer::kSrgb : PngTransfer::kUntold, texels_per_m});
-    return;
-  }
-  Image image = file.picture->image;
-  if (srgb) {
-    std::transform(image.samples.begin(), image.samples.end(), image.samples.begin(),
-                   LinearFromSrgb<float>);
-  }
-  WriteExr(file.path, image);
-}
-
 }  // namespace
 
-Json WriteMapPictures(const ExportedMaterial& material, const std::vector<MapPicture>& pictures,
-                      const ExportOptions& options, int threads, Stage* stage) {
-  const double texels_per_m = 1000 * material.maps.width / material.width_mm;
-  std::vector<MapFile> written;
-  Json files = Json::array();
-  for (const MapPicture& picture : pictures) {
+// One picture at one depth.
+struct MapFiles::File {
+  size_t picture = 0;   // its place among the pictures
+  bool linear = false;  // sRGB values are to be made linear
+  std::optional<PngWriter> png;
+  std::optional<ExrWriter> exr;
+
+  void Write(const Image& rows) {
+    if (png) return png->Write(rows);
+    if (!linear) return exr->Write(rows);
+    Image image = rows;
+    std::transform(image.samples.begin(), image.samples.end(), image.samples.begin(),
+                   LinearFromSrgb<float>);
+    exr->Write(image);
+  }
+};
+
+MapFiles::MapFiles(const ExportedMaterial& material, int width, int height,
+                   const ExportOptions& options, Stage* stage)
+    : material_(material), width_(width), height_(height), options_(options), stage_(stage) {}
+
+MapFiles::~MapFiles() = default;
+
+void MapFiles::Open(const std::vector<MapPicture>& pictures) {
+  const double texels_per_m = 1000 * width_ / material_.width_mm;
+  for (size_t i = 0; i < pictures.size(); ++i) {
+    const MapPicture& picture = pictures[i];
+    const bool srgb = picture.encoding == "sRGB";
     for (const int bits : {8, 16, kExrBits}) {
-      if (!Wanted(picture, bits, options.bits)) continue;
-      const bool apart = bits == 16 && picture.bits == 0 && options.bits == "both";
-      const std::string name = NameOf(material.name, picture, bits, apart);
-      written.push_back({&picture, bits, stage->Output(name)});
+      if (!Wanted(picture, bits, options_.bits)) continue;
+      const bool apart = bits == 16 && picture.bits == 0 && options_.bits == "both";
+      const std::string name = NameOf(material_.name, picture, bits, apart);
+      File& file = files_.emplace_back();
+      file.picture = i;
+      if (bits == kExrBits) {
+        file.linear = srgb;
+        file.exr.emplace(stage_->Output(name), width_, height_, picture.image.channels);
+      } else {
+        file.png.emplace(stage_->Output(name), width_, height_,
+                         static_cast<int>(picture.image.channels.size()), bits,
+                         PngTags{srgb ? PngTransfer::kSrgb : PngTransfer::kUntold, texels_per_m});
+      }
       Json entry = {{"file", name},
                     {"map", picture.map},
                     {"encoding", EncodingOf(picture, bits)},
                     {"bits", bits}};
-      if (picture.map == "height") entry["range_mm"] = material.height_range_mm;
-      files.push_back(entry);
+      if (picture.map == "height") entry["range_mm"] = material_.height_range_mm;
+      entries_.push_back(entry);
     }
   }
-  ForEachPiece(static_cast<int>(written.size()), threads,
-               [&](int i) { WriteMapFile(written[static_cast<size_t>(i)], texels_per_m); });
-  return files;
+}
+
+void MapFiles::Write(const std::vector<MapPicture>& rows, int threads) {
+  if (files_.empty()) Open(rows);
+  ForEachPiece(static_cast<int>(files_.size()), threads, [&](int i) {
+    File& file = files_[static_cast<size_t>(i)];
+    file.Write(rows[file.picture].image);
+  });
+}
+
+Json MapFiles::Close() {
+  for (File& file : files_) {
+    if (file.png) file.png->Close();
+    if (file.exr) file.exr->Close();
+  }
+  return entries_;
+}
+
+Json WriteMapPictures(const ExportedMaterial& material, const std::vector<MapPicture>& pictures,
+                      const ExportOptions& options, int threads, Stage* stage) {
+  MapFiles files(material, material.maps.width, material.maps.height, options, stage);
+  files.Write(pictures, threads);
+  return files.Close();
 }
 
 }  // namespace glint

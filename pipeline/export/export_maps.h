@@ -29,7 +29,7 @@
 
 namespace glint {
 
-inline constexpr int kExportVersion = 7;
+inline constexpr int kExportVersion = 8;
 
 struct ExportOptions {
   std::string name = "material";  // of the files; letters, digits, - _ .
@@ -39,6 +39,9 @@ struct ExportOptions {
   double height_longest = 0.25;
   int border = 1;                  // rings of texels that mix with the sample's surroundings
   double occlusion_reach = 0.125;  // how far walls hide the sky, of the sample's shorter side
+  // Height and occlusion are computed of the whole sample at once, and graphics cards take no
+  // larger pictures than this in a .glb: texels along the longer side, at most.
+  int material_size = 4096;
   MetalRoughnessOptions metal;
   std::vector<std::string> formats;  // of material files; empty: all (material_formats.h)
 };
@@ -79,7 +82,30 @@ std::array<double, 2> HeightRange(const HeightField& field);
 // "exact/wood_diffuse.png", of the material's name and the picture.
 std::string FileOf(const std::string& name, const MapPicture& picture);
 
-// Writes the files as outputs of `stage`; returns the manifest's data.maps.
+// The files of the pictures, written by rows as outputs of `stage`.
+class MapFiles {
+ public:
+  // `width`, `height`: of the whole maps. `material`: its name, size and range of heights.
+  MapFiles(const ExportedMaterial& material, int width, int height, const ExportOptions& options,
+           Stage* stage);
+  ~MapFiles();
+  // The next rows of every picture, from the top.
+  void Write(const std::vector<MapPicture>& rows, int threads);
+  // After the last row. The manifest's data.maps.
+  Json Close();
+
+ private:
+  struct File;
+  void Open(const std::vector<MapPicture>& pictures);
+  const ExportedMaterial& material_;
+  int width_, height_;
+  const ExportOptions& options_;
+  Stage* stage_;
+  std::vector<File> files_;
+  Json entries_ = Json::array();
+};
+
+// All rows at once.
 Json WriteMapPictures(const ExportedMaterial& material, const std::vector<MapPicture>& pictures,
                       const ExportOptions& options, int threads, Stage* stage);
 

@@ -11,7 +11,8 @@
 #include "pipeline/export/direction_pairs.h"
 
 namespace glint {
-namespace {
+// Named, since MetalConverter holds some of it.
+namespace metal_tables {
 
 // That are tried: denser near 0, where F0 is a little above 0.04, and near 1, where a metal has a
 // little diffuse light.
@@ -151,18 +152,21 @@ using Costs = std::array<float, kMetalnesses>;
 // and by roughness. Of a large map most texels share a cell, so each is computed once.
 class CostTable {
  public:
-  CostTable(const std::vector<std::vector<PairTerms>>& terms,
-            const std::vector<std::uint32_t>& cells, int threads)
-      : index_(kCells, kNone) {
-    for (const std::uint32_t cell : cells) index_[cell] = 0;
-    for (std::uint32_t cell = 0; cell < kCells; ++cell) {
-      if (index_[cell] == kNone) continue;
+  CostTable() : index_(kCells, kNone) {}
+
+  // Computes what these cells cost and the table does not hold yet.
+  void Add(const std::vector<std::vector<PairTerms>>& terms,
+           const std::vector<std::uint32_t>& cells, int threads) {
+    const size_t known = used_.size();
+    for (const std::uint32_t cell : cells) {
+      if (index_[cell] != kNone) continue;
       index_[cell] = static_cast<std::uint32_t>(used_.size());
       used_.push_back(cell);
     }
     costs_.resize(used_.size());
-    ForEachBlock(static_cast<int>(used_.size()), 256, threads, [&](int begin, int end) {
-      for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+    ForEachBlock(static_cast<int>(used_.size() - known), 256, threads, [&](int begin, int end) {
+      for (size_t i = known + static_cast<size_t>(begin); i < known + static_cast<size_t>(end);
+           ++i) {
         costs_[i] = CostsOf(terms, used_[i]);
       }
     });
@@ -226,55 +230,69 @@ double BestMetalness(const Costs& costs) {
   return Metalness(best + shift);
 }
 
-}  // namespace
+}  // namespace metal_tables
+
+using namespace metal_tables;
 
 std::array<float, 3> MetalRoughness::ColorAt(size_t texel) const {
   return {base_color[texel], base_color[metallic.size() + texel],
           base_color[2 * metallic.size() + texel]};
 }
 
-MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, DiffuseWeight weight,
-                                const MetalRoughnessOptions& options, int threads) {
-  const auto table = TermsByRoughness();
+struct MetalConverter::Tables {
+  std::vector<std::vector<PairTerms>> terms = TermsByRoughness();
+  CostTable costs;
+};
+
+MetalConverter::MetalConverter(DiffuseWeight weight, const MetalRoughnessOptions& options,
+                               int threads)
+    : weight_(weight), options_(options), threads_(threads), tables_(new Tables) {}
+
+MetalConverter::~MetalConverter() = default;
+
+MetalRoughness MetalConverter::Convert(const SvbrdfMaps& maps, int above, int below) {
   const size_t texels = maps.texels();
   std::vector<std::array<float, 6>> colours(texels);
   std::vector<std::uint32_t> cells(3 * texels);
-  ForEachBlock(static_cast<int>(texels), 4096, threads, [&](int begin, int end) {
+  ForEachBlock(static_cast<int>(texels), 4096, threads_, [&](int begin, int end) {
     for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
       colours[i] = ColourOf(maps, i);
-      const std::array<std::uint32_t, 3> own = CellsOf(TexelOf(maps, weight, i));
+      const std::array<std::uint32_t, 3> own = CellsOf(TexelOf(maps, weight_, i));
       std::copy(own.begin(), own.end(), cells.begin() + static_cast<std::ptrdiff_t>(3 * i));
     }
   });
-  const CostTable channel_costs(table, cells, threads);
+  CostTable& channel_costs = tables_->costs;
+  channel_costs.Add(tables_->terms, cells, threads_);
   std::vector<Costs> costs(texels);
-  ForEachBlock(static_cast<int>(texels), 4096, threads, [&](int begin, int end) {
+  ForEachBlock(static_cast<int>(texels), 4096, threads_, [&](int begin, int end) {
     for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
       const auto of = [&](size_t c, size_t label) {
         return channel_costs.at(cells[3 * i + c])[label];
       };
       for (size_t label = 0; label < kMetalnesses; ++label) {
         const double m = Metalness(static_cast<double>(label));
-        costs[i][label] = static_cast<float>(4 * options.blend_cost * m * (1 - m)) +
+        costs[i][label] = static_cast<float>(4 * options_.blend_cost * m * (1 - m)) +
                           (of(0, label) + of(1, label) + of(2, label)) / 3;
       }
     }
   });
-  MetalRoughness result{maps.width, maps.height, std::vector<float>(3 * texels),
-                        std::vector<float>(texels)};
-  const float narrow = static_cast<float>(0.5 / (options.colour_width * options.colour_width));
-  ForEachBlock(maps.height, 8, threads, [&](int begin, int end) {
-    for (int row = begin; row < end; ++row) {
+  const int rows = maps.height - above - below;
+  const auto width = static_cast<size_t>(maps.width), converted = width * static_cast<size_t>(rows);
+  MetalRoughness result{maps.width, rows, std::vector<float>(3 * converted),
+                        std::vector<float>(converted)};
+  const float narrow = static_cast<float>(0.5 / (options_.colour_width * options_.colour_width));
+  ForEachBlock(rows, 8, threads_, [&](int begin, int end) {
+    for (int row = above + begin; row < above + end; ++row) {
       for (int column = 0; column < maps.width; ++column) {
         const auto at = [&](int r, int c) {
-          return static_cast<size_t>(r) * static_cast<size_t>(maps.width) + static_cast<size_t>(c);
+          return static_cast<size_t>(r) * width + static_cast<size_t>(c);
         };
-        const size_t i = at(row, column);
+        const size_t i = at(row, column), o = at(row - above, column);
         Costs sum{};
-        for (int r = std::max(0, row - options.radius);
-             r <= std::min(maps.height - 1, row + options.radius); ++r) {
-          for (int c = std::max(0, column - options.radius);
-               c <= std::min(maps.width - 1, column + options.radius); ++c) {
+        for (int r = std::max(0, row - options_.radius);
+             r <= std::min(maps.height - 1, row + options_.radius); ++r) {
+          for (int c = std::max(0, column - options_.radius);
+               c <= std::min(maps.width - 1, column + options_.radius); ++c) {
             const size_t other = at(r, c);
             float distance = 0;
             for (size_t k = 0; k < 6; ++k) {
@@ -286,17 +304,22 @@ MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, DiffuseWeight weight,
           }
         }
         const double metallic = BestMetalness(sum);
-        result.metallic[i] = static_cast<float>(metallic);
-        const Texel texel = TexelOf(maps, weight, i);
-        const auto& pairs = PairsOf(table, texel.roughness);
+        result.metallic[o] = static_cast<float>(metallic);
+        const Texel texel = TexelOf(maps, weight_, i);
+        const auto& pairs = PairsOf(tables_->terms, texel.roughness);
         for (size_t k = 0; k < 3; ++k) {
-          result.base_color[k * texels + i] = static_cast<float>(
+          result.base_color[k * converted + o] = static_cast<float>(
               BestBase(pairs, metallic, texel.diffuse[k], texel.specular[k]).base);
         }
       }
     }
   });
   return result;
+}
+
+MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, DiffuseWeight weight,
+                                const MetalRoughnessOptions& options, int threads) {
+  return MetalConverter(weight, options, threads).Convert(maps, 0, 0);
 }
 
 std::array<double, 3> MetalRoughnessBrdf(const std::array<float, 3>& base_color, double metallic,

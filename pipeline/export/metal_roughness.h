@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "fitting/reflectance/convention.h"
@@ -38,6 +39,23 @@ struct MetalRoughness {
 // The same for any number of threads.
 MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, DiffuseWeight weight,
                                 const MetalRoughnessOptions& options, int threads);
+
+// The same by rows.
+class MetalConverter {
+ public:
+  MetalConverter(DiffuseWeight weight, const MetalRoughnessOptions& options, int threads);
+  ~MetalConverter();
+  // Of `maps`, all but the first `above` and last `below` rows: options.radius where the sample
+  // goes on, 0 at its border.
+  MetalRoughness Convert(const SvbrdfMaps& maps, int above, int below);
+
+ private:
+  struct Tables;
+  DiffuseWeight weight_;
+  MetalRoughnessOptions options_;
+  int threads_;
+  std::unique_ptr<Tables> tables_;
+};
 
 // Its reflectance of the texel under one pair of directions, given in the frame of the texel's
 // normal: f [1/sr] per channel.

@@ -104,5 +104,28 @@ TEST(MetalRoughnessTest, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.metallic, three.metallic);
 }
 
+TEST(MetalRoughnessTest, RowsAreThoseOfTheWhole) {
+  const SvbrdfMaps maps = Foils(24);
+  const auto whole = ToMetalRoughness(maps, DiffuseWeight::kOne, {}, 1);
+  const MetalRoughnessOptions options;
+  MetalConverter converter(DiffuseWeight::kOne, options, 2);
+  for (int first = 0; first < 24; first += 5) {
+    const int rows = std::min(5, 24 - first);
+    const int above = std::min(first, options.radius);
+    const int below = std::min(24 - first - rows, options.radius);
+    SvbrdfMaps part(24, above + rows + below);
+    for (int p = 0; p < kSvbrdfPlanes; ++p) {
+      std::copy_n(maps.plane(p).begin() + 24 * (first - above), part.texels(),
+                  part.plane(p).begin());
+    }
+    const MetalRoughness found = converter.Convert(part, above, below);
+    for (size_t i = 0; i < found.metallic.size(); ++i) {
+      const size_t j = static_cast<size_t>(24 * first) + i;
+      EXPECT_EQ(found.metallic[i], whole.metallic[j]);
+      EXPECT_EQ(found.ColorAt(i), whole.ColorAt(j));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace glint
