@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
+#include "fitting/photographs/photographs.h"
 #include "fitting/photographs/picture_shift.h"
 #include "fitting/reflectance/log_radiance.h"
 #include "fitting/render/render_lit.h"
@@ -13,7 +15,9 @@
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/image.h"
 #include "pipeline/contract/manifest.h"
+#include "pipeline/contract/rectified_rows.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/contract/svbrdf_rows.h"
 
 namespace glint {
 namespace {
@@ -75,10 +79,21 @@ std::vector<float> LogResiduals(std::span<const float> rendered, const Rectified
   return residuals;
 }
 
-FittedMaps ReadFittedMaps(const fs::path& path) {
+namespace {
+
+SvbrdfMaps ReadMapsAtMost(const fs::path& file, int most_side, ReflectanceConvention* convention) {
+  if (most_side == 0) return ReadSvbrdf(file, convention);
+  const ImageHeader header = ReadImageHeader(file);
+  const auto [width, height] = SizeAtMost(header.width, header.height, most_side);
+  return ResampledSvbrdf(file, width, height, convention).Read(0, height);
+}
+
+}  // namespace
+
+FittedMaps ReadFittedMaps(const fs::path& path, int most_side) {
   FittedMaps fit;
   if (path.extension() == ".exr") {
-    fit.maps = ReadSvbrdf(path, &fit.convention);
+    fit.maps = ReadMapsAtMost(path, most_side, &fit.convention);
     return fit;
   }
   const fs::path file = fs::is_directory(path) ? path / "manifest.json" : path;
@@ -88,7 +103,7 @@ FittedMaps ReadFittedMaps(const fs::path& path) {
                     "give the manifest of fit or refine, or an svbrdf.exr");
   }
   VerifyOutputs(file, manifest);
-  fit.maps = ReadSvbrdf(file.parent_path() / "svbrdf.exr", &fit.convention);
+  fit.maps = ReadMapsAtMost(file.parent_path() / "svbrdf.exr", most_side, &fit.convention);
   fit.light_scale_rgb =
       OptionalNumbers(file, manifest.data, "light_scale_rgb", fit.light_scale_rgb);
   fit.shared_light = ReadSharedLight(file, manifest.data);
@@ -99,13 +114,32 @@ FittedMaps ReadFittedMaps(const fs::path& path) {
 
 RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
                                const RectifiedView& view) {
-  RectifiedImage photograph = ReadRectifiedImage(set, view);
-  const auto found = fit.corrections.find(view.name);
-  if (found != fit.corrections.end() && found->second.shifts.any()) {
-    const CornerShifts& shifts = found->second.shifts;
-    ShiftPicture(shifts, set.plane.width, set.plane.height, &photograph.rgb);
-    ShiftMask(shifts, set.plane.width, set.plane.height, &photograph.mask);
+  return PhotographOfFit(fit, set, view, set.plane.width, set.plane.height);
+}
+
+RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
+                               const RectifiedView& view, int width, int height) {
+  RectifiedReader reader(set, view);
+  RectifiedImage photograph{width, height, {}, {}};
+  if (width == set.plane.width && height == set.plane.height) {
+    photograph = reader.Read(0, height);
+  } else {
+    const ReadRows read = [&](int first_row, int rows) {
+      RectifiedImage part = reader.Read(first_row, rows);
+      return Photograph{view.view, view.ldr, std::move(part.rgb), std::move(part.mask)};
+    };
+    Photograph small = DownsampledByRows(read, set.plane, width, height, 1);
+    photograph.rgb = std::move(small.rgb);
+    photograph.mask = std::move(small.mask);
   }
+  const auto found = fit.corrections.find(view.name);
+  if (found == fit.corrections.end() || !found->second.shifts.any()) return photograph;
+  const CornerShifts shifts =
+      AtSize({{found->second}, {}}, set.plane.width, set.plane.height, width, height)
+          .views[0]
+          .shifts;
+  ShiftPicture(shifts, width, height, &photograph.rgb);
+  ShiftMask(shifts, width, height, &photograph.mask);
   return photograph;
 }
 

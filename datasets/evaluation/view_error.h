@@ -44,13 +44,17 @@ struct FittedMaps {
 };
 
 // `path`: manifest.json of fit or refine, the folder that holds it, or svbrdf.exr alone (then the
-// scale is 1 and nothing is corrected). Throws UserError.
-FittedMaps ReadFittedMaps(const std::filesystem::path& path);
+// scale is 1 and nothing is corrected). With `most_side` above 0, maps that are larger are read at
+// that size, and never whole. Throws UserError.
+FittedMaps ReadFittedMaps(const std::filesystem::path& path, int most_side = 0);
 
 // The photograph of `view`, looked up where the fit found that it belongs. Throws as
 // ReadRectifiedImage() does.
 RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
                                const RectifiedView& view);
+// The same averaged to width × height, and never whole.
+RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
+                               const RectifiedView& view, int width, int height);
 
 // Camera and light of `view` as the fit found them; the room's light apart.
 View ViewOfFit(const FittedMaps& fit, const RectifiedView& view);

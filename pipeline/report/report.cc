@@ -1,6 +1,9 @@
 #include "pipeline/report/report.h"
 
+#include <tuple>
+
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/exr_rows.h"
 #include "pipeline/report/corrections_section.h"
 #include "pipeline/report/downloads_section.h"
 #include "pipeline/report/guidance_section.h"
@@ -60,7 +63,7 @@ std::vector<fs::path> ReportManifests(const fs::path& work, const std::string& f
   return files;
 }
 
-ReportInput ReadReportInput(const fs::path& work, const std::string& from) {
+ReportInput ReadReportInput(const fs::path& work, const std::string& from, int most_side) {
   ReportInput input;
   input.work = work;
   for (const std::string& stage : StagesRead(from)) {
@@ -72,7 +75,10 @@ ReportInput ReadReportInput(const fs::path& work, const std::string& from) {
     input.manifests.emplace(stage, manifest);
   }
   input.set = ReadRectifiedSet(work / "rectify" / "manifest.json");
-  input.fit = ReadFittedMaps(work / from / "manifest.json");
+  input.fit = ReadFittedMaps(work / from / "manifest.json", most_side);
+  input.shown = input.set;
+  SamplePlane& plane = input.shown.plane;
+  std::tie(plane.width, plane.height) = SizeAtMost(plane.width, plane.height, most_side);
   input.used_views = UsedViews(input.manifests.at(from), input.set);
   return input;
 }

@@ -18,7 +18,7 @@
 
 namespace glint {
 
-inline constexpr int kReportVersion = 5;
+inline constexpr int kReportVersion = 6;
 
 struct ReportOptions {
   std::string from = "refine";  // stage whose maps are shown: refine, fit
@@ -33,6 +33,9 @@ struct ReportInput {
   std::filesystem::path work;                 // CAPTURE/glint
   std::map<std::string, Manifest> manifests;  // by stage; those that are there, up to `from`
   RectifiedSet set;
+  // The same at the size that is shown and compared, at most kMostShownSide along a side, and the
+  // maps at that size.
+  RectifiedSet shown;
   FittedMaps fit;
   std::vector<std::string> used_views;  // by name: those that the maps were fitted to
 
@@ -43,8 +46,12 @@ struct ReportInput {
 std::vector<std::filesystem::path> ReportManifests(const std::filesystem::path& work,
                                                    const std::string& from);
 
+// Larger maps and photographs are averaged to this size, and never whole in memory. Some 900 MB.
+inline constexpr int kMostShownSide = 2048;
+
 // Throws UserError when rectify's or `from`'s result is missing or damaged.
-ReportInput ReadReportInput(const std::filesystem::path& work, const std::string& from);
+ReportInput ReadReportInput(const std::filesystem::path& work, const std::string& from,
+                            int most_side = kMostShownSide);
 
 struct Report {
   std::string html;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "pipeline/contract/errors.h"
+#include "pipeline/contract/exr_rows.h"
 #include "pipeline/contract/hash.h"
 #include "pipeline/report/downloads_section.h"
 #include "pipeline/report/figure.h"
@@ -73,11 +74,30 @@ std::string PanelCells(const RectifiedImage& photograph, std::span<const float> 
          cell(difference, kDifferenceGain, "difference");
 }
 
+// Where large photographs are compared at a smaller size: which.
+std::string ComparedAt(const ReportInput& input) {
+  const SamplePlane &whole = input.set.plane, &shown = input.shown.plane;
+  if (shown.width == whole.width && shown.height == whole.height) return "";
+  return " Compared at " + std::to_string(shown.width) + " × " + std::to_string(shown.height) +
+         " texels.";
+}
+
 double Distance_mm(const Vec3d& point) {
   return std::sqrt(point[0] * point[0] + point[1] * point[1] + point[2] * point[2]);
 }
 
 }  // namespace
+
+RectifiedImage ShownPhotograph(const ReportInput& input, const RectifiedView& view) {
+  return PhotographOfFit(input.fit, input.set, view, input.shown.plane.width,
+                         input.shown.plane.height);
+}
+
+Image RoughnessConfidence(const ReportInput& input, const fs::path& confidence_exr) {
+  const SamplePlane& plane = input.shown.plane;
+  const Image image = ReadExrAveraged(confidence_exr, {"roughness.Y"}, plane.width, plane.height);
+  return ColorMapped(image.channel(0), image.width, image.height, 0, 0.2f);
+}
 
 std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
   const Trace own{kOwnManifest, "metrics"};
@@ -85,7 +105,7 @@ std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
   std::string figures = "<div class=\"figures\">\n";
   figures += HeadFigure("photographs fitted", input.used_views.size(), own.Field("views[].fitted"));
   figures +=
-      HeadFigure("width of the maps", input.fit.maps.width, rectify.Field("width"), "texels");
+      HeadFigure("width of the maps", input.set.plane.width, rectify.Field("width"), "texels");
   figures += HeadFigure("a texel", input.set.plane.width_mm / input.set.plane.width,
                         rectify.Field("width_mm"), "mm");
   if (input.Has("calib")) {
@@ -132,8 +152,8 @@ std::string TitleSection(const ReportInput& input) {
   return "<h1>" + HtmlText(MaterialName(input)) + "</h1>\n<p>" +
          FigureHtml(input.set.plane.width_mm, rectify.Field("width_mm")) + " × " +
          FigureHtml(input.set.plane.height_mm, rectify.Field("height_mm")) + " mm, " +
-         FigureHtml(input.fit.maps.width, rectify.Field("width")) + " × " +
-         FigureHtml(input.fit.maps.height, rectify.Field("height")) + " texels, from " +
+         FigureHtml(input.set.plane.width, rectify.Field("width")) + " × " +
+         FigureHtml(input.set.plane.height, rectify.Field("height")) + " texels, from " +
          std::to_string(input.used_views.size()) +
          (input.used_views.size() == 1 ? " photograph" : " photographs") + ".</p>\n" +
          FirstLookNote(input);
@@ -164,14 +184,8 @@ std::string MapsSection(const ReportInput& input, const ReportOptions& options) 
   }
   const fs::path confidence = input.work / "refine" / "confidence.exr";
   if (options.from == "refine" && fs::exists(confidence)) {
-    const Image image = ReadExr(confidence);
-    const int plane = image.ChannelIndex("roughness.Y");
-    if (plane >= 0) {
-      body += Figure(
-          PngUri(Shrunk(ColorMapped(image.channel(plane), image.width, image.height, 0, 0.2f),
-                        options.picture_px / 2)),
-          "standard deviation of the roughness, blue 0 to yellow 0.2");
-    }
+    body += Figure(PngUri(Shrunk(RoughnessConfidence(input, confidence), options.picture_px / 2)),
+                   "standard deviation of the roughness, blue 0 to yellow 0.2");
   }
   body += "</div>\n";
   return Section("Maps (" + options.from + ")", ManifestLink(options.from), body);
@@ -206,8 +220,8 @@ std::string ViewsSection(const ReportInput& input, const ReportOptions& options,
     int count = 0;
   } means[2];
   for (const RectifiedView& view : input.set.views) {
-    const RectifiedImage photograph = PhotographOfFit(input.fit, input.set, view);
-    const std::vector<float> rendered = RenderFit(input.fit, input.set, view, threads);
+    const RectifiedImage photograph = ShownPhotograph(input, view);
+    const std::vector<float> rendered = RenderFit(input.fit, input.shown, view, threads);
     const ViewError error = CompareView(rendered, photograph, view.ldr);
     const bool used = Used(input, view);
     const Trace trace = Trace{kOwnManifest, "metrics.views"}.Index(views.size());
@@ -241,7 +255,9 @@ std::string ViewsSection(const ReportInput& input, const ReportOptions& options,
   const std::string body =
       "<p>Rectified photographs, the maps rendered under the same camera and light, and four times "
       "the absolute difference; gamma 2.2. log-L1: mean of |log(I + 0.01) − log(R + 0.01)|; RMSE: "
-      "of linear radiance.</p>\n<div class=\"scroll\"><table class=\"views\">"
+      "of linear radiance." +
+      ComparedAt(input) +
+      "</p>\n<div class=\"scroll\"><table class=\"views\">"
       "<tr><th>view</th><th>photograph</th><th>rendering</th><th>difference ×4</th>"
       "<th class=\"number\">log-L1</th><th class=\"number\">RMSE</th></tr>\n" +
       rows + "</table></div>\n";

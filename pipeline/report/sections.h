@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "pipeline/contract/image.h"
 #include "pipeline/report/report.h"
 
 namespace glint {
@@ -11,6 +12,11 @@ namespace glint {
 std::string TitleSection(const ReportInput& input);
 // A part of the page that is closed at first.
 std::string Folded(const std::string& title, const std::string& body);
+
+// The photograph at the size that is shown.
+RectifiedImage ShownPhotograph(const ReportInput& input, const RectifiedView& view);
+// Standard deviation of the roughness at that size, in colours from 0 to 0.2.
+Image RoughnessConfidence(const ReportInput& input, const std::filesystem::path& confidence_exr);
 
 std::string OverviewSection(const ReportInput& input, const Json& own_metrics);
 std::string MapsSection(const ReportInput& input, const ReportOptions& options);

@@ -7,6 +7,7 @@
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/picture.h"
+#include "pipeline/report/sections.h"
 #include "pipeline/viewer/viewer_bundle.h"
 
 namespace glint {
@@ -58,13 +59,7 @@ Json MapsJson(const ReportInput& input, const SvbrdfMaps& maps, const ReportOpti
                {"geometry_low", PngUri(geometry[1])}};
   const fs::path confidence = input.work / "refine" / "confidence.exr";
   if (options.from == "refine" && fs::exists(confidence)) {
-    const Image image = ReadExr(confidence);
-    const int plane = image.ChannelIndex("roughness.Y");
-    if (plane >= 0) {
-      json["confidence"] =
-          PngUri(Shrunk(ColorMapped(image.channel(plane), image.width, image.height, 0, 0.2f),
-                        options.picture_px));
-    }
+    json["confidence"] = PngUri(Shrunk(RoughnessConfidence(input, confidence), options.picture_px));
   }
   return json;
 }
@@ -72,7 +67,7 @@ Json MapsJson(const ReportInput& input, const SvbrdfMaps& maps, const ReportOpti
 Json ViewsJson(const ReportInput& input, const ReportOptions& options) {
   Json views = Json::array();
   for (const RectifiedView& view : input.set.views) {
-    const RectifiedImage photograph = PhotographOfFit(input.fit, input.set, view);
+    const RectifiedImage photograph = ShownPhotograph(input, view);
     const View lit = ViewOfFit(input.fit, view);
     const bool fitted = std::find(input.used_views.begin(), input.used_views.end(), view.name) !=
                         input.used_views.end();

@@ -112,6 +112,22 @@ class ReportTest : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+// What is larger than the page compares at is averaged, and the page says so.
+TEST_F(ReportTest, LargeMapsAreComparedAtASmallerSize) {
+  ReportOptions options;
+  options.from = "fit";
+  const ReportInput small = ReadReportInput(work(), "fit", kSize / 2);
+  EXPECT_EQ(small.fit.maps.width, kSize / 2);
+  const Report report = MakeReport(small, options, 1);
+  const std::string half = std::to_string(kSize / 2), whole = std::to_string(kSize);
+  EXPECT_THAT(report.html, HasSubstr("Compared at " + half + " × " + half + " texels."));
+  EXPECT_THAT(report.html, HasSubstr(whole + "</span> texels, from"));
+  EXPECT_THAT(Make().html, Not(HasSubstr("Compared at")));
+  for (const Json& view : report.metrics["views"]) {
+    EXPECT_LT(view["log_l1"].get<double>(), 0.05);  // the truth explains averages, too
+  }
+}
+
 TEST_F(ReportTest, IsOnePageThatLoadsNothing) {
   std::string html = Make().html;
   const std::string viewer(ViewerBundle());
