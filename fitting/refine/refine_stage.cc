@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/parallel/parallel.h"
 #include "fitting/refine/estimate_sample.h"
 #include "fitting/refine/refine_rows.h"
 #include "fitting/refine/residual_model.h"
@@ -189,11 +190,13 @@ RefineSummary RefineByRows(const RefineOptions& options, const ReflectanceConven
         source->Rows(first - above, above + last - first + below, threads);
     RowRefiner::Rows refined =
         refiner.Refine(ProblemOf(part.photographs), part.start, above, below);
-    maps.Write(refined.maps);
     Image deviations(plane.width, last - first, {});
     deviations.channels = kConfidenceChannels;
     deviations.samples = std::move(refined.confidence);
-    confidence.Write(deviations);
+    // Compressing takes as long as reading the photographs.
+    ForEachPiece(2, threads, [&](int file) {
+      file == 0 ? maps.Write(refined.maps) : confidence.Write(deviations);
+    });
   }
   maps.Close();
   confidence.Close();
