@@ -12,19 +12,22 @@ struct ModelInfo {
   CameraModel model;
   std::string_view name;
   std::vector<std::string> parameters;
+  bool calibrated = false;  // offered by glint-calib
 };
 
-const std::array<ModelInfo, 6>& Models() {
-  static const std::array<ModelInfo, 6> models = {{
+// In the order of the enumeration.
+const std::vector<ModelInfo>& Models() {
+  static const std::vector<ModelInfo> models = {
       {CameraModel::kSimplePinhole, "SIMPLE_PINHOLE", {"f", "cx", "cy"}},
       {CameraModel::kPinhole, "PINHOLE", {"fx", "fy", "cx", "cy"}},
-      {CameraModel::kSimpleRadial, "SIMPLE_RADIAL", {"f", "cx", "cy", "k"}},
-      {CameraModel::kRadial, "RADIAL", {"f", "cx", "cy", "k1", "k2"}},
-      {CameraModel::kOpenCv, "OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"}},
+      {CameraModel::kSimpleRadial, "SIMPLE_RADIAL", {"f", "cx", "cy", "k"}, true},
+      {CameraModel::kRadial, "RADIAL", {"f", "cx", "cy", "k1", "k2"}, true},
+      {CameraModel::kOpenCv, "OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"}, true},
       {CameraModel::kFullOpenCv,
        "FULL_OPENCV",
-       {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}},
-  }};
+       {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"},
+       true},
+  };
   return models;
 }
 
@@ -49,6 +52,27 @@ std::optional<CameraModel> CameraModelFromName(std::string_view name) {
     if (info.name == name) return info.model;
   }
   return std::nullopt;
+}
+
+const std::vector<CameraModel>& CalibratedModels() {
+  static const std::vector<CameraModel> models = [] {
+    std::vector<CameraModel> chosen;
+    for (const ModelInfo& info : Models()) {
+      if (info.calibrated) chosen.push_back(info.model);
+    }
+    std::stable_sort(chosen.begin(), chosen.end(), [](CameraModel a, CameraModel b) {
+      return CameraParameterNames(a).size() < CameraParameterNames(b).size();
+    });
+    return chosen;
+  }();
+  return models;
+}
+
+std::string CameraModelNamesText() {
+  std::string text;
+  for (const ModelInfo& info : Models())
+    text += (text.empty() ? "" : ", ") + std::string(info.name);
+  return text;
 }
 
 const std::vector<std::string>& CameraParameterNames(CameraModel model) {

@@ -15,9 +15,17 @@ namespace glint {
 
 enum class CameraModel { kSimplePinhole, kPinhole, kSimpleRadial, kRadial, kOpenCv, kFullOpenCv };
 
+// To add a model: its name and parameters in camera_model.cc, its enumerator above and its
+// projection in ImageFromNormalized() below.
+
 // COLMAP's name ("SIMPLE_RADIAL" …) and its inverse (nullopt: unknown name).
 std::string_view CameraModelName(CameraModel model);
 std::optional<CameraModel> CameraModelFromName(std::string_view name);
+
+// Those that glint-calib offers, from the fewest parameters on; others are read from elsewhere.
+const std::vector<CameraModel>& CalibratedModels();
+// "SIMPLE_PINHOLE, PINHOLE …", all of them, for messages.
+std::string CameraModelNamesText();
 
 // Parameter names in order, for manifests, tables and covariances:
 //   SIMPLE_PINHOLE f cx cy · PINHOLE fx fy cx cy · SIMPLE_RADIAL f cx cy k · RADIAL f cx cy k1 k2

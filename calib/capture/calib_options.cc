@@ -37,6 +37,16 @@ std::string PosesInOneLine(const Capture& capture) {
 
 }  // namespace
 
+namespace {
+
+std::vector<std::string> ModelChoices() {
+  std::vector<std::string> names = {"auto"};
+  for (const CameraModel model : CalibratedModels()) names.emplace_back(CameraModelName(model));
+  return names;
+}
+
+}  // namespace
+
 void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   // What the result depends on are the model's files, which are inputs, and the kind of source,
   // which is in the task; the place of the folder tells nothing.
@@ -47,8 +57,7 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   set->AddChoice("export", &options->write, {"none", "colmap"},
                  "also write the calibration for another program: colmap, to glint/colmap",
                  Invalidates::kNo);
-  set->AddChoice("model", &options->model,
-                 {"auto", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV"},
+  set->AddChoice("model", &options->model, ModelChoices(),
                  "COLMAP's camera model; auto: the simplest that predicts held-out photos (boards "
                  "only; with --poses colmap, OPENCV)");
   set->AddChoice(

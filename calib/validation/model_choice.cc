@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <iterator>
 
 #include "calib/validation/cross_validation.h"
 #include "pipeline/contract/errors.h"
@@ -13,15 +12,12 @@
 namespace glint {
 namespace {
 
-constexpr CameraModel kModels[] = {CameraModel::kSimpleRadial, CameraModel::kRadial,
-                                   CameraModel::kOpenCv, CameraModel::kFullOpenCv};
-
 // Corners that are inliers under the model with the most of them: so that all models are judged by
 // the same corners, and a poor model cannot hide what it does not explain.
 BundleProblem SharedCorners(const BundleProblem& problem, const BundleOptions& options) {
   std::exception_ptr error;
   BundleResult best;
-  for (const CameraModel model : kModels) {
+  for (const CameraModel model : CalibratedModels()) {
     try {
       BundleResult result = AdjustBundle(problem, WithModel(options, model));
       if (result.inliers > best.inliers) best = std::move(result);
@@ -91,8 +87,8 @@ ModelChoice ChooseModel(const BundleProblem& problem, const BundleOptions& optio
   const BundleProblem shared = options.reject ? SharedCorners(problem, options) : problem;
   std::vector<Judged> judged;
   const Judged* best = nullptr;
-  judged.reserve(std::size(kModels));
-  for (const CameraModel model : kModels) {
+  judged.reserve(CalibratedModels().size());
+  for (const CameraModel model : CalibratedModels()) {
     judged.push_back(Judge(shared, WithModel(fixed_corners, model)));
     const Judged& last = judged.back();
     if (!last.trial.problem.empty()) continue;

@@ -17,7 +17,7 @@ Camera ReadCamera(const std::filesystem::path& file, const Json& json, const std
   const auto known = CameraModelFromName(model);
   if (!known) {
     throw UserError(file, name + ".model", "'" + model + "'",
-                    "use SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV or FULL_OPENCV");
+                    "use one of " + CameraModelNamesText());
   }
   camera.model = *known;
   camera.width_px = RequireCount(file, json, name, "width_px");
