@@ -105,4 +105,17 @@ std::vector<float> ResamplePlanes(std::span<const float> planes, int width, int 
   return out;
 }
 
+std::vector<float> CutRows(std::span<const float> planes, int width, int height, int first,
+                           int rows) {
+  const size_t row = static_cast<size_t>(width), plane = row * static_cast<size_t>(height);
+  const size_t begin = static_cast<size_t>(first) * row, count = static_cast<size_t>(rows) * row;
+  std::vector<float> cut;
+  cut.reserve(planes.size() / plane * count);
+  for (size_t at = 0; at < planes.size(); at += plane) {
+    const auto block = planes.subspan(at + begin, count);
+    cut.insert(cut.end(), block.begin(), block.end());
+  }
+  return cut;
+}
+
 }  // namespace glint

@@ -45,4 +45,8 @@ std::vector<TapGroup> GroupTaps(std::span<const Taps> taps, int most_inputs);
 std::vector<float> ResamplePlanes(std::span<const float> planes, int width, int height,
                                   std::span<const Taps> across, std::span<const Taps> down);
 
+// Rows first … first + rows − 1 of blocks of width × height samples, as blocks of width × rows.
+std::vector<float> CutRows(std::span<const float> planes, int width, int height, int first,
+                           int rows);
+
 }  // namespace glint

@@ -122,19 +122,12 @@ PhotographSet Downsampled(const PhotographSet& set, int width, int height, int t
   small.convention = set.convention;
   small.light_power_known = set.light_power_known;
   small.room = set.room;
-  const size_t texels =
-      static_cast<size_t>(set.plane.width) * static_cast<size_t>(set.plane.height);
   for (const Photograph& p : set.photographs) {
     const ReadRows rows = [&](int first_row, int count) {
-      const size_t begin = static_cast<size_t>(first_row) * static_cast<size_t>(set.plane.width);
-      const size_t size = static_cast<size_t>(count) * static_cast<size_t>(set.plane.width);
-      Photograph part{p.view, p.ldr, {}, {}};
-      for (size_t c = 0; c < 4; ++c) {
-        const float* from = (c < 3 ? p.rgb.data() + c * texels : p.mask.data()) + begin;
-        std::vector<float>& to = c < 3 ? part.rgb : part.mask;
-        to.insert(to.end(), from, from + size);
-      }
-      return part;
+      const auto cut = [&](const std::vector<float>& planes) {
+        return CutRows(planes, set.plane.width, set.plane.height, first_row, count);
+      };
+      return Photograph{p.view, p.ldr, cut(p.rgb), cut(p.mask)};
     };
     small.photographs.push_back(DownsampledByRows(rows, set.plane, width, height, threads));
   }

@@ -50,9 +50,9 @@ PhotographSet RectifiedPhotographs::Downsampled(int width, int height, int threa
   photographs.plane.height = height;
   ForEachPiece(static_cast<int>(views_.size()), threads, [&](int i) {
     const auto k = static_cast<size_t>(i);
-    photographs.photographs[k] = DownsampledByRows(
-        [&](int first_row, int rows) { return ReadRows(k, first_row, rows); }, set_.plane, width,
-        height, 1);
+    photographs.photographs[k] =
+        DownsampledByRows([&](int first_row, int rows) { return ReadRows(k, first_row, rows); },
+                          set_.plane, width, height, 1);
   });
   return photographs;
 }

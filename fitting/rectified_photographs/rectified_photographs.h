@@ -1,5 +1,5 @@
-// The photographs of a rectified set as fitting takes them: whole, by rows, or smaller. Only what is
-// asked for is ever in memory.
+// The photographs of a rectified set as fitting takes them: whole, by rows, or smaller. Only what
+// is asked for is ever in memory.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@ namespace glint {
 
 class RectifiedPhotographs {
  public:
-  // `light_scale_rgb`: what every view's power is multiplied with. Throws UserError when a file does
-  // not fit the set; so do all that read.
+  // `light_scale_rgb`: what every view's power is multiplied with. Throws UserError when a file
+  // does not fit the set; so do all that read.
   RectifiedPhotographs(RectifiedSet set, std::vector<RectifiedView> views,
                        const Vec3d& light_scale_rgb = {1, 1, 1});
 

@@ -135,7 +135,8 @@ void Estimator::SetViews(const ViewDeviations& deviations) {
 
 // Leaves the texel's own observations in `worker`.
 std::vector<DeviationProducts> Estimator::OfViews(size_t texel, const TexelValues& values,
-                                                std::span<const int> views, RefineWorker* worker) {
+                                                  std::span<const int> views,
+                                                  RefineWorker* worker) {
   TexelSolver& solver = worker->search.solver();
   std::vector<int> usable;
   for (const int v : views) {
@@ -168,8 +169,8 @@ std::vector<DeviationProducts> Estimator::OfViews(size_t texel, const TexelValue
 }
 
 SampleEstimate Estimator::Estimate(std::vector<int> order) const {
-  SampleEstimate estimate{std::move(order), said_, ViewsOf(problem_), part_.substances(),
-                          model_,           {}};
+  SampleEstimate estimate{std::move(order),   said_,  ViewsOf(problem_),
+                          part_.substances(), model_, {}};
   RefineSummary& summary = estimate.summary;
   model_.Describe(&summary);
   summary.shared_light = shared_light_;

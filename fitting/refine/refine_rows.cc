@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/parallel/parallel.h"
+#include "base/resampling/resampling.h"
 #include "fitting/refine/confidence.h"
 #include "fitting/refine/gather.h"
 #include "fitting/refine/refine_worker.h"
@@ -211,20 +212,6 @@ std::int64_t PartRefiner::Count(int row, Origin flag) const {
                        [flag](unsigned char origin) { return (origin & flag) != 0; });
 }
 
-// Rows first … last − 1 of `planes` planes of width × height.
-std::vector<float> RowsOf(const std::vector<float>& all, int width, int height, int first,
-                          int last) {
-  const size_t row = static_cast<size_t>(width), plane = row * static_cast<size_t>(height);
-  std::vector<float> rows;
-  rows.reserve(all.size() / static_cast<size_t>(height) * static_cast<size_t>(last - first));
-  for (size_t p = 0; p * plane < all.size(); ++p) {
-    const float* begin = all.data() + p * plane;
-    rows.insert(rows.end(), begin + static_cast<size_t>(first) * row,
-                begin + static_cast<size_t>(last) * row);
-  }
-  return rows;
-}
-
 }  // namespace
 
 RowRefiner::RowRefiner(const SampleEstimate& estimate, const RefineOptions& options, int threads,
@@ -258,8 +245,8 @@ RowRefiner::Rows RowRefiner::Refine(const RefineProblem& problem, const SvbrdfMa
   Rows& solved = part.result();
   if (first == 0 && last == start.height) return std::move(solved);
   Rows rows{SvbrdfMaps(start.width, last - first), {}};
-  rows.maps.planes = RowsOf(solved.maps.planes, start.width, start.height, first, last);
-  rows.confidence = RowsOf(solved.confidence, start.width, start.height, first, last);
+  rows.maps.planes = CutRows(solved.maps.planes, start.width, start.height, first, last - first);
+  rows.confidence = CutRows(solved.confidence, start.width, start.height, first, last - first);
   return rows;
 }
 

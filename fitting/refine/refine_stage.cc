@@ -262,7 +262,8 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "0: none");
   set->AddRange("rows-at-once", &options->rows_at_once, 0, 1 << 20,
                 "rows of texels that are in memory together; the result does not depend on it; 0: "
-                "as memory allows");
+                "as memory allows",
+                Invalidates::kNo);
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");
   set->Add("views", &options->views, "views to use, by name or photo (default: those of fit)");

@@ -1,5 +1,5 @@
-// Texels of a sample with what is known of each before refinement: all of them, consecutive rows, or
-// every so many-th.
+// Texels of a sample with what is known of each before refinement: all of them, consecutive rows,
+// or every so many-th.
 #pragma once
 
 #include <optional>

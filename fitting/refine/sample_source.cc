@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/resampling/resampling.h"
+
 namespace glint {
 namespace {
 
@@ -36,18 +38,6 @@ struct Picking {
   }
 };
 
-// Rows first … first + rows − 1 of planes of `width` × `height`.
-std::vector<float> Cropped(const std::vector<float>& planes, int width, int height, int first,
-                           int rows) {
-  const size_t row = static_cast<size_t>(width), texels = row * static_cast<size_t>(height);
-  std::vector<float> cropped;
-  for (size_t plane = 0; plane < planes.size(); plane += texels) {
-    const float* begin = planes.data() + plane + static_cast<size_t>(first) * row;
-    cropped.insert(cropped.end(), begin, begin + static_cast<size_t>(rows) * row);
-  }
-  return cropped;
-}
-
 }  // namespace
 
 SampleSource::SampleSource(const RectifiedSet& set, const std::vector<RectifiedView>& views,
@@ -63,13 +53,12 @@ PhotographSet SampleSource::PhotographRows(int first_row, int rows, int threads)
   const int reached = RowsReached(corrections_);
   const int above = std::min(first_row, reached);
   const int below = std::min(plane().height - first_row - rows, reached);
-  PhotographSet set =
-      Corrected(photographs_.Rows(first_row - above, above + rows + below, threads), corrections_,
-                threads);
+  PhotographSet set = Corrected(photographs_.Rows(first_row - above, above + rows + below, threads),
+                                corrections_, threads);
   if (above + below == 0) return set;
   for (Photograph& p : set.photographs) {
-    p.rgb = Cropped(p.rgb, set.plane.width, set.plane.height, above, rows);
-    p.mask = Cropped(p.mask, set.plane.width, set.plane.height, above, rows);
+    p.rgb = CutRows(p.rgb, set.plane.width, set.plane.height, above, rows);
+    p.mask = CutRows(p.mask, set.plane.width, set.plane.height, above, rows);
   }
   set.plane = plane().Rows(first_row, rows);
   return set;

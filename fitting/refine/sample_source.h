@@ -1,5 +1,5 @@
-// Photographs and initial maps of a capture as refinement takes them: by rows, thinned out or smaller.
-// Only what is asked for is ever in memory.
+// Photographs and initial maps of a capture as refinement takes them: by rows, thinned out or
+// smaller. Only what is asked for is ever in memory.
 #pragma once
 
 #include <filesystem>

@@ -55,21 +55,8 @@ std::vector<float> TrustOf(const std::filesystem::path& maps_manifest, const Mat
     throw UserError(file, "normal.X, normal.Y", "not the deviations of these maps",
                     "run glint-refine again");
   }
-  const Image confidence =
-      ReadExrAveraged(file, {"normal.X", "normal.Y"}, maps.width, maps.height);
+  const Image confidence = ReadExrAveraged(file, {"normal.X", "normal.Y"}, maps.width, maps.height);
   return TrustOfNormals(confidence.channel(0), confidence.channel(1));
-}
-
-// Rows first … first + count − 1 of planes of width × height.
-std::vector<float> RowsOf(const std::vector<float>& planes, int width, int height, int first,
-                          int count) {
-  const size_t row = static_cast<size_t>(width), texels = row * static_cast<size_t>(height);
-  std::vector<float> rows;
-  for (size_t plane = 0; plane < planes.size(); plane += texels) {
-    const float* begin = planes.data() + plane + static_cast<size_t>(first) * row;
-    rows.insert(rows.end(), begin, begin + static_cast<size_t>(count) * row);
-  }
-  return rows;
 }
 
 // Rows of a plane that is made larger, or has that size.
@@ -83,12 +70,12 @@ class EnlargedRows {
         down_(TentTaps(height, to_height)) {}
   std::vector<float> Rows(int first, int count) const {
     if (static_cast<int>(across_.size()) == width_ && static_cast<int>(down_.size()) == height_) {
-      return RowsOf(plane_, width_, height_, first, count);
+      return CutRows(plane_, width_, height_, first, count);
     }
     const auto down =
         std::span(down_).subspan(static_cast<size_t>(first), static_cast<size_t>(count));
     const TapGroup group = GroupTaps(down, height_).front();
-    return ResamplePlanes(RowsOf(plane_, width_, height_, group.first_input, group.inputs), width_,
+    return ResamplePlanes(CutRows(plane_, width_, height_, group.first_input, group.inputs), width_,
                           group.inputs, across_, group.taps);
   }
 
@@ -110,7 +97,7 @@ class MetalRows {
     const int above = std::min(first, radius_), below = std::min(height - first - count, radius_);
     SvbrdfMaps maps = rows_of(first - above, above + count + below);
     MetalRoughness metal = converter_.Convert(maps, above, below);
-    maps.planes = RowsOf(maps.planes, maps.width, maps.height, above, count);
+    maps.planes = CutRows(maps.planes, maps.width, maps.height, above, count);
     maps.height = count;
     return {std::move(maps), std::move(metal)};
   }
@@ -128,7 +115,7 @@ MetalRoughness MetalOf(const SvbrdfMaps& maps, MetalRows* rows) {
                      std::vector<float>(maps.texels())};
   const auto part_of = [&](int first, int count) {
     SvbrdfMaps part(maps.width, count);
-    part.planes = RowsOf(maps.planes, maps.width, maps.height, first, count);
+    part.planes = CutRows(maps.planes, maps.width, maps.height, first, count);
     return part;
   };
   const int at_once = RowsAtOnce(maps.width);
@@ -138,7 +125,8 @@ MetalRoughness MetalOf(const SvbrdfMaps& maps, MetalRows* rows) {
     const auto at = static_cast<std::ptrdiff_t>(first) * maps.width;
     std::copy(part.metallic.begin(), part.metallic.end(), all.metallic.begin() + at);
     for (size_t c = 0; c < 3; ++c) {
-      const auto from = part.base_color.begin() + static_cast<std::ptrdiff_t>(c * part.metallic.size());
+      const auto from =
+          part.base_color.begin() + static_cast<std::ptrdiff_t>(c * part.metallic.size());
       std::copy(from, from + static_cast<std::ptrdiff_t>(part.metallic.size()),
                 all.base_color.begin() + static_cast<std::ptrdiff_t>(c * maps.texels()) + at);
     }
@@ -160,16 +148,16 @@ Json WriteMapsByRows(const ExportedMaterial& whole, const HeightField& relief,
   const int at_once = rows_at_once > 0 ? rows_at_once : RowsAtOnce(width);
   for (int first = 0; first < height; first += at_once) {
     const int count = std::min(at_once, height - first);
-    ExportedMaterial rows{whole.name, {}, whole.diffuse_weight, whole.width_mm, whole.height_mm,
-                          {},         whole.height_range_mm};
+    ExportedMaterial rows{whole.name,      {}, whole.diffuse_weight, whole.width_mm,
+                          whole.height_mm, {}, whole.height_range_mm};
     if (at_hand) {
       rows.maps = SvbrdfMaps(width, count);
-      rows.maps.planes = RowsOf(whole.maps.planes, width, height, first, count);
-      rows.metal = {width, count, RowsOf(whole.metal.base_color, width, height, first, count),
-                    RowsOf(whole.metal.metallic, width, height, first, count)};
+      rows.maps.planes = CutRows(whole.maps.planes, width, height, first, count);
+      rows.metal = {width, count, CutRows(whole.metal.base_color, width, height, first, count),
+                    CutRows(whole.metal.metallic, width, height, first, count)};
     } else {
-      std::tie(rows.maps, rows.metal) = metal->Rows(
-          [&](int from, int n) { return source->Rows(from, n); }, height, first, count);
+      std::tie(rows.maps, rows.metal) =
+          metal->Rows([&](int from, int n) { return source->Rows(from, n); }, height, first, count);
     }
     HeightField part{width, count, 0, 0, heights.Rows(first, count)};
     files.Write(MapPictures(rows, part, occlusions.Rows(first, count)), threads);
@@ -205,9 +193,8 @@ Json ExportMaterial(const ExportTask& task, const ExportOptions& options,
   material.height_range_mm = HeightRange(relief);
   OcclusionOptions occlusion;
   occlusion.reach_mm = options.occlusion_reach * shorter_mm;
-  const Json files =
-      WriteMapsByRows(material, relief, AmbientOcclusion(relief, occlusion, threads), options,
-                      task.rows_at_once, threads, &source, &metal, stage);
+  const Json files = WriteMapsByRows(material, relief, AmbientOcclusion(relief, occlusion, threads),
+                                     options, task.rows_at_once, threads, &source, &metal, stage);
   const double error = MetalRoughnessError(material.metal, material.maps, material.diffuse_weight);
   return {{"convention", ToString(convention)},
           {"name", material.name},

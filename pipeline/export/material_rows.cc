@@ -20,9 +20,8 @@ SvbrdfMaps MaterialRows::Rows(int first_row, int rows) {
   for (int plane = 0; plane < kSvbrdfPlanes; ++plane) {
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < width(); ++column) {
-        maps.at(plane, row, column) =
-            from.at(plane, inner(first_row + row) - first,
-                    std::clamp(column, inset, width() - 1 - inset));
+        maps.at(plane, row, column) = from.at(plane, inner(first_row + row) - first,
+                                              std::clamp(column, inset, width() - 1 - inset));
       }
     }
   }
