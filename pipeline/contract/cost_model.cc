@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 constexpr double kMega = 1e6;
 
 // Stage fit with the method "start": no fitting.
-constexpr StageCost kStart = {0.6, 0.3, 0, 2, 0.2, 330, 0, 146, 17};
+constexpr StageCost kStart = {0.6, 0.3, 0, 2, 0.2, 330, 0, 146, 17, 0};
 
 const StageCost* CostOf(const std::string& stage) {
   if (stage == "start") return &kStart;
@@ -66,10 +66,11 @@ double PredictedSeconds(const std::string& stage, const CaptureSize& size) {
 double PredictedMemory_bytes(const std::string& stage, const CaptureSize& size, int threads) {
   const StageCost* cost = CostOf(stage);
   if (cost == nullptr) return 0;
+  const double texels = cost->texel_bytes * size.texels +
+                        cost->photograph_texel_bytes * size.photographs * size.texels;
   return kMega * cost->start_MB +
          cost->decoded_px_bytes * std::min(threads, size.photographs) * size.photograph_px +
-         cost->texel_bytes * size.texels +
-         cost->photograph_texel_bytes * size.photographs * size.texels;
+         (cost->most_MB > 0 ? std::min(texels, kMega * cost->most_MB) : texels);
 }
 
 void RequireMemoryForStage(const std::string& stage, const Capture& capture, int threads) {

@@ -104,8 +104,8 @@ void PngWriter::Write(const Image& rows) {
   const PngSamples samples(rows, output_->bits);
   const int first = output_->next_row;
   output_->next_row += rows.height;
-  Check(output_->image->write_scanlines(first, output_->next_row, 0, samples.type(),
-                                        samples.data()));
+  Check(
+      output_->image->write_scanlines(first, output_->next_row, 0, samples.type(), samples.data()));
 }
 
 void PngWriter::Close() {

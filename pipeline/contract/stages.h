@@ -21,7 +21,8 @@ struct StageCost {
   double start_MB;
   double decoded_px_bytes;        // per pixel of the photographs that are decoded at once
   double texel_bytes;             // per texel
-  double photograph_texel_bytes;  // per texel of every photograph
+  double photograph_texel_bytes;  // per texel of every photograph …
+  double most_MB;                 // … of both at most, where texels pass by rows; 0: no bound
 };
 
 // A stage's program is glint-NAME, its folder CAPTURE/glint/NAME, its options are the table [NAME]

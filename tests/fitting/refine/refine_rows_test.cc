@@ -53,8 +53,7 @@ class RefineRowsTest : public ::testing::Test {
   }
 
   RefineResult ByRows(int at_once, int threads) const {
-    const SampleEstimate estimate =
-        EstimateSample(scene_.Problem(), start_, options_, threads);
+    const SampleEstimate estimate = EstimateSample(scene_.Problem(), start_, options_, threads);
     RowRefiner refiner(estimate, options_, threads, {});
     RefineResult result;
     result.maps = SvbrdfMaps(kSize, kSize);
