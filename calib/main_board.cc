@@ -96,20 +96,20 @@ void AddOptions(OptionSet* set, BoardOptions* options) {
                  "charuco: a frame with a window for the sample; markers: single AprilTags");
   set->Add("paper", &sheet.paper,
            "A0 to A6, Letter, Legal, Tabloid, or WIDTHxHEIGHT in millimetres");
-  set->Add("landscape", &sheet.landscape, "the paper's longer side lies across");
+  set->Add("landscape", &sheet.landscape, "the paper's longer side is horizontal");
   set->AddRange("margin-mm", &sheet.margin_mm, 0, 200, "white at the paper's edges");
   set->Add("squares", &sheet.squares,
            "COLUMNS,ROWS (markers: ACROSS,DOWN the frame); left out: as many as fit");
   set->AddRange("square-mm", &sheet.square_mm, 0, 1000,
-                "side of a square, or of a marker of kind markers; 0: by the paper");
+                "side of a square, or of a marker of kind markers; 0: chosen to fit the paper");
   set->AddRange("marker-mm", &sheet.marker_mm, 0, 1000,
-                "side of a ChArUco marker; 0: by the square");
+                "side of a ChArUco marker; 0: derived from the square");
   set->Add("dictionary", &sheet.dictionary,
-           "OpenCV's name, or AprilTag's such as tag36h11 (the default of kind markers)");
+           "OpenCV's name, or AprilTag's, such as tag36h11, which kind markers has by default");
   set->Add("legacy-layout", &sheet.legacy_layout, "ChArUco as OpenCV before 4.6 lays it out");
   set->Add("window", &sheet.window,
            "FIRST_COLUMN,FIRST_ROW,COLUMNS,ROWS of squares left out for the sample");
-  set->Add("sample-mm", &sheet.sample_mm, "WIDTH,HEIGHT of the sample that the window must take");
+  set->Add("sample-mm", &sheet.sample_mm, "WIDTH,HEIGHT of the sample that the window must hold");
   set->Add("full-board", &sheet.full_board, "no window");
   set->Add("patches", &sheet.patches,
            "reflectances of grey patches above the board, such as 0.85,0.6,0.36,0.18,0.09,0.04");

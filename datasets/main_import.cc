@@ -83,11 +83,11 @@ int main(int argc, char** argv) {
       "source", &source,
       "folder or file of the set: views.json, a MaterialGAN folder, or the paper's .wlv file",
       true);
-  set.AddPositional("capture", &folder, "the capture's folder to write", true);
+  set.AddPositional("capture", &folder, "folder to write the capture to", true);
   glint::AddImportOptions(&set, &options);
   const glint::ProgramInfo info{
       "glint-import",
-      "Makes a capture of views that another program rectified; glint run goes on from fit.\n"
+      "Makes a capture from views that another program rectified; glint run continues with fit.\n"
       "docs/views.md describes the layouts.",
       GLINT_VERSION,
       "Examples:\n  glint import materialgan/cards-blue cards --size 512\n"

@@ -27,7 +27,7 @@ void AddOptions(glint::OptionSet* options, RunArguments* o) {
                      "latent, then per texel");
   options->Add("quick", &o->quick,
                "a first look in seconds, while the sample still lies on the table: the same as "
-               "--method start; a run without it then fits");
+               "--method start; run again without it to fit the maps");
   options->Add("exclude", &o->run.choices.exclude,
                "photographs (file or view names) held out from fit and refine");
   options->Add("views", &o->run.choices.views, "use only these photographs in fit and refine");
@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
   return glint::RunProgram(
       argc, argv,
       {"glint-run",
-       "Runs every stage of a capture that is out of date: calib, rectify, "
+       "Runs every out-of-date stage of a capture: calib, rectify, "
        "fit, refine, tile (with a "
        "section [tile] in capture.toml), export, report.",
        GLINT_VERSION,

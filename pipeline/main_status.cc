@@ -10,8 +10,8 @@ int main(int argc, char** argv) {
   return glint::RunProgram(
       argc, argv,
       {"glint-status",
-       "Says of each stage whether its result is up to date for the choices of the last glint run, "
-       "why not, how large it is, and its main figures.",
+       "Shows for each stage whether its result is up to date with the options of the last glint "
+       "run (and if not, why), its size and its main figures.",
        GLINT_VERSION, "", false},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         const glint::Capture capture = glint::ReadCapture(folder);

@@ -58,7 +58,8 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
                  "also write the calibration for another program: colmap, to glint/colmap",
                  Invalidates::kNo);
   set->AddChoice("model", &options->model, ModelChoices(),
-                 "COLMAP's camera model; auto: the simplest that predicts held-out photos (boards "
+                 "COLMAP's camera model; auto: the simplest that predicts held-out photos as well "
+                 "as the best (boards "
                  "only; with --poses colmap, OPENCV)");
   set->AddChoice(
       "cameras", &options->cameras, {"auto", "one", "each"},
@@ -68,32 +69,35 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   set->Add("fix-intrinsics", &options->fix_intrinsics,
            "manifest of another calibration whose intrinsics are taken as they are",
            Invalidates::kNo);  // its content is an input, and the place of the file tells nothing
-  set->Add("library", &options->library,
-           "folder of calib manifests: a camera found there by EXIF keeps its intrinsics",
-           Invalidates::kNo);  // likewise
+  set->Add(
+      "library", &options->library,
+      "folder of calib manifests: a camera whose EXIF matches one of them takes its intrinsics",
+      Invalidates::kNo);  // likewise
   set->AddChoice("board-shape", &options->board_shape, {"flat", "bent"},
                  "bent: how far the board rises in its middle is solved for");
   set->AddRange("reject-sigmas", &options->reject_sigmas, 2, 1000,
                 "corners farther off than this many robust standard deviations are rejected");
   set->AddRange("min-reject-px", &options->min_reject_px, 0, 1000,
-                "corners nearer than this are never rejected");
+                "corners off by less than this are never rejected");
   set->AddRange("min-corners", &options->min_corners, 4, 10000, "a photo with fewer is rejected");
   set->AddRange("detect-px", &options->detect_px, 200, 20000,
                 "boards are looked for in a copy whose longer side is at most this; their corners "
                 "are placed in the photo itself");
-  set->AddChoice("light", &options->light, {"board", "camera"},
-                 "board: flash position, lens fall-off, exposures and room light from the board's "
-                 "white paper; camera: the light at the lens or at [light] offset_mm, exposures by "
-                 "EXIF");
+  set->AddChoice(
+      "light", &options->light, {"board", "camera"},
+      "board: flash position, lens fall-off, exposures and room light from the board's "
+      "white paper; camera: the light at the lens or at [light] offset_mm, exposures from "
+      "EXIF");
   set->AddRange("plane-tolerance", &options->plane_tolerance, 1e-5, 0.2,
                 "--poses colmap: points farther from the sample's plane than this fraction of the "
                 "cameras' distance are not part of it");
   set->AddRange("feature-px", &options->feature_px, 200, 20000,
                 "--poses colmap: features are looked for in a copy whose longer side is at most "
                 "this");
-  set->AddChoice("triage", &options->triage, {"warn", "drop", "off"},
-                 "blurred, dark, overexposed and doubled photographs: warn names them, drop leaves "
-                 "them out too, off does not look");
+  set->AddChoice(
+      "triage", &options->triage, {"warn", "drop", "off"},
+      "blurred, dark, overexposed and duplicate photographs; warn: name them; drop: leave "
+      "them out too; off: do not check");
   set->AddRange("paper-reflectance", &options->paper_reflectance, 0.05, 1,
                 "of the board's white, from which the light's power is estimated");
 }

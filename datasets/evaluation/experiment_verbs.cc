@@ -17,7 +17,7 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
                          false);
   options->Add("counts", counts, "numbers of views");
   options->Add("methods", &experiment->methods, "of start, classic, latent, refined, uncorrected");
-  options->Add("work", &experiment->work, "folder that keeps views and results (needed)");
+  options->Add("work", &experiment->work, "folder that keeps views and results (required)");
   options->AddRange("size", &experiment->size, 8, 4096, "texels a side");
   ViewSetOptions* views = &experiment->views;
   options->AddChoice("rule", &views->rule, {"dir", "photo", "flash"}, "as in glint-synth views");
@@ -47,7 +47,7 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
     options->Add("starts", &experiment->starts, "of random, heuristic, network, truth, rough");
   }
   if (paper.name == "ablation") {
-    options->Add("weights", &experiment->weights, "NAME=FILE of each auto-encoder (needed)");
+    options->Add("weights", &experiment->weights, "NAME=FILE of each auto-encoder (required)");
   }
 }
 

@@ -48,7 +48,7 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
   OptionSet options;
   options.AddPositional("sets", &sets,
                         "folders that glint-import reads, or captures with rectified views", true);
-  options.Add("work", &experiment.work, "folder that keeps captures and results (needed)");
+  options.Add("work", &experiment.work, "folder that keeps captures and results (required)");
   options.Add("pairs", &pairs,
               "photographs to hold out, by number from 0 on or by name: groups apart by ';', as in "
               "'2,6;7,8'");

@@ -11,7 +11,7 @@ int RunLight(int argc, char** argv, const ProgramInfo& info) {
   experiment.capture = PhoneCapture();
   CapturePlanOptions& plan = experiment.capture.plan;
   OptionSet options;
-  options.Add("work", &experiment.work, "folder that keeps captures and results (needed)");
+  options.Add("work", &experiment.work, "folder that keeps captures and results (required)");
   options.AddRange("seeds", &experiment.seeds, 1, 10000, "captures");
   options.AddRange("first-seed", &experiment.first_seed, 0, 1e9, "the first one's seed");
   options.AddRange("map-seeds", &experiment.map_seeds, 0, 10000,

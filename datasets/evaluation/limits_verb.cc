@@ -185,7 +185,7 @@ int RunLimits(int argc, char** argv, const ProgramInfo& info) {
   options.AddPositional("materials", &limits.materials, "as in table1", false);
   options.Add("weights", &limits.weights,
               "NAME=FILE of each auto-encoder (default: the shipped one)");
-  options.Add("work", &limits.work, "folder for the results (needed)");
+  options.Add("work", &limits.work, "folder for the results (required)");
   options.AddRange("size", &limits.size, 8, 4096, "texels a side");
   options.AddRange("iterations", &limits.iterations, 0, 1e6,
                    "most steps that fit a code to the maps; 0: only encode and decode");

@@ -1,4 +1,6 @@
-// The loss of maps against a set of photographs, LDR and HDR mixed, with a common light scale.
+// The loss of maps against a set of photographs, LDR and HDR mixed, with a common light scale. A
+// further term of maps or renderings belongs here, one of the latent code in CodeParameters::Prior
+// (fit.cc).
 #pragma once
 
 #include <vector>

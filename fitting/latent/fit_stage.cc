@@ -172,34 +172,34 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
   set->AddChoice(
       "method", &options->method, {"latent", "classic", "start"},
       "latent: in the learned space; classic: the maps themselves, texel by texel; start: "
-      "no fitting, the start as it is");
+      "the initial maps, unfitted");
   set->AddChoice(
       "bootstrap", &options->bootstrap, {"estimator", "heuristic"},
-      "what the start is estimated by: a trained network from the photograph nearest the "
-      "top, or lobes fitted to the whole sample");
+      "how the initial maps are estimated; estimator: a trained network, from the photograph "
+      "nearest to vertical; heuristic: lobes fitted to the whole sample");
   set->AddChoice("metals", &options->metals, {"possible", "rare"},
                  "how the estimator interprets dark, glossy areas; possible: perhaps metal; rare: "
                  "glass, lacquer, print and the like (for samples without bare metal)");
   set->AddRange("iterations", &options->iterations, 0, 1e6,
-                "most steps at the first, coarse level; 0: the method's own");
+                "maximum number of steps at the first, coarse level; 0: the method's default");
   set->AddRange("fine-iterations", &options->fine_iterations, 0, 1e6,
-                "most steps at each later level; 0: the method's own");
+                "maximum number of steps at each later level; 0: the method's default");
   set->AddRange(
       "finest-size", &options->finest_size, 0, 1 << 20,
       "latent: texels along the longer side of the finest level; finer detail is left to "
       "refinement, which recovers it equally well from any start; 0: the full resolution");
   set->AddRange("learning-rate", &options->learning_rate, 0, 1,
-                "Adam's rate at the start of a level; 0: the method's own");
+                "Adam's rate at the start of a level; 0: the method's default");
   set->AddRange(
       "tune-iterations", &options->tune_iterations, -1, 1e6,
       "latent: steps of fine-tuning the decoder on this sample, after the latent code; below 0: "
-      "the method's own");
-  set->AddRange(
-      "tune-rate", &options->tune_rate, 0, 1,
-      "latent: rate of the decoder's weights, relative to the latent code's; 0: the method's own");
-  set->AddRange(
-      "code-prior", &options->code_prior, -1, 1e6,
-      "latent: weight of the penalty on the latent code's magnitude; below 0: the method's own");
+      "the method's default");
+  set->AddRange("tune-rate", &options->tune_rate, 0, 1,
+                "latent: rate of the decoder's weights, relative to the latent code's; 0: the "
+                "method's default");
+  set->AddRange("code-prior", &options->code_prior, -1, 1e6,
+                "latent: weight of the penalty on the latent code's magnitude; below 0: the "
+                "method's default");
   set->Add("start", &options->start,
            "maps to start from, an svbrdf.exr (default: estimated from the photographs)");
   set->Add("weights", &options->weights, "the auto-encoder's weights (default: those shipped)");

@@ -220,21 +220,23 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStageOptions& opti
 void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
   RefineOptions* refine = &options->refine;
   set->AddRange("iterations", &refine->iterations, 1, 1000,
-                "most Levenberg-Marquardt steps of one solve");
+                "maximum number of Levenberg-Marquardt steps per solve");
   set->AddRange("starts", &refine->starts, 1, 8,
                 "solves per texel: one from the start, the others from different roughnesses");
   set->AddRange("neighbour-passes", &refine->neighbour_passes, 0, 16,
-                "how often a texel tries its neighbours' solutions");
-  set->AddRange("substances", &refine->substances, 1, kMostSubstances,
-                "most substances whose texels share roughness and specular albedo");
+                "how many times a texel tries its neighbours' solutions");
+  set->AddRange(
+      "substances", &refine->substances, 1, kMostSubstances,
+      "maximum number of substances; texels of one substance share roughness and specular albedo");
   set->AddRange("estimation-rounds", &refine->estimation_rounds, 0, 100,
                 "steps that estimate variances and substances, on sampled texels");
-  set->AddRange("estimation-size", &refine->estimation_size, 16, 1 << 20,
-                "texels along the longer side among which those are sampled; a larger sample is "
-                "represented by evenly spaced ones");
+  set->AddRange(
+      "estimation-size", &refine->estimation_size, 16, 1 << 20,
+      "longer side, in texels, of the grid from which texels are drawn for the estimation; "
+      "larger maps are thinned evenly to this size");
   set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the priors' weight; 0: none");
   set->AddRange("robust-scale", &refine->robust_scale, 1e-3, 100,
-                "residuals (logarithms) beyond it count linearly");
+                "residuals (logarithms) beyond this count linearly");
   set->AddChoice(
       "correct-views", &options->correction.when, {"auto", "always", "never"},
       "estimate errors of lights, registration and ambient light from the photographs; "
@@ -257,12 +259,11 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "the tangent of its direction, if the light was not calibrated; one slope is "
                 "estimated for all photographs; 0: none");
   set->AddRange("distance-power", &options->distance_power, 0, 10,
-                "expected standard deviation of the exponent p, if the light was not calibrated: "
-                "automatic exposure or uncertain distances scale its intensity by distance^p; "
-                "0: none");
+                "if the light was not calibrated, its intensity may vary as distance^p (automatic "
+                "exposure, uncertain distances): expected standard deviation of p; 0: none");
   set->AddRange("rows-at-once", &options->rows_at_once, 0, 1 << 20,
-                "rows of texels that are in memory together; the result does not depend on it; 0: "
-                "as memory allows",
+                "rows of texels held in memory at once; the result does not depend on it; 0: as "
+                "memory allows",
                 Invalidates::kNo);
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");

@@ -35,7 +35,7 @@ std::string Wrapped(const std::string& text, const std::string& indent, size_t w
 std::string HelpFormatter::make_option(const CLI::Option* option, bool positional) const {
   std::string head = "  " + NamesOf(*option, positional);
   if (!option->get_option_text().empty()) head += " " + option->get_option_text();
-  if (option->get_required()) head += " (needed)";
+  if (option->get_required()) head += " (required)";
   return head + "\n" + Wrapped(option->get_description(), kIndent, kColumns);
 }
 

@@ -1,4 +1,5 @@
-// Which stages a capture goes through, what each reads, and with which options it runs.
+// Which stages a capture goes through, what each reads, and with which options it runs. To add a
+// stage: its name and cost in pipeline/contract/stages.cc, its step here, its program.
 #pragma once
 
 #include <filesystem>

@@ -77,16 +77,17 @@ MapPicture PackedPicture(const std::string& name, int width, int height, const R
 }  // namespace
 
 void AddExportOptions(OptionSet* set, ExportOptions* options) {
-  set->Add("name", &options->name, "what the files' names begin with");
+  set->Add("name", &options->name, "prefix of the file names");
   set->AddChoice("from", &options->from, {"refine", "fit", "tile"},
                  "stage whose maps are exported");
-  set->AddChoice("bits", &options->bits, {"8", "16", "both", "exr"},
-                 "bits per channel of the PNG files (the height always has 16); exr: 8, and "
-                 "linear float32 EXR files in the folder exr/");
+  set->AddChoice(
+      "bits", &options->bits, {"8", "16", "both", "exr"},
+      "bits per channel of the PNG files (the height always has 16); both: 8 and 16; exr: 8, and "
+      "linear float32 EXR files in the folder exr/");
   set->AddRange(
       "border", &options->border, 0, kMostBorderRings,
-      "outermost rings of texels, which may include the sample's surroundings, to replace by the "
-      "nearest inner texels; 0: none; ignored for tiles");
+      "outermost rings of texels, which may include the sample's surroundings, to replace with "
+      "the nearest inner texels; 0: none; ignored for tiles");
   set->AddRange(
       "height-longest", &options->height_longest, 0, 100,
       "longest wavelength kept in the height map, as a fraction of the sample's shorter side; "
@@ -94,12 +95,13 @@ void AddExportOptions(OptionSet* set, ExportOptions* options) {
   set->AddRange("occlusion-reach", &options->occlusion_reach, 0.001, 1,
                 "search radius of ambient occlusion, as a fraction of the sample's shorter side");
   set->AddRange("material-size", &options->material_size, 16, 16384,
-                "largest side, in texels, at which height and ambient occlusion are computed and "
-                "pictures are put into the .glb; larger maps are averaged for that");
+                "largest side, in texels, of the maps from which height, ambient occlusion and the "
+                "pictures in the .glb are made; larger ones are reduced by averaging");
   set->AddRange("metal-radius", &options->metal.radius, 0, 64,
                 "radius, in texels, of like-coloured neighbours that decide metalness together");
   set->AddRange("metal-colour-width", &options->metal.colour_width, 0.001, 10,
-                "by how much colours (square roots of albedos) may differ for that");
+                "largest difference in colour (square root of albedo) between texels that decide "
+                "metalness together");
   set->AddRange("metal-blend-cost", &options->metal.blend_cost, 0, 1,
                 "penalty on intermediate metalness, largest at 1/2, in units of log radiance");
   set->Add("formats", &options->formats,

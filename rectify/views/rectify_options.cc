@@ -12,7 +12,7 @@ constexpr int kMaxResolution_px = 16384;
 
 void AddRectifyOptions(OptionSet* set, RectifyOptions* options) {
   set->AddRange("resolution", &options->resolution, 0, kMaxResolution_px,
-                "width of the views in texels; 0: as [sample] resolution_px says");
+                "width of the views in texels; 0: use [sample] resolution_px");
   set->AddChoice(
       "filter", &options->filter, {"sharp", "soft", "lanczos"},
       "resampling kernel: sharp, soft (least ringing) or lanczos (best low-pass, slower)");
@@ -22,13 +22,14 @@ void AddRectifyOptions(OptionSet* set, RectifyOptions* options) {
       "clipped; above 1: never");
   set->AddRange("float-saturation-level", &options->float_saturation_level, 0, 1e9,
                 "the same for float photos; 0: they never clip");
-  set->AddChoice("exposure", &options->exposure, {"calib", "exif", "equal"},
-                 "relative exposure of the photos: as calib found it (where it did not, as exif), "
-                 "from EXIF where all have it, or all equal");
+  set->AddChoice(
+      "exposure", &options->exposure, {"calib", "exif", "equal"},
+      "relative exposure of the photos; calib: as calib estimated it, otherwise as exif; "
+      "exif: from EXIF if all photos have it; equal: the same for all");
   set->AddRange("frame-height-mm", &options->frame_height_mm, 0, 100,
-                "thickness of the board round the sample: what it shades or hides is masked");
+                "thickness of the board round the sample: what it shadows or hides is masked");
   set->AddRange("frame-margin-mm", &options->frame_margin_mm, 0, 1000,
-                "width of a rim beside the board's window that is masked");
+                "width of the strip along the inside of the window's edge that is masked");
 }
 
 RectifyTask ResolveTask(const Capture& capture, const RectifyOptions& options) {

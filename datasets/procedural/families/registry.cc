@@ -3,6 +3,7 @@
 namespace glint::procedural {
 namespace {
 
+// To add a family: its function in families.h and its line here.
 // name, parameters, slope from, to, share, directional
 constexpr Family kFamilies[] = {
     {"stone", DrawStone, 0.04f, 0.9f, 1.2f, true},

@@ -25,8 +25,8 @@ struct MeasuredRun {
 
 constexpr double kMega = 1e6;
 
-// Two cores of a Xeon with AVX-512 and without bfloat16; `glint run`, run.json of each stage. Memory
-// as it is since stages work by rows.
+// Two cores of a Xeon with AVX-512 and without bfloat16; `glint run`, run.json of each stage.
+// Memory as it is since stages work by rows.
 std::vector<MeasuredRun> Runs() {
   const auto size = [](int photographs, double megapixels, int side) {
     return CaptureSize{photographs, kMega * megapixels, 1.0 * side * side, false};
