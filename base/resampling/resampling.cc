@@ -118,4 +118,36 @@ std::vector<float> CutRows(std::span<const float> planes, int width, int height,
   return cut;
 }
 
+void PutRows(std::span<const float> rows, int width, int height, int first,
+             std::span<float> planes) {
+  const size_t row = static_cast<size_t>(width), plane = row * static_cast<size_t>(height);
+  const size_t count = rows.size() / (planes.size() / plane);
+  size_t to = static_cast<size_t>(first) * row;
+  for (size_t from = 0; from < rows.size(); from += count, to += plane) {
+    const auto block = rows.subspan(from, count);
+    std::copy(block.begin(), block.end(), planes.begin() + static_cast<std::ptrdiff_t>(to));
+  }
+}
+
+std::vector<float> PickEvery(std::span<const float> planes, int width, int height, int stride) {
+  const size_t row = static_cast<size_t>(width), plane = row * static_cast<size_t>(height);
+  const auto step = static_cast<size_t>(stride);
+  std::vector<float> picked;
+  for (size_t block = 0; block < planes.size(); block += plane) {
+    for (size_t r = step / 2; r < static_cast<size_t>(height); r += step) {
+      for (size_t c = step / 2; c < row; c += step) picked.push_back(planes[block + r * row + c]);
+    }
+  }
+  return picked;
+}
+
+std::pair<int, int> SizeAtMost(int width, int height, int most) {
+  const int side = std::max(width, height);
+  if (side <= most) return {width, height};
+  const auto scaled = [&](int length) {
+    return std::max(1, static_cast<int>(std::lround(static_cast<double>(length) * most / side)));
+  };
+  return {scaled(width), scaled(height)};
+}
+
 }  // namespace glint

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -48,5 +49,14 @@ std::vector<float> ResamplePlanes(std::span<const float> planes, int width, int 
 // Rows first … first + rows − 1 of blocks of width × height samples, as blocks of width × rows.
 std::vector<float> CutRows(std::span<const float> planes, int width, int height, int first,
                            int rows);
+// The inverse: `rows` into blocks of width × height samples, from row `first` on.
+void PutRows(std::span<const float> rows, int width, int height, int first,
+             std::span<float> planes);
+
+// The sample in the middle of every stride × stride (the last ones maybe cut off before it).
+std::vector<float> PickEvery(std::span<const float> planes, int width, int height, int stride);
+
+// Width and height with no side above `most`, in the same proportion; at least 1.
+std::pair<int, int> SizeAtMost(int width, int height, int most);
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/resampling/resampling.h"
 #include "fitting/photographs/photographs.h"
 #include "fitting/photographs/picture_shift.h"
 #include "fitting/reflectance/log_radiance.h"

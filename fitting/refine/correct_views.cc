@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/resampling/resampling.h"
 #include "fitting/refine/residual_model.h"
 #include "pipeline/contract/svbrdf_file.h"
 
@@ -32,13 +33,7 @@ Finding Find(const PhotographSet& set, const SvbrdfMaps& start, const Correction
 }  // namespace
 
 std::pair<int, int> CorrectionOptions::WorkingSize(const SamplePlane& plane) const {
-  const int longer = std::max(plane.width, plane.height);
-  if (longer <= working_size) return {plane.width, plane.height};
-  const double scale = static_cast<double>(working_size) / longer;
-  const auto scaled = [&](int texels) {
-    return std::max(1, static_cast<int>(std::lround(texels * scale)));
-  };
-  return {scaled(plane.width), scaled(plane.height)};
+  return SizeAtMost(plane.width, plane.height, working_size);
 }
 
 bool CorrectionOptions::Wanted(double distinct_views_of_set) const {

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/resampling/resampling.h"
 #include "fitting/refine/estimate_sample.h"
 #include "fitting/refine/refine_rows.h"
 
@@ -31,45 +32,24 @@ void CheckProblem(const RefineProblem& problem, const SvbrdfMaps& start) {
 
 // Every stride-th texel of a problem, and what its spans show.
 struct PickedProblem {
-  PickedProblem(const RefineProblem& from, const SvbrdfMaps& from_start, int stride);
-  RefineProblem problem;
-  SvbrdfMaps start;
-
- private:
-  std::vector<float> Pick(std::span<const float> planes) const;
-  SamplePlane whole_;
-  std::vector<std::vector<float>> values_;
-};
-
-PickedProblem::PickedProblem(const RefineProblem& from, const SvbrdfMaps& from_start, int stride)
-    : problem(from), whole_(from.plane) {
-  problem.plane = from.plane.Every(stride);
-  start = SvbrdfMaps(problem.plane.width, problem.plane.height);
-  start.planes = Pick(from_start.planes);
-  values_.reserve(2 * from.views.size());
-  for (RefineView& view : problem.views) {
-    view.rgb = values_.emplace_back(Pick(view.rgb));
-    view.mask = values_.emplace_back(Pick(view.mask));
-  }
-}
-
-std::vector<float> PickedProblem::Pick(std::span<const float> planes) const {
-  const SamplePlane& plane = problem.plane;
-  const size_t texels = static_cast<size_t>(whole_.width) * static_cast<size_t>(whole_.height);
-  std::vector<float> picked;
-  for (size_t first = 0; first < planes.size(); first += texels) {
-    for (int row = 0; row < plane.height; ++row) {
-      for (int column = 0; column < plane.width; ++column) {
-        const auto from_row = static_cast<size_t>(plane.whole.first_row + row * plane.whole.stride);
-        const auto from_column =
-            static_cast<size_t>(plane.whole.first_column + column * plane.whole.stride);
-        picked.push_back(
-            planes[first + from_row * static_cast<size_t>(whole_.width) + from_column]);
-      }
+  PickedProblem(const RefineProblem& from, const SvbrdfMaps& from_start, int stride)
+      : problem(from) {
+    const auto pick = [&](std::span<const float> planes) {
+      return PickEvery(planes, from.plane.width, from.plane.height, stride);
+    };
+    problem.plane = from.plane.Every(stride);
+    start = SvbrdfMaps(problem.plane.width, problem.plane.height);
+    start.planes = pick(from_start.planes);
+    values.reserve(2 * from.views.size());
+    for (RefineView& view : problem.views) {
+      view.rgb = values.emplace_back(pick(view.rgb));
+      view.mask = values.emplace_back(pick(view.mask));
     }
   }
-  return picked;
-}
+  RefineProblem problem;
+  SvbrdfMaps start;
+  std::vector<std::vector<float>> values;
+};
 
 SampleEstimate EstimateFrom(const RefineProblem& problem, const SvbrdfMaps& start,
                             const RefineOptions& options, int threads) {

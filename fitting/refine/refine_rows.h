@@ -1,6 +1,6 @@
-// Refinement by rows of the sample, so that a large one is never whole in memory: texels are solved as
-// if all of them were there, and rows may be cut anywhere. The loop over texels, in which a version for
-// another processor would take rows at a time, is PartRefiner's in the .cc file.
+// Refinement by rows of the sample, so that a large one is never whole in memory: texels are solved
+// as if all of them were there, and rows may be cut anywhere. The loop over texels, in which a
+// version for another processor would take rows at a time, is PartRefiner's in the .cc file.
 #pragma once
 
 #include <cstdint>

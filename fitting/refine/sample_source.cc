@@ -18,26 +18,6 @@ RectifiedSet WithWeightOf(RectifiedSet set, const std::filesystem::path& maps_fi
   return set;
 }
 
-// Planes of width × height picked of planes that are `from_width` wide: every stride-th column of
-// every stride-th row, from the middle of a stride on.
-struct Picking {
-  size_t from_width, from_texels, width, texels;
-  int stride;
-
-  void Rows(const float* from, int rows, size_t planes, size_t first_row, float* to) const {
-    const auto middle = static_cast<size_t>(stride / 2), step = static_cast<size_t>(stride);
-    for (size_t p = 0; p < planes; ++p) {
-      size_t row = first_row;
-      for (size_t r = middle; r < static_cast<size_t>(rows); r += step, ++row) {
-        for (size_t column = 0; column < width; ++column) {
-          to[p * texels + row * width + column] =
-              from[p * from_texels + r * from_width + middle + column * step];
-        }
-      }
-    }
-  }
-};
-
 }  // namespace
 
 SampleSource::SampleSource(const RectifiedSet& set, const std::vector<RectifiedView>& views,
@@ -70,32 +50,28 @@ SampleSource::Part SampleSource::Rows(int first_row, int rows, int threads) {
 
 SampleSource::Part SampleSource::Every(int stride, int threads) {
   if (stride == 1) return Rows(0, plane().height, threads);
-  Part part;
   const SamplePlane picked = plane().Every(stride);
-  const auto width = static_cast<size_t>(picked.width);
-  const size_t texels = width * static_cast<size_t>(picked.height);
-  part.start = SvbrdfMaps(picked.width, picked.height);
+  Part part{Views(), SvbrdfMaps(picked.width, picked.height)};
+  part.photographs.plane = picked;
+  for (Photograph& p : part.photographs.photographs) {
+    p.rgb.assign(3 * part.start.texels(), 0.0f);
+    p.mask.assign(part.start.texels(), 0.0f);
+  }
   const int at_once = std::max(1, kRowsAtOnce / stride) * stride;
   for (int first = 0; first < plane().height; first += at_once) {
     const int rows = std::min(at_once, plane().height - first);
-    const Part from = Rows(first, rows, threads);
-    const Picking picking{static_cast<size_t>(plane().width), from.start.texels(), width, texels,
-                          stride};
-    const auto row = static_cast<size_t>(first / stride);
-    if (first == 0) {
-      part.photographs = from.photographs;
-      part.photographs.plane = picked;
-      for (Photograph& p : part.photographs.photographs) {
-        p.rgb.assign(3 * texels, 0.0f);
-        p.mask.assign(texels, 0.0f);
-      }
-    }
-    picking.Rows(from.start.planes.data(), rows, kSvbrdfPlanes, row, part.start.planes.data());
+    Part from = Rows(first, rows, threads);
+    const auto take = [&](const std::vector<float>& planes, std::vector<float>* to) {
+      PutRows(PickEvery(planes, plane().width, rows, stride), picked.width, picked.height,
+              first / stride, *to);
+    };
+    take(from.start.planes, &part.start.planes);
+    part.photographs.room = from.photographs.room;
     for (size_t v = 0; v < from.photographs.photographs.size(); ++v) {
-      const Photograph& p = from.photographs.photographs[v];
-      Photograph& to = part.photographs.photographs[v];
-      picking.Rows(p.rgb.data(), rows, 3, row, to.rgb.data());
-      picking.Rows(p.mask.data(), rows, 1, row, to.mask.data());
+      Photograph &some = from.photographs.photographs[v], &to = part.photographs.photographs[v];
+      to.view = some.view;
+      take(some.rgb, &to.rgb);
+      take(some.mask, &to.mask);
     }
   }
   return part;

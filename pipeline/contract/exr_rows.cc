@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <stdexcept>
 
 #include "base/resampling/resampling.h"
@@ -88,23 +87,12 @@ Image ReadExrAveraged(const std::filesystem::path& file, const std::vector<std::
   const std::vector<Taps> down = AreaTaps(reader.height(), height);
   for (const TapGroup& group : GroupTaps(down, kMostInputRows)) {
     const Image rows = reader.Read(group.first_input, group.inputs);
-    const auto at = static_cast<std::ptrdiff_t>(group.first_output) * width;
     for (size_t c = 0; c < chosen.size(); ++c) {
-      const std::vector<float> part =
-          ResamplePlanes(rows.channel(chosen[c]), rows.width, rows.height, across, group.taps);
-      std::copy(part.begin(), part.end(), small.channel(static_cast<int>(c)).begin() + at);
+      PutRows(ResamplePlanes(rows.channel(chosen[c]), rows.width, rows.height, across, group.taps),
+              width, height, group.first_output, small.channel(static_cast<int>(c)));
     }
   }
   return small;
-}
-
-std::pair<int, int> SizeAtMost(int width, int height, int most) {
-  const int side = std::max(width, height);
-  if (side <= most) return {width, height};
-  const auto scaled = [&](int length) {
-    return std::max(1, static_cast<int>(std::lround(static_cast<double>(length) * most / side)));
-  };
-  return {scaled(width), scaled(height)};
 }
 
 struct ExrWriter::Output {

@@ -5,7 +5,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "pipeline/contract/image.h"
@@ -42,9 +41,6 @@ class ExrReader {
 // is missing.
 Image ReadExrAveraged(const std::filesystem::path& file, const std::vector<std::string>& channels,
                       int width, int height);
-
-// Width and height no longer than `most` along a side, in the same proportion.
-std::pair<int, int> SizeAtMost(int width, int height, int most);
 
 // float32 scan-line EXR as WriteExr makes it: the same bytes, whatever rows are written together.
 class ExrWriter {

@@ -126,10 +126,7 @@ SvbrdfMaps ResampledSvbrdf::Read(int first_row, int rows) {
     SvbrdfMaps part(width(), static_cast<int>(group.taps.size()));
     part.planes = ResamplePlanes(from.planes, from.width, from.height, across_, group.taps);
     Normalise(&part);
-    const auto at = static_cast<std::ptrdiff_t>(group.first_output) * width();
-    for (int p = 0; p < kSvbrdfPlanes; ++p) {
-      std::copy(part.plane(p).begin(), part.plane(p).end(), maps.plane(p).begin() + at);
-    }
+    PutRows(part.planes, width(), rows, group.first_output, maps.planes);
   }
   return maps;
 }

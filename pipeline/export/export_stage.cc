@@ -122,14 +122,8 @@ MetalRoughness MetalOf(const SvbrdfMaps& maps, MetalRows* rows) {
   for (int first = 0; first < maps.height; first += at_once) {
     const int count = std::min(at_once, maps.height - first);
     const MetalRoughness part = rows->Rows(part_of, maps.height, first, count).second;
-    const auto at = static_cast<std::ptrdiff_t>(first) * maps.width;
-    std::copy(part.metallic.begin(), part.metallic.end(), all.metallic.begin() + at);
-    for (size_t c = 0; c < 3; ++c) {
-      const auto from =
-          part.base_color.begin() + static_cast<std::ptrdiff_t>(c * part.metallic.size());
-      std::copy(from, from + static_cast<std::ptrdiff_t>(part.metallic.size()),
-                all.base_color.begin() + static_cast<std::ptrdiff_t>(c * maps.texels()) + at);
-    }
+    PutRows(part.metallic, maps.width, maps.height, first, all.metallic);
+    PutRows(part.base_color, maps.width, maps.height, first, all.base_color);
   }
   return all;
 }

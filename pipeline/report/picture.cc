@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "base/resampling/resampling.h"
 #include "pipeline/contract/errors.h"
 #include "pipeline/report/html.h"
 
@@ -46,13 +47,9 @@ std::string DataUri(const std::string& type, const std::string& bytes) {
 }  // namespace
 
 Image Shrunk(const Image& image, int largest_side) {
-  const int side = std::max(image.width, image.height);
-  if (side <= largest_side) return image;
-  const auto scaled = [&](int length) {
-    return std::max(
-        1, static_cast<int>(std::lround(static_cast<double>(length) * largest_side / side)));
-  };
-  Image small(scaled(image.width), scaled(image.height), image.channels);
+  const auto [width, height] = SizeAtMost(image.width, image.height, largest_side);
+  if (width == image.width && height == image.height) return image;
+  Image small(width, height, image.channels);
   for (int c = 0; c < static_cast<int>(image.channels.size()); ++c) {
     const cv::Mat from(image.height, image.width, CV_32F,
                        const_cast<float*>(image.channel(c).data()));

@@ -2,8 +2,8 @@
 
 #include <tuple>
 
+#include "base/resampling/resampling.h"
 #include "pipeline/contract/errors.h"
-#include "pipeline/contract/exr_rows.h"
 #include "pipeline/report/corrections_section.h"
 #include "pipeline/report/downloads_section.h"
 #include "pipeline/report/guidance_section.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/resampling/resampling.h"
 #include "fitting/render/renderer.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/report/picture.h"
@@ -32,10 +33,7 @@ float Median(std::vector<float> values) {
 }  // namespace
 
 std::string ThumbnailJpeg(const SvbrdfMaps& maps, const ReflectanceConvention& convention) {
-  const double scale =
-      std::min(1.0, static_cast<double>(kThumbnail_px) / std::max(maps.width, maps.height));
-  const int width = std::max(1, static_cast<int>(std::lround(scale * maps.width)));
-  const int height = std::max(1, static_cast<int>(std::lround(scale * maps.height)));
+  const auto [width, height] = SizeAtMost(maps.width, maps.height, kThumbnail_px);
   const SvbrdfMaps small = ResampleSvbrdf(maps, width, height);
   const SamplePlane plane{width, height, 1.0, static_cast<double>(height) / width,
                           TexelSampling::kPixelCentres};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/colour/srgb.h"
+#include "base/resampling/resampling.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/picture.h"
@@ -43,12 +44,8 @@ std::array<Image, 2> GeometryPictures(const SvbrdfMaps& maps) {
 
 // The maps as the viewer draws them: at most so large, averaged as maps are.
 SvbrdfMaps ShownMaps(const SvbrdfMaps& maps, int most_px) {
-  const int side = std::max(maps.width, maps.height);
-  if (side <= most_px) return maps;
-  const auto scaled = [&](int length) {
-    return std::max(1, static_cast<int>(std::lround(static_cast<double>(length) * most_px / side)));
-  };
-  return ResampleSvbrdf(maps, scaled(maps.width), scaled(maps.height));
+  const auto [width, height] = SizeAtMost(maps.width, maps.height, most_px);
+  return ResampleSvbrdf(maps, width, height);
 }
 
 Json MapsJson(const ReportInput& input, const SvbrdfMaps& maps, const ReportOptions& options) {

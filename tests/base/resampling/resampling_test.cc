@@ -85,5 +85,30 @@ TEST(GroupTaps, HoldsEveryOutputOnceAndItsInputs) {
   }
 }
 
+TEST(Rows, CutAndPutBackAreTheBlocksTheyWere) {
+  std::vector<float> planes(2 * 3 * 5);
+  for (size_t i = 0; i < planes.size(); ++i) planes[i] = static_cast<float>(i);
+  std::vector<float> copy(planes.size());
+  for (const auto& [first, rows] : {std::pair{3, 2}, std::pair{0, 1}, std::pair{1, 2}}) {
+    const std::vector<float> cut = CutRows(planes, 3, 5, first, rows);
+    EXPECT_EQ(cut[static_cast<size_t>(3 * rows)], static_cast<float>(15 + 3 * first));
+    PutRows(cut, 3, 5, first, copy);
+  }
+  EXPECT_EQ(copy, planes);
+}
+
+TEST(PickEvery, TakesTheMiddleOfEveryStrideOfEveryBlock) {
+  std::vector<float> planes(2 * 7 * 5);
+  for (size_t i = 0; i < planes.size(); ++i) planes[i] = static_cast<float>(i);
+  EXPECT_EQ(PickEvery(planes, 7, 5, 3), (std::vector<float>{8, 11, 29, 32, 43, 46, 64, 67}));
+  EXPECT_EQ(PickEvery(planes, 7, 5, 1), planes);
+}
+
+TEST(SizeAtMost, KeepsTheProportionAndAtLeastOne) {
+  EXPECT_EQ(SizeAtMost(300, 200, 300), std::pair(300, 200));
+  EXPECT_EQ(SizeAtMost(300, 200, 150), std::pair(150, 100));
+  EXPECT_EQ(SizeAtMost(1, 1000, 10), std::pair(1, 10));
+}
+
 }  // namespace
 }  // namespace glint
