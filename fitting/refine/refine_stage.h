@@ -13,7 +13,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 15;
+inline constexpr int kRefineVersion = 16;
 
 struct RefineStageOptions {
   RefineOptions refine;

@@ -1,5 +1,5 @@
 // The reflectance model: Cook–Torrance with GGX, as Gao et al. 2019 ("Deep Inverse Rendering", TOG
-// 38(4)) and its published code use it. Values only; brdf_derivatives.h has the derivatives.
+// 38(4)) and its published code use it: one texel in one view. The formulas are in brdf_core.h.
 //
 //   h = (l+v)/|l+v|, every dot product clamped to ≥ kDotClamp, α = r²
 //   D = (α / (NoH²(α²−1) + 1))² / π
@@ -23,7 +23,7 @@
 
 #include <cmath>
 
-#include "fitting/reflectance/brdf_constants.h"
+#include "fitting/reflectance/brdf_core.h"
 #include "fitting/reflectance/convention.h"
 #include "fitting/reflectance/view.h"
 
@@ -56,55 +56,39 @@ T Dot(const T a[3], const T b[3]) {
 }
 
 template <class T>
-T ClampBelow(const T& x, double bound) {
-  return x > T(bound) ? x : T(bound);
-}
-
-template <class T>
 T FresnelWeight(const T& v_dot_h) {
   using std::exp2;
-  return exp2(v_dot_h * (T(kFresnelSquare) * v_dot_h + T(kFresnelLinear)));
+  return exp2(FresnelExponent(v_dot_h));
 }
 
-// D's denominator: 1 at NoH = 0, α² at NoH = 1.
 template <class T>
-T GgxDenominator(const T normal[3], const T half[3], const T& alpha) {
-  const T n_dot_h = Dot(normal, half);
-  if (!(n_dot_h > T(kDotClamp))) {
-    return T(1) + T(kDotClamp * kDotClamp) * (alpha * alpha - T(1));
-  }
-  T sine_squared(0);
-  for (int i = 0; i < 3; ++i) {
-    const T across = normal[i] - n_dot_h * half[i];
-    sine_squared += across * across;
-  }
-  return ClampBelow(sine_squared + n_dot_h * n_dot_h * alpha * alpha, kDenominatorClamp);
+SpecularTerms<T> EvaluateSpecular(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry) {
+  Cosines<T> cosines{Dot(texel.normal, geometry.light), Dot(texel.normal, geometry.camera),
+                     Dot(texel.normal, geometry.half), T(0)};
+  T across[3];
+  for (int i = 0; i < 3; ++i) across[i] = texel.normal[i] - cosines.n_dot_h * geometry.half[i];
+  cosines.sine_squared = Dot(across, across);
+  return EvaluateSpecular(cosines, texel.roughness);
 }
 
 // D·G / (4·NoL·NoV)
 template <class T>
 T SpecularFactor(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry) {
-  const T alpha = texel.roughness * texel.roughness;
-  const T k = ClampBelow(alpha * T(0.5), kDenominatorClamp);
-  const T n_dot_l = ClampBelow(Dot(texel.normal, geometry.light), kDotClamp);
-  const T n_dot_v = ClampBelow(Dot(texel.normal, geometry.camera), kDotClamp);
-  const T ratio = alpha / GgxDenominator(texel.normal, geometry.half, alpha);
-  const T masking = (n_dot_l * (T(1) - k) + k) * (n_dot_v * (T(1) - k) + k);
-  return ratio * ratio * T(0.25 * kInversePi) / masking;
+  return EvaluateSpecular(texel, geometry).over_cosine;
 }
 
 // The diffuse lobe w·k_d/π of one channel.
 template <class T>
-T DiffuseLobe(const TexelSvbrdf<T>& texel, DiffuseWeight weight, int channel) {
-  const T lobe = texel.diffuse[channel] * T(kInversePi);
-  return weight == DiffuseWeight::kOne ? lobe : lobe * (T(1) - texel.specular[channel]);
+DiffuseTerms<T> DiffuseLobe(const TexelSvbrdf<T>& texel, DiffuseWeight weight, int channel) {
+  return EvaluateDiffuse(texel.diffuse[channel], texel.specular[channel],
+                         weight == DiffuseWeight::kOneMinusSpecular);
 }
 
 // What is reflected of the surroundings, one channel of the radiance.
 template <class T>
 T AmbientRadiance(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
                   DiffuseWeight weight, int channel) {
-  return geometry.ambient[channel] * DiffuseLobe(texel, weight, channel) +
+  return geometry.ambient[channel] * DiffuseLobe(texel, weight, channel).value +
          geometry.ambient_specular[channel] * texel.specular[channel] * T(kInversePi);
 }
 
@@ -114,8 +98,9 @@ void EvaluateBrdf(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
                   DiffuseWeight weight, T brdf[3]) {
   const T factor = SpecularFactor(texel, geometry);
   for (int c = 0; c < 3; ++c) {
-    const T fresnel = texel.specular[c] + (T(1) - texel.specular[c]) * geometry.fresnel;
-    brdf[c] = DiffuseLobe(texel, weight, c) + factor * fresnel;
+    brdf[c] = EvaluateChannel(DiffuseLobe(texel, weight, c), texel.specular[c], geometry.fresnel,
+                              T(1), factor)
+                  .reflected;
   }
 }
 
@@ -123,11 +108,13 @@ void EvaluateBrdf(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
 template <class T>
 void ShadeRadiance(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
                    DiffuseWeight weight, T radiance[3]) {
-  const T n_dot_l = ClampBelow(Dot(texel.normal, geometry.light), kDotClamp);
-  EvaluateBrdf(texel, geometry, weight, radiance);
+  const SpecularTerms<T> lobe = EvaluateSpecular(texel, geometry);
   for (int c = 0; c < 3; ++c) {
-    radiance[c] = geometry.irradiance[c] * radiance[c] * n_dot_l +
-                  AmbientRadiance(texel, geometry, weight, c);
+    const ChannelTerms<T> channel =
+        EvaluateChannel(DiffuseLobe(texel, weight, c), texel.specular[c], geometry.fresnel,
+                        lobe.n_dot_l, lobe.value);
+    radiance[c] =
+        geometry.irradiance[c] * channel.reflected + AmbientRadiance(texel, geometry, weight, c);
   }
 }
 
@@ -140,7 +127,7 @@ TexelGeometry<T> MakeTexelGeometry(const T light[3], const T camera[3], const T 
   T sum[3];
   for (int i = 0; i < 3; ++i) sum[i] = light[i] + camera[i];
   // Opposite directions have no half vector; the clamp keeps its length finite.
-  const T inverse = T(1) / sqrt(ClampBelow(Dot(sum, sum), 1e-20));
+  const T inverse = T(1) / sqrt(Arithmetic<T>::AtLeast(Dot(sum, sum), 1e-20));
   for (int i = 0; i < 3; ++i) {
     geometry.light[i] = light[i];
     geometry.camera[i] = camera[i];
@@ -148,7 +135,8 @@ TexelGeometry<T> MakeTexelGeometry(const T light[3], const T camera[3], const T 
     geometry.irradiance[i] = irradiance[i];
     geometry.ambient[i] = geometry.ambient_specular[i] = ambient[i];
   }
-  geometry.fresnel = FresnelWeight(ClampBelow(Dot(geometry.camera, geometry.half), kDotClamp));
+  geometry.fresnel =
+      FresnelWeight(Arithmetic<T>::AtLeast(Dot(geometry.camera, geometry.half), kDotClamp));
   return geometry;
 }
 

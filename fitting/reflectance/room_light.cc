@@ -65,7 +65,7 @@ RoomHarmonics Filtered(RoomHarmonics terms, const ByDegree& filter, int degree) 
 
 // Irradiance of a plane by radiance; degrees above 2 reach less than a twentieth of a diffuse
 // surface.
-RoomHarmonics DiffuseTerms(const double n[3]) {
+RoomHarmonics DiffuseHarmonics(const double n[3]) {
   ByDegree filter{};
   filter[0] = std::numbers::pi;
   filter[1] = 2 * std::numbers::pi / 3;
@@ -147,7 +147,7 @@ void RoomLight::Add(const RoomLight& more) {
 
 Vec3d RoomLight::PlaneIrradiance() const {
   constexpr double kUp[3] = {0, 0, 1};
-  return RoomIrradiance(*this, DiffuseTerms(kUp));
+  return RoomIrradiance(*this, DiffuseHarmonics(kUp));
 }
 
 Vec3d RoomLight::RadianceFrom(const Vec3d& direction) const {
@@ -164,7 +164,7 @@ Vec3d RoomIrradiance(const RoomLight& room, const RoomHarmonics& terms) {
 
 RoomReflection::RoomReflection(const TexelSvbrdf<double>& texel)
     : normal_{texel.normal[0], texel.normal[1], texel.normal[2]},
-      diffuse_(DiffuseTerms(texel.normal)),
+      diffuse_(DiffuseHarmonics(texel.normal)),
       filter_(SpecularFilter(texel.roughness)) {
   constexpr double kUnseen = 0.002;
   while (specular_degree_ > 0 &&

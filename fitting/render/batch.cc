@@ -51,8 +51,7 @@ View<T> MakeView(const glint::View& view) {
     made.camera_mm[i] = static_cast<T>(view.camera_in_sample_mm[i]);
     made.light_mm[i] = static_cast<T>(view.light_in_sample_mm[i]);
     made.exposed_light[i] = static_cast<T>(view.exposure * view.light_rgb[i]);
-    made.exposed_ambient_over_pi[i] =
-        static_cast<T>(view.exposure * view.ambient_rgb[i] * kInversePi);
+    made.exposed_ambient[i] = static_cast<T>(view.exposure * view.ambient_rgb[i]);
   }
   return made;
 }

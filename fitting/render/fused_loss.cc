@@ -49,7 +49,7 @@ void Summarise(std::span<const kernel::ViewSums> sums, std::span<const ViewImage
     Vec3d light, ambient;
     for (int c = 0; c < 3; ++c) {
       light[c] = sums[v].light(c) * by_exposed;
-      ambient[c] = sums[v].ambient(c) * by_exposed * kInversePi;
+      ambient[c] = sums[v].ambient(c) * by_exposed;
     }
     result->light_gradients.push_back(light);
     result->ambient_gradients.push_back(ambient);

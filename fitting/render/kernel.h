@@ -19,17 +19,17 @@ template <class T>
 struct View {
   T camera_mm[3];
   T light_mm[3];
-  T exposed_light[3];            // exposure·light_rgb
-  T exposed_ambient_over_pi[3];  // exposure·ambient_rgb/π
-  const T* image = nullptr;      // 3 planes `image_stride` apart
-  const T* mask = nullptr;       // or null: all 1
-  T* rendered = nullptr;         // 3 planes `image_stride` apart
+  T exposed_light[3];        // exposure·light_rgb
+  T exposed_ambient[3];      // exposure·ambient_rgb
+  const T* image = nullptr;  // 3 planes `image_stride` apart
+  const T* mask = nullptr;   // or null: all 1
+  T* rendered = nullptr;     // 3 planes `image_stride` apart
 };
 
 // What a view collects over texels; sums are not divided by anything.
 struct ViewSums {
   static constexpr int kCount = 8;
-  // Σ mask·|…| of three channels, Σ mask, ∂Σ/∂exposed_light, ∂Σ/∂(exposed_ambient_over_pi).
+  // Σ mask·|…| of three channels, Σ mask, ∂Σ/∂exposed_light, ∂Σ/∂exposed_ambient.
   double values[kCount] = {};
   double loss() const { return values[0]; }
   double weight() const { return values[1]; }

@@ -8,13 +8,43 @@
 #include <immintrin.h>
 #endif
 
-#include "fitting/reflectance/brdf_constants.h"
+#include "fitting/reflectance/brdf_core.h"
 #include "fitting/render/kernel.h"
 
 namespace glint::kernel {
 namespace {
 
 #include "fitting/render/kernel_vector.inl"
+
+}  // namespace
+}  // namespace glint::kernel
+
+namespace glint {
+
+template <class T>
+struct VectorArithmetic {
+  using V = typename kernel::Lanes<T>::Vector;
+  using Scalar = T;
+  GLINT_INLINE static V Constant(T x) { return kernel::Broadcast(x); }
+  GLINT_INLINE static V MultiplyAdd(const V& a, const V& b, const V& c) {
+    return kernel::Fma(a, b, c);
+  }
+  GLINT_INLINE static V AtLeast(const V& x, T bound) {
+    return kernel::Max(x, kernel::Broadcast(bound));
+  }
+  GLINT_INLINE static V WhereAbove(const V& x, T bound, const V& a, const V& b) {
+    return x > bound ? a : b;
+  }
+};
+template <>
+struct Arithmetic<kernel::Floats> : VectorArithmetic<float> {};
+template <>
+struct Arithmetic<kernel::Doubles> : VectorArithmetic<double> {};
+
+}  // namespace glint
+
+namespace glint::kernel {
+namespace {
 
 #include "fitting/render/kernel_shade.inl"
 
@@ -45,12 +75,12 @@ GLINT_INLINE Texels<T> LoadTexels(const T* planes, size_t stride, int count) {
   return texels;
 }
 
-// Radiance from what Shade gives: irradiance·(…) + ambient·lobe/π, times exposure.
+// Radiance from what Shade gives.
 template <class T>
 GLINT_INLINE VectorOf<T> Radiance(const View<T>& view, const Directions<T>& d, const Shading<T>& s,
                                   int c) {
-  const VectorOf<T> lit = s.radiance[c] * (d.falloff * view.exposed_light[c]);
-  return Fma(s.ambient_lobe[c], Broadcast(view.exposed_ambient_over_pi[c]), lit);
+  const VectorOf<T> lit = s.channels[c].reflected * (d.falloff * view.exposed_light[c]);
+  return Fma(s.channels[c].surrounding, Broadcast(view.exposed_ambient[c]), lit);
 }
 
 // The adjoint of Radiance: gradients of the texels, and of the view's light and ambient.
@@ -58,15 +88,15 @@ template <class T>
 GLINT_INLINE void PullBack(const Job<T>& job, const View<T>& view, const Texels<T>& texels,
                            const Directions<T>& d, const Shading<T>& s, const VectorOf<T>* by_image,
                            VectorOf<T>* gradient, VectorOf<T>* sums) {
-  VectorOf<T> by_radiance[3], by_ambient_lobe[3];
+  VectorOf<T> by_reflected[3], by_surrounding[3];
   for (int c = 0; c < 3; ++c) {
     const VectorOf<T> by_light = by_image[c] * d.falloff;
-    sums[2 + c] = Fma(by_light, s.radiance[c], sums[2 + c]);
-    sums[5 + c] = Fma(by_image[c], s.ambient_lobe[c], sums[5 + c]);
-    by_radiance[c] = by_light * view.exposed_light[c];
-    by_ambient_lobe[c] = by_image[c] * view.exposed_ambient_over_pi[c];
+    sums[2 + c] = Fma(by_light, s.channels[c].reflected, sums[2 + c]);
+    sums[5 + c] = Fma(by_image[c], s.channels[c].surrounding, sums[5 + c]);
+    by_reflected[c] = by_light * view.exposed_light[c];
+    by_surrounding[c] = by_image[c] * view.exposed_ambient[c];
   }
-  AddAdjoint<T>(texels, d, s, job.one_minus_specular, by_radiance, by_ambient_lobe, gradient);
+  AddAdjoint<T>(texels, d, s, job.one_minus_specular, by_reflected, by_surrounding, gradient);
 }
 
 // Σ |log(target + offset) − log(rendered + offset)| over channels, and its derivatives by rendered.

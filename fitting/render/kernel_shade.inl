@@ -1,5 +1,5 @@
-// The reflectance model on vectors of texels: the same formulas and clamps as
-// fitting/reflectance/brdf.h and brdf_derivatives.h, arranged for speed. Included by kernel.inl.
+// The reflectance model (fitting/reflectance/brdf_core.h) on vectors of texels. Included by
+// kernel.inl.
 
 template <class T>
 using VectorOf = typename Lanes<T>::Vector;
@@ -22,19 +22,11 @@ struct Directions {
   VectorOf<T> falloff;              // 1 or 1/d²
 };
 
-// Values the adjoint needs again, in the notation of brdf_derivatives.h.
+// What the adjoint needs again.
 template <class T>
 struct Shading {
-  VectorOf<T> n_dot_l, n_dot_v, n_dot_h;  // clamped
-  VectorOf<T> n_dot_l_free, n_dot_v_free, n_dot_h_free;
-  VectorOf<T> alpha, k, t_free, inverse_t, inverse_a, inverse_b, inverse_ab;
-  VectorOf<T> ratio;            // α/t
-  VectorOf<T> specular;         // the factor of F
-  VectorOf<T> cosine_over_pi;   // NoL/π
-  VectorOf<T> lobe[3];          // w·k_d
-  VectorOf<T> ambient_lobe[3];  // w·k_d + k_s
-  VectorOf<T> fresnel[3];
-  VectorOf<T> radiance[3];  // for irradiance 1 and no ambient
+  SpecularTerms<VectorOf<T>> specular;
+  ChannelTerms<VectorOf<T>> channels[3];
 };
 
 template <class T>
@@ -61,108 +53,71 @@ GLINT_INLINE Directions<T> Direct(const View<T>& view, bool inverse_square, cons
   d.half_inverse = one / Max(length, Broadcast(T(1e-10)));
   // v·h = |l+v|/2 for unit l and v.
   const V v_dot_h = Max(length * T(0.5), Broadcast(T(kDotClamp)));
-  d.fresnel = Exp2OfNegative(v_dot_h * (v_dot_h * T(kFresnelSquare) + T(kFresnelLinear)));
+  d.fresnel = Exp2OfNegative(FresnelExponent(v_dot_h));
   d.falloff = inverse_square ? light_inverse * light_inverse : one;
   return d;
 }
 
 template <class T>
-GLINT_INLINE Shading<T> Shade(const Texels<T>& texels, const Directions<T>& d,
-                              bool one_minus_specular) {
+GLINT_INLINE Cosines<VectorOf<T>> CosinesOf(const Texels<T>& texels, const Directions<T>& d) {
   using V = VectorOf<T>;
-  const V one = Broadcast(T(1)), clamp = Broadcast(T(kDotClamp));
-  const V denominator_clamp = Broadcast(T(kDenominatorClamp));
-  Shading<T> s;
-  s.n_dot_l_free = Dot3<T>(texels.normal, d.light);
-  s.n_dot_v_free = Dot3<T>(texels.normal, d.camera);
-  s.n_dot_h_free = (s.n_dot_l_free + s.n_dot_v_free) * d.half_inverse;
-  s.n_dot_l = Max(s.n_dot_l_free, clamp);
-  s.n_dot_v = Max(s.n_dot_v_free, clamp);
-  s.n_dot_h = Max(s.n_dot_h_free, clamp);
-  s.alpha = texels.roughness * texels.roughness;
-  s.k = Max(s.alpha * T(0.5), denominator_clamp);
-
-  // |n − (n·h)h|², exact where 1 − (n·h)² has no digits left.
-  const V scale = s.n_dot_h_free * d.half_inverse;
+  Cosines<V> cosines;
+  cosines.n_dot_l = Dot3<T>(texels.normal, d.light);
+  cosines.n_dot_v = Dot3<T>(texels.normal, d.camera);
+  cosines.n_dot_h = (cosines.n_dot_l + cosines.n_dot_v) * d.half_inverse;
+  const V scale = cosines.n_dot_h * d.half_inverse;
   V across[3];
   for (int i = 0; i < 3; ++i) {
     across[i] = Fma(-scale, d.light[i] + d.camera[i], texels.normal[i]);
   }
-  const V sine_squared =
-      s.n_dot_h_free > clamp ? Dot3<T>(across, across) : Broadcast(T(1 - kDotClamp * kDotClamp));
-  const V projected = s.n_dot_h * s.alpha;
-  s.t_free = Fma(projected, projected, sine_squared);
+  cosines.sine_squared = Dot3<T>(across, across);
+  return cosines;
+}
 
-  // One division for the reciprocals of t, a and b: t·a·b ≥ 1e-24.
-  const V t = Max(s.t_free, denominator_clamp);
-  const V a = Fma(s.n_dot_l, one - s.k, s.k), b = Fma(s.n_dot_v, one - s.k, s.k);
-  const V ab = a * b;
-  const V inverse = one / (ab * t);
-  s.inverse_t = inverse * ab;
-  s.inverse_ab = inverse * t;
-  s.inverse_a = s.inverse_ab * b;
-  s.inverse_b = s.inverse_ab * a;
-  s.ratio = s.alpha * s.inverse_t;
-  s.cosine_over_pi = s.n_dot_l * T(kInversePi);
-  s.specular = s.ratio * s.ratio * s.inverse_ab * (s.cosine_over_pi * T(0.25));
+template <class T>
+GLINT_INLINE Shading<T> Shade(const Texels<T>& texels, const Directions<T>& d,
+                              bool one_minus_specular) {
+  Shading<T> s;
+  s.specular = EvaluateSpecular(CosinesOf<T>(texels, d), texels.roughness);
   for (int c = 0; c < 3; ++c) {
-    s.lobe[c] = texels.diffuse[c];
-    if (one_minus_specular) s.lobe[c] *= one - texels.specular[c];
-    s.ambient_lobe[c] = s.lobe[c] + texels.specular[c];
-    s.fresnel[c] = Fma(texels.specular[c], one - d.fresnel, d.fresnel);
-    s.radiance[c] = Fma(s.specular, s.fresnel[c], s.lobe[c] * s.cosine_over_pi);
+    s.channels[c] =
+        EvaluateChannel(EvaluateDiffuse(texels.diffuse[c], texels.specular[c], one_minus_specular),
+                        texels.specular[c], d.fresnel, s.specular.n_dot_l, s.specular.value);
   }
   return s;
 }
 
-// Adds to gradient[kPlanes], given for each channel ∂loss/∂(Shading::radiance) and
-// ∂loss/∂(Shading::ambient_lobe).
+// Adds to gradient[kPlanes], given for each channel ∂loss/∂reflected and ∂loss/∂surrounding of
+// ChannelTerms.
 template <class T>
 GLINT_INLINE void AddAdjoint(const Texels<T>& texels, const Directions<T>& d, const Shading<T>& s,
-                             bool one_minus_specular, const VectorOf<T>* by_radiance,
-                             const VectorOf<T>* by_ambient_lobe, VectorOf<T>* gradient) {
+                             bool one_minus_specular, const VectorOf<T>* by_reflected,
+                             const VectorOf<T>* by_surrounding, VectorOf<T>* gradient) {
   using V = VectorOf<T>;
-  const V one = Broadcast(T(1)), zero = V{}, clamp = Broadcast(T(kDotClamp));
-  const V denominator_clamp = Broadcast(T(kDenominatorClamp));
-  V by_specular = zero, by_cosine = zero;
-  const V by_f0 = s.specular * (one - d.fresnel);
+  const SpecularTerms<V>& lobe = s.specular;
+  V by_lobe = V{}, by_cosine = V{};
   for (int c = 0; c < 3; ++c) {
-    V by_lobe = Fma(by_radiance[c], s.cosine_over_pi, by_ambient_lobe[c]);
-    gradient[6 + c] = Fma(by_radiance[c], by_f0, gradient[6 + c]) + by_ambient_lobe[c];
-    if (one_minus_specular) {
-      gradient[6 + c] = Fma(-by_lobe, texels.diffuse[c], gradient[6 + c]);
-      by_lobe *= one - texels.specular[c];
-    }
-    gradient[3 + c] += by_lobe;
-    by_specular = Fma(by_radiance[c], s.fresnel[c], by_specular);
-    by_cosine = Fma(by_radiance[c], s.lobe[c], by_cosine);
+    // Slopes of the radiance are linear in what the texel receives: with the loss's own slopes in
+    // its place they are the loss's.
+    const ChannelSlopes<V> by = DifferentiateChannel(
+        EvaluateDiffuse(texels.diffuse[c], texels.specular[c], one_minus_specular), s.channels[c],
+        d.fresnel, lobe.n_dot_l, lobe.value, by_reflected[c], by_surrounding[c], by_surrounding[c]);
+    gradient[3 + c] += by.by_diffuse;
+    gradient[6 + c] += by.by_specular;
+    by_lobe += by.by_lobe;
+    by_cosine += by.by_n_dot_l;
   }
 
-  const V weighted = by_specular * s.specular;
-  const V by_t_free = weighted * s.inverse_t * T(-2);
-  const V by_t = s.t_free > denominator_clamp ? by_t_free : zero;
-  const V alpha_squared = s.alpha * s.alpha;
-
-  // S = (α/t)²·NoL/(4π·a·b): α directly and through t, then through k = α/2 in a and b.
-  const V slope = s.ratio * s.inverse_t * s.inverse_ab * (s.cosine_over_pi * T(0.25));
-  const V shadowing = Fma(one - s.n_dot_l, s.inverse_a, (one - s.n_dot_v) * s.inverse_b) * weighted;
-  V by_alpha = Fma(by_specular, slope, by_t * s.alpha * (s.n_dot_h * s.n_dot_h)) * T(2);
-  by_alpha -= s.alpha * T(0.5) > denominator_clamp ? shadowing * T(0.5) : zero;
-  gradient[9] = Fma(by_alpha, texels.roughness * T(2), gradient[9]);
-
-  const V squared = s.ratio * s.ratio * s.k * (s.inverse_ab * s.inverse_a);
-  V by_n_dot_l = Fma(by_specular * T(0.25), squared, by_cosine) * T(kInversePi);
-  by_n_dot_l = s.n_dot_l_free > clamp ? by_n_dot_l : zero;
-  V by_n_dot_v = weighted * (s.k - one) * s.inverse_b;
-  by_n_dot_v = s.n_dot_v_free > clamp ? by_n_dot_v : zero;
-  // ∂t/∂n = 2(n − (n·h)h) + 2(n·h)α²h, with h in terms of l and v.
-  const V by_normal = s.n_dot_h_free > clamp ? by_t * T(2) : zero;
-  const V by_half = by_normal * s.n_dot_h * (alpha_squared - one) * d.half_inverse;
-  by_n_dot_l += by_half;
-  by_n_dot_v += by_half;
+  const SpecularSlopes<V> by = DifferentiateSpecular(lobe, texels.roughness, by_lobe);
+  gradient[9] += by.by_roughness;
+  const V by_normal = by.by_n_dot_n * T(2);
+  const V by_half = by.by_n_dot_h * d.half_inverse;  // h in terms of l and v
+  const V lit = lobe.free.n_dot_l > T(kDotClamp) ? by_cosine : V{};
+  const V by_light = by.by_n_dot_l + lit + by_half;
+  const V by_camera = by.by_n_dot_v + by_half;
   for (int i = 0; i < 3; ++i) {
-    V sum = Fma(by_n_dot_l, d.light[i], gradient[i]);
-    sum = Fma(by_n_dot_v, d.camera[i], sum);
+    V sum = Fma(by_light, d.light[i], gradient[i]);
+    sum = Fma(by_camera, d.camera[i], sum);
     gradient[i] = Fma(by_normal, texels.normal[i], sum);
   }
 }

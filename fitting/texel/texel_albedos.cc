@@ -13,24 +13,53 @@ struct AlbedoSums {
   double aa, ab, bb, ay, by, yy;
 };
 
+// Weighted rows A, B and y = I − C of a channel, in the places of others of KernelRows.
+enum AlbedoRow : int {
+  kByLobe = KernelRows::kByDiffuse,
+  kBySpecularAlbedo = KernelRows::kBySpecular,
+  kUnexplained = KernelRows::kResidual
+};
+
+[[gnu::always_inline]] inline void EvaluateAlbedoRows(const TexelObservations& observations,
+                                                      int channel, KernelRows* rows) {
+  // The diffuse unknown is w·k_d: it has the slopes of w = 1.
+  const DiffuseTerms<double> diffuse = EvaluateDiffuse(0.0, 0.0, false);
+  const double* __restrict fresnel = observations.plane(TexelObservations::kFresnel);
+  const double* __restrict irradiance =
+      observations.plane(TexelObservations::kIrradiance + channel);
+  const double* __restrict ambient = observations.plane(TexelObservations::kAmbient + channel);
+  const double* __restrict ambient_specular =
+      observations.plane(TexelObservations::kAmbientSpecular + channel);
+  const double* __restrict target = observations.plane(TexelObservations::kInverseTarget + channel);
+  const double* __restrict ceiling = observations.plane(TexelObservations::kCeiling + channel);
+  const double* __restrict weight = observations.plane(TexelObservations::kWeight);
+  const double* __restrict nl = rows->lobe(kNormalLight);
+  const double* __restrict s = rows->lobe(kLobe);
+  double* __restrict by_lobe = rows->row(channel, kByLobe);
+  double* __restrict by_specular = rows->row(channel, kBySpecularAlbedo);
+  double* __restrict unexplained = rows->row(channel, kUnexplained);
+  const int views = observations.padded_views();
+#pragma GCC ivdep
+  for (int v = 0; v < views; ++v) {
+    const double usable = ceiling[v] > 0.0 ? weight[v] : 0.0;
+    const double relative = usable * target[v];  // weight/(I + 0.01)
+    const ChannelTerms<double> terms = EvaluateChannel(diffuse, 0.0, fresnel[v], nl[v], s[v]);
+    const ChannelSlopes<double> by = DifferentiateChannel(
+        diffuse, terms, fresnel[v], nl[v], s[v], irradiance[v], ambient[v], ambient_specular[v]);
+    by_lobe[v] = relative * by.by_diffuse;
+    by_specular[v] = relative * by.by_specular;
+    unexplained[v] = usable - relative * (irradiance[v] * terms.reflected + kLogOffset);
+  }
+}
+
 [[gnu::always_inline]] inline AlbedoSums SumAlbedoProducts(const TexelObservations& observations,
                                                            const KernelRows& rows, int channel) {
   const auto load = [](const double* from) { return *reinterpret_cast<const Lanes*>(from); };
-  const double* inverse = rows.row(channel, KernelRows::kByDiffuse);  // weight/(I + 0.01)
   Lanes aa{}, ab{}, bb{}, ay{}, by{}, yy{};
   for (int v = 0; v < observations.padded_views(); v += kLanes) {
-    const Lanes e = load(observations.plane(TexelObservations::kIrradiance + channel) + v);
-    const Lanes ambient = load(observations.plane(TexelObservations::kAmbient + channel) + v);
-    const Lanes ambient_specular =
-        load(observations.plane(TexelObservations::kAmbientSpecular + channel) + v);
-    const Lanes fresnel = load(observations.plane(TexelObservations::kFresnel) + v);
-    const Lanes nl = load(rows.lobe(kNormalLight) + v);
-    const Lanes s = load(rows.lobe(kLobe) + v);
-    const Lanes w = load(inverse + v);
-    const Lanes usable = load(rows.row(channel, KernelRows::kResidual) + v);
-    const Lanes a = w * (e * nl + ambient) * kInversePi;
-    const Lanes b = w * (e * s * (1.0 - fresnel) + ambient_specular * kInversePi);
-    const Lanes y = usable - w * (e * s * fresnel + kLogOffset);
+    const Lanes a = load(rows.row(channel, kByLobe) + v);
+    const Lanes b = load(rows.row(channel, kBySpecularAlbedo) + v);
+    const Lanes y = load(rows.row(channel, kUnexplained) + v);
     aa += a * a;
     ab += a * b;
     bb += b * b;
@@ -46,15 +75,7 @@ void EvaluateAlbedoSums(const TexelObservations& observations, const TexelValues
                         KernelRows* rows, AlbedoSums sums[3]) {
   EvaluateLobes(observations, texel, rows);
   for (int c = 0; c < 3; ++c) {
-    const double* __restrict target = observations.plane(TexelObservations::kInverseTarget + c);
-    const double* __restrict ceiling = observations.plane(TexelObservations::kCeiling + c);
-    const double* __restrict weight = observations.plane(TexelObservations::kWeight);
-    double* __restrict usable = rows->row(c, KernelRows::kResidual);
-    double* __restrict inverse = rows->row(c, KernelRows::kByDiffuse);
-    for (int v = 0; v < observations.padded_views(); ++v) {
-      usable[v] = ceiling[v] > 0.0 ? weight[v] : 0.0;
-      inverse[v] = usable[v] * target[v];
-    }
+    EvaluateAlbedoRows(observations, c, rows);
     sums[c] = SumAlbedoProducts(observations, *rows, c);
   }
 }

@@ -10,16 +10,14 @@
 namespace glint {
 namespace {
 
-[[gnu::always_inline]] inline void EvaluateChannel(const KernelOptions& options,
-                                                   const TexelObservations& observations,
-                                                   const TexelValues& texel, int channel,
-                                                   KernelRows* rows) {
-  const double diffuse = texel[DiffuseParameter(channel)];
+[[gnu::always_inline]] inline void EvaluateResiduals(const KernelOptions& options,
+                                                     const TexelObservations& observations,
+                                                     const TexelValues& texel, int channel,
+                                                     KernelRows* rows) {
   const double specular = texel[SpecularParameter(channel)];
-  const bool one_minus = options.diffuse_weight == DiffuseWeight::kOneMinusSpecular;
-  const double by_diffuse_lobe = kInversePi * (one_minus ? 1.0 - specular : 1.0);
-  const double lobe = diffuse * by_diffuse_lobe;
-  const double lobe_by_specular = one_minus ? -kInversePi * diffuse : 0.0;
+  const DiffuseTerms<double> diffuse =
+      EvaluateDiffuse(texel[DiffuseParameter(channel)], specular,
+                      options.diffuse_weight == DiffuseWeight::kOneMinusSpecular);
   const double inverse_scale = 1.0 / options.robust_scale;
 
   const double* __restrict fresnel = observations.plane(TexelObservations::kFresnel);
@@ -47,12 +45,9 @@ namespace {
   const int views = observations.padded_views();
 #pragma GCC ivdep
   for (int v = 0; v < views; ++v) {
-    const double e = irradiance[v];
-    const double f = specular + (1.0 - specular) * fresnel[v];
-    const double received = e * nl[v] + ambient[v];
-    const double surround = ambient_specular[v] * kInversePi;
-    const double offset_radiance =
-        lobe * received + e * f * s[v] + specular * surround + kLogOffset;
+    const ChannelTerms<double> terms = EvaluateChannel(diffuse, specular, fresnel[v], nl[v], s[v]);
+    const double offset_radiance = irradiance[v] * terms.reflected + ambient[v] * diffuse.value +
+                                   ambient_specular[v] * specular * kInversePi + kLogOffset;
 
     const double free = Log(offset_radiance) - target[v];
     const double error = free < ceiling[v] ? free : ceiling[v];
@@ -67,13 +62,13 @@ namespace {
     // g'(e) = 1/(root·shrink) = shrink·(1 + root)/(2·root), and ∂e/∂R = 1/(R + 0.01)
     const double chain = weight[v] * on * (0.5 * shrink * above * above * inverse);
 
-    const double diffuse_normal = e * lobe;
-    const double specular_normal = e * f;
-    by_x[v] = chain * (diffuse_normal * nl_x[v] + specular_normal * s_x[v]);
-    by_y[v] = chain * (diffuse_normal * nl_y[v] + specular_normal * s_y[v]);
-    by_r[v] = chain * (specular_normal * s_r[v]);
-    by_d[v] = chain * (by_diffuse_lobe * received);
-    by_s[v] = chain * (e * s[v] * (1.0 - fresnel[v]) + surround + lobe_by_specular * received);
+    const ChannelSlopes<double> by = DifferentiateChannel(
+        diffuse, terms, fresnel[v], nl[v], s[v], irradiance[v], ambient[v], ambient_specular[v]);
+    by_x[v] = chain * (by.by_n_dot_l * nl_x[v] + by.by_lobe * s_x[v]);
+    by_y[v] = chain * (by.by_n_dot_l * nl_y[v] + by.by_lobe * s_y[v]);
+    by_r[v] = chain * (by.by_lobe * s_r[v]);
+    by_d[v] = chain * by.by_diffuse;
+    by_s[v] = chain * by.by_specular;
   }
 }
 
@@ -136,7 +131,7 @@ GLINT_VECTOR_CLONES
 void EvaluateAllRows(const KernelOptions& options, const TexelObservations& observations,
                      const TexelValues& texel, KernelRows* rows) {
   EvaluateLobes(observations, texel, rows);
-  for (int c = 0; c < 3; ++c) EvaluateChannel(options, observations, texel, c, rows);
+  for (int c = 0; c < 3; ++c) EvaluateResiduals(options, observations, texel, c, rows);
 }
 
 GLINT_VECTOR_CLONES
@@ -146,7 +141,7 @@ void EvaluateProducts(const KernelOptions& options, const TexelObservations& obs
   for (auto& sum : shared) sum = Lanes{};
   EvaluateLobes(observations, texel, rows);
   for (int c = 0; c < 3; ++c) {
-    EvaluateChannel(options, observations, texel, c, rows);
+    EvaluateResiduals(options, observations, texel, c, rows);
     AccumulateChannel(*rows, c, observations.padded_views(), products->own[c], shared);
   }
   for (int i = 0; i < kSharedProducts; ++i) products->shared[i] = Sum(shared[i]);

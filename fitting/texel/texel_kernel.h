@@ -1,5 +1,5 @@
 // Residuals of one texel in all its views with their analytic derivatives: the inner loop of
-// refinement. Same model as fitting/reflectance/brdf.h, written over arrays of views.
+// refinement, over arrays of views.
 //
 // With R the rendered and I the photographed radiance of a view and channel,
 //   e = min(log(R + 0.01) − log(I + 0.01), ceiling),       residual = √weight · g(e)

@@ -11,7 +11,7 @@ namespace {
 // KernelRows::lobe(): values per view and their derivatives by slope_x, slope_y and roughness.
 enum Lobe { kNormalLight, kByXNormalLight, kByYNormalLight, kLobe, kByXLobe, kByYLobe, kByRLobe };
 
-// n·l, the specular factor S = D·G/(4·NoL·NoV)·NoL and their derivatives, per view.
+// n·l, the specular lobe S of brdf_core.h and their derivatives, per view.
 [[gnu::always_inline]] inline void EvaluateLobes(const TexelObservations& observations,
                                                  const TexelValues& texel, KernelRows* rows) {
   const double px = texel[kSlopeX], py = texel[kSlopeY], r = texel[kRough];
@@ -20,12 +20,6 @@ enum Lobe { kNormalLight, kByXNormalLight, kByYNormalLight, kLobe, kByXLobe, kBy
   // ∂n/∂slope = length·(axis − n·n_axis)
   const double xx = length * (1.0 - nx * nx), xy = -length * nx * ny, xz = -length * nx * nz;
   const double yx = xy, yy = length * (1.0 - ny * ny), yz = -length * ny * nz;
-  const double alpha = r * r;
-  const double k = alpha * 0.5 > kDenominatorClamp ? alpha * 0.5 : kDenominatorClamp;
-  const double k_by_alpha = alpha * 0.5 > kDenominatorClamp ? 0.5 : 0.0;
-  const double alpha2 = alpha * alpha;
-  const double one_minus_k = 1.0 - k;
-
   const double* __restrict lx = observations.plane(TexelObservations::kLightX);
   const double* __restrict ly = observations.plane(TexelObservations::kLightY);
   const double* __restrict lz = observations.plane(TexelObservations::kLightZ);
@@ -48,32 +42,11 @@ enum Lobe { kNormalLight, kByXNormalLight, kByYNormalLight, kLobe, kByXLobe, kBy
     const double nl_free = nx * lx[v] + ny * ly[v] + nz * lz[v];
     const double nv_free = nx * vx[v] + ny * vy[v] + nz * vz[v];
     const double nh_free = nx * hx[v] + ny * hy[v] + nz * hz[v];
-    const double nl = nl_free > kDotClamp ? nl_free : kDotClamp;
-    const double nv = nv_free > kDotClamp ? nv_free : kDotClamp;
-    const double nh = nh_free > kDotClamp ? nh_free : kDotClamp;
+    // n and h are unit vectors and these are doubles.
+    const SpecularTerms<double> lobe =
+        EvaluateSpecular<double>({nl_free, nv_free, nh_free, 1.0 - nh_free * nh_free}, r);
+    const SpecularSlopes<double> by = DifferentiateSpecular(lobe, r);
     const double nl_on = nl_free > kDotClamp ? 1.0 : 0.0;
-    const double nv_on = nv_free > kDotClamp ? 1.0 : 0.0;
-    const double nh_on = nh_free > kDotClamp ? 1.0 : 0.0;
-
-    const double t_free = 1.0 + nh * nh * (alpha2 - 1.0);
-    const double t = t_free > kDenominatorClamp ? t_free : kDenominatorClamp;
-    const double t_on = t_free > kDenominatorClamp ? 1.0 : 0.0;
-    const double a = nl * one_minus_k + k;
-    const double b = nv * one_minus_k + k;
-    const double inverse = 1.0 / (t * a * b);  // one division for three
-    const double inverse_t = inverse * a * b;
-    const double inverse_a = inverse * t * b;
-    const double inverse_b = inverse * t * a;
-    const double ratio = alpha * inverse_t;
-    const double p = (0.25 * kInversePi) * inverse_a * inverse_b;
-    const double s_per_nl = ratio * ratio * p;
-    const double s = s_per_nl * nl;
-    const double by_t = -2.0 * s * inverse_t * t_on;
-    const double by_alpha = 2.0 * ratio * inverse_t * p * nl + by_t * 2.0 * alpha * nh * nh -
-                            k_by_alpha * s * ((1.0 - nl) * inverse_a + (1.0 - nv) * inverse_b);
-    const double by_nl = s_per_nl * k * inverse_a * nl_on;
-    const double by_nv = -s * one_minus_k * inverse_b * nv_on;
-    const double by_nh = by_t * 2.0 * nh * (alpha2 - 1.0) * nh_on;
 
     const double nl_x = xx * lx[v] + xy * ly[v] + xz * lz[v];
     const double nl_y = yx * lx[v] + yy * ly[v] + yz * lz[v];
@@ -81,13 +54,13 @@ enum Lobe { kNormalLight, kByXNormalLight, kByYNormalLight, kLobe, kByXLobe, kBy
     const double nv_y = yx * vx[v] + yy * vy[v] + yz * vz[v];
     const double nh_x = xx * hx[v] + xy * hy[v] + xz * hz[v];
     const double nh_y = yx * hx[v] + yy * hy[v] + yz * hz[v];
-    out_nl[v] = nl;
+    out_nl[v] = lobe.n_dot_l;
     out_nl_x[v] = nl_x * nl_on;
     out_nl_y[v] = nl_y * nl_on;
-    out_s[v] = s;
-    out_s_x[v] = by_nl * nl_x + by_nv * nv_x + by_nh * nh_x;
-    out_s_y[v] = by_nl * nl_y + by_nv * nv_y + by_nh * nh_y;
-    out_s_r[v] = by_alpha * 2.0 * r;
+    out_s[v] = lobe.value;
+    out_s_x[v] = by.by_n_dot_l * nl_x + by.by_n_dot_v * nv_x + by.by_n_dot_h * nh_x;
+    out_s_y[v] = by.by_n_dot_l * nl_y + by.by_n_dot_v * nv_y + by.by_n_dot_h * nh_y;
+    out_s_r[v] = by.by_roughness;
   }
 }
 

@@ -268,7 +268,8 @@ void TexelLattice::AddResiduals(const Texel& texel, const Eigen::VectorXd& x,
 double TexelLattice::ReflectRoom(const Texel& texel, size_t k, const TexelSvbrdf<double>& svbrdf,
                                  double exposure, const RoomLight& room, int channel,
                                  Eigen::VectorXd* by_term) const {
-  const double diffuse = exposure * DiffuseLobe(svbrdf, set_.convention.diffuse_weight, channel);
+  const double diffuse =
+      exposure * DiffuseLobe(svbrdf, set_.convention.diffuse_weight, channel).value;
   const double specular = exposure * svbrdf.specular[channel] * kInversePi;
   double radiance = 0;
   for (size_t j = 0; j < room.radiance_rgb.size(); ++j) {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <random>
 
-#include "fitting/reflectance/brdf_derivatives.h"
 #include "fitting/reflectance/texel_at.h"
+#include "tests/fitting/reflectance/texel_jacobian.h"
 
 namespace glint {
 namespace {
@@ -140,8 +140,6 @@ TEST(BrdfTest, Reciprocity) {
 
 TEST(BrdfTest, DistributionOfNormalsProjectsToOne) {
   for (const double roughness : {0.05, 0.1, 0.2, 0.4, 0.7, 1.0}) {
-    const double alpha = roughness * roughness;
-    const double normal[3] = {0, 0, 1};
     double integral = 0;
     constexpr int kSteps = 20000;
     double previous = 0;
@@ -150,7 +148,10 @@ TEST(BrdfTest, DistributionOfNormalsProjectsToOne) {
       const double x = std::pow(static_cast<double>(i) / kSteps, 6);
       const double middle = 0.5 * (x + previous);
       const double half[3] = {std::sqrt(middle), 0, std::sqrt(1 - middle)};
-      const double ratio = alpha / GgxDenominator(normal, half, alpha);
+      const TexelSvbrdf<double> texel{{0, 0, 1}, {}, {}, roughness};
+      TexelGeometry<double> geometry{{0, 0, 1}, {0, 0, 1}, {}, 0, {}, {}, {}};
+      std::copy_n(half, 3, geometry.half);
+      const double ratio = EvaluateSpecular(texel, geometry).ratio;
       integral += ratio * ratio / kPi * kPi * (x - previous);
       previous = x;
     }

@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include "fitting/reflectance/brdf_derivatives.h"
 #include "fitting/render/batch.h"
+#include "tests/fitting/reflectance/texel_jacobian.h"
 #include "tests/fitting/render/random_scene.h"
 
 namespace glint {
@@ -98,7 +98,7 @@ TexelSvbrdf<double> TexelOf(const std::vector<double>& planes, size_t texels, si
   return texel;
 }
 
-// Calls check(view, texel index, radiance[3], jacobian[3×10]) with brdf_derivatives.h's results.
+// Calls check(view, texel index, radiance[3], jacobian[3×10]) with ShadeTexel's results.
 using CheckTexel = std::function<void(size_t, size_t, const double*, const double*)>;
 void ForEachTexel(const Scene<double>& scene, const CheckTexel& check) {
   const SamplePlane& plane = scene.plane;
@@ -253,8 +253,7 @@ TEST_P(KernelTest, LightAndAmbientGradientsMatchDifferences) {
         const double by_light = differentiate(&scene.views[v].light_rgb[c]);
         const double by_ambient = differentiate(&scene.views[v].ambient_rgb[c]);
         EXPECT_NEAR(sums[v].light(c) * exposure, by_light, 1e-6 * std::abs(by_light));
-        EXPECT_NEAR(sums[v].ambient(c) * exposure * kInversePi, by_ambient,
-                    1e-6 * std::abs(by_ambient));
+        EXPECT_NEAR(sums[v].ambient(c) * exposure, by_ambient, 1e-6 * std::abs(by_ambient));
       }
     }
   }
