@@ -3,27 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/texel/texel_cost.h"
+#include "fitting/texel/texel_cholesky.h"
 
 namespace glint {
 namespace {
 
 // Widest a standard deviation is said to be: a value in [0, 1] of which nothing is known.
 constexpr double kWidest = 1.0;
-
-// U⁻¹ for the Cholesky factor U (UᵀU = matrix) of the leading kTexelParameters rows.
-void InvertFactor(const TexelGram& matrix, TexelGram* inverse) {
-  TexelGram factor;
-  FactorGram(matrix, &factor);
-  for (int j = 0; j < kTexelParameters; ++j) {
-    (*inverse)[j][j] = 1.0 / factor[j][j];
-    for (int i = j - 1; i >= 0; --i) {
-      double sum = 0.0;
-      for (int k = i + 1; k <= j; ++k) sum += factor[i][k] * (*inverse)[k][j];
-      (*inverse)[i][j] = -sum * (*inverse)[i][i];
-    }
-  }
-}
 
 }  // namespace
 
@@ -32,15 +18,16 @@ std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
                                                      double scale) {
   const double variance = scale * scale;
   // What nothing is known of keeps the widest deviation: it stands in for a missing prior.
-  TexelGram information = gram;
-  for (int i = 0; i < kTexelParameters; ++i) information[i][i] += variance / (kWidest * kWidest);
-  TexelGram inverse;  // of the upper triangular factor, whose rows' products are the covariance
-  InvertFactor(information, &inverse);
-  const auto covariance = [&](int a, int b) {
-    double sum = 0.0;
-    for (int k = std::max(a, b); k < kTexelParameters; ++k) sum += inverse[a][k] * inverse[b][k];
-    return variance * sum;
-  };
+  double unknown[kTexelParameters];
+  std::fill_n(unknown, kTexelParameters, variance / (kWidest * kWidest));
+  const TexelCholesky factor(gram, unknown);
+  double inverse[kTexelParameters][kTexelParameters];
+  for (int i = 0; i < kTexelParameters; ++i) {
+    double unit[kTexelParameters] = {};
+    unit[i] = 1.0;
+    factor.Solve(unit, &inverse[i]);
+  }
+  const auto covariance = [&](int a, int b) { return variance * inverse[a][b]; };
 
   // n_x, n_y by the slopes.
   const double x = texel[kSlopeX], y = texel[kSlopeY];

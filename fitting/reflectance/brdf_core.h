@@ -7,8 +7,8 @@
 //   radiance = E·(w·k_d/π·NoL + S·F) + A·w·k_d/π + A_s·k_s/π
 //
 // with E = exposure·irradiance, and A and A_s what the diffuse and the specular lobe reflect of the
-// surroundings (ChannelTerms, ChannelSlopes). To add a lobe: its terms and slopes here, its sum with
-// S where S is used (what includes this file), and the same in the viewer's GLSL
+// surroundings (ChannelTerms, ChannelSlopes). To add a lobe: its terms and slopes here, its sum
+// with S where S is used (what includes this file), and the same in the viewer's GLSL
 // (pipeline/viewer/src/shading.glsl); tests/fitting/reflectance compares slopes with automatic
 // differentiation, tests/fitting/render and tests/fitting/texel the vector code with brdf.h.
 //
@@ -35,7 +35,7 @@ struct Arithmetic {
   }
 };
 template <class T>
-  requires requires { typename T::Scalar; }
+requires requires { typename T::Scalar; }
 struct Arithmetic<T> {  // ceres::Jet
   using Scalar = typename T::Scalar;
   static T Constant(Scalar x) { return T(x); }
@@ -135,15 +135,14 @@ GLINT_BRDF SpecularSlopes<T> DifferentiateSpecular(
   const T through_k =
       A::MultiplyAdd(S(1) - s.n_dot_l, s.inverse_a, (S(1) - s.n_dot_v) * s.inverse_b) * weighted;
   T by_alpha = A::MultiplyAdd(by_t * s.alpha, cosine_squared, weight * direct) * S(2);
-  by_alpha -=
-      A::WhereAbove(s.alpha * S(0.5), S(kDenominatorClamp), through_k * S(0.5), zero);
+  by_alpha -= A::WhereAbove(s.alpha * S(0.5), S(kDenominatorClamp), through_k * S(0.5), zero);
 
   SpecularSlopes<T> slopes;
   slopes.by_roughness = by_alpha * roughness * S(2);
-  slopes.by_n_dot_l = A::WhereAbove(s.free.n_dot_l, S(kDotClamp),
-                                    weight * s.over_cosine * s.k * s.inverse_a, zero);
-  slopes.by_n_dot_v = A::WhereAbove(s.free.n_dot_v, S(kDotClamp),
-                                    weighted * (s.k - S(1)) * s.inverse_b, zero);
+  slopes.by_n_dot_l =
+      A::WhereAbove(s.free.n_dot_l, S(kDotClamp), weight * s.over_cosine * s.k * s.inverse_a, zero);
+  slopes.by_n_dot_v =
+      A::WhereAbove(s.free.n_dot_v, S(kDotClamp), weighted * (s.k - S(1)) * s.inverse_b, zero);
   slopes.by_n_dot_n = A::WhereAbove(s.free.n_dot_h, S(kDotClamp), by_t, zero);
   slopes.by_n_dot_h = slopes.by_n_dot_n * s.n_dot_h * (s.alpha * s.alpha - S(1)) * S(2);
   return slopes;
@@ -213,8 +212,8 @@ GLINT_BRDF ChannelSlopes<T> DifferentiateChannel(const DiffuseTerms<T>& diffuse,
   using A = Arithmetic<T>;
   using S = ScalarOf<T>;
   const T received = A::MultiplyAdd(irradiance, n_dot_l, ambient);
-  const T by_f0 = A::MultiplyAdd(irradiance, s * (S(1) - fresnel_weight),
-                                 ambient_specular * S(kInversePi));
+  const T by_f0 =
+      A::MultiplyAdd(irradiance, s * (S(1) - fresnel_weight), ambient_specular * S(kInversePi));
   return {diffuse.by_diffuse * received, A::MultiplyAdd(diffuse.by_specular, received, by_f0),
           irradiance * diffuse.value, irradiance * channel.fresnel};
 }

@@ -1,7 +1,5 @@
-// Least squares of one texel: ceres::TinySolver on the variables of texel_parameters.h.
+// Least squares of one texel: Levenberg–Marquardt on the variables of texel_parameters.h.
 #pragma once
-
-#include <memory>
 
 #include "fitting/texel/texel_kernel.h"
 #include "fitting/texel/texel_prior.h"
@@ -22,8 +20,7 @@ class TexelSolver {
   TexelSolver(const KernelOptions& options, int most_iterations, int most_views);
 
   // A step that lowers the sum of squared residuals by less ends a solve.
-  void SetTolerance(double squares);
-  ~TexelSolver();
+  void SetTolerance(double squares) { squares_tolerance_ = squares; }
 
   // Cost of `texel` as it is.
   double Cost(const TexelObservations& observations, const TexelPrior& prior,
@@ -35,11 +32,13 @@ class TexelSolver {
   void Gram(const TexelObservations& observations, const TexelPrior& prior,
             const TexelValues& texel, TexelGram* gram);
   // The photographs' residuals and derivatives of the last Cost or Gram.
-  const KernelRows& rows() const;
+  const KernelRows& rows() const { return rows_; }
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  KernelOptions options_;
+  int most_iterations_;
+  double squares_tolerance_;
+  KernelRows rows_;
 };
 
 }  // namespace glint

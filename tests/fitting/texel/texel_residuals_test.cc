@@ -3,11 +3,13 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include "fitting/reflectance/texel_at.h"
+#include "fitting/texel/texel_cholesky.h"
 #include "fitting/texel/texel_cost.h"
 #include "fitting/texel/texel_parameters.h"
 
@@ -145,19 +147,20 @@ TEST(TexelCost, GradientAgreesWithFiniteDifferencesAtAThousandPoints) {
     double variables[kTexelParameters];
     ToVariables(point.texel, variables);
     for (int p = 0; p <= kRough; ++p) variables[p] += Draw(&random, -0.1, 0.1);  // into the tails
-    const TexelCost cost(point.options, observations, point.prior, &rows);
-    double f[kGramSize];
-    Eigen::Matrix<double, kGramSize, kTexelParameters> j;
-    ASSERT_TRUE(cost(variables, f, j.data()));
-    const Eigen::Map<const Eigen::Matrix<double, kGramSize, 1>> residuals(f);
-    const Eigen::Matrix<double, kTexelParameters, 1> gradient = j.transpose() * residuals;
+    TexelGram gram;
+    EvaluateCost(point.options, observations, point.prior, variables, &rows, &gram);
+    double steepest = 0.0;
+    for (int p = 0; p < kTexelParameters; ++p) {
+      steepest = std::max(steepest, std::abs(gram[p][kTexelParameters]));
+    }
+    const double norm = std::sqrt(gram[kTexelParameters][kTexelParameters]);
     const auto half_squares = [&](int p, double step) {
       double moved[kTexelParameters];
       std::copy(variables, variables + kTexelParameters, moved);
       moved[p] += step;
-      double norm[kGramSize];
-      cost(moved, norm, nullptr);
-      return 0.5 * norm[0] * norm[0];
+      TexelGram there;
+      EvaluateCost(point.options, observations, point.prior, moved, &rows, &there);
+      return CostOf(there);
     };
     for (int p = 0; p < kTexelParameters; ++p) {
       // Fourth-order central difference; where a tail begins the second derivative jumps.
@@ -169,14 +172,13 @@ TEST(TexelCost, GradientAgreesWithFiniteDifferencesAtAThousandPoints) {
       const double numeric = (8.0 * (half_squares(p, h) - half_squares(p, -h)) -
                               (half_squares(p, 2 * h) - half_squares(p, -2 * h))) /
                              (12.0 * h);
-      ASSERT_NEAR(gradient[p], numeric,
-                  (beside ? 1e-4 : 1e-6) * (gradient.cwiseAbs().maxCoeff() + residuals.norm()))
+      ASSERT_NEAR(gram[p][kTexelParameters], numeric, (beside ? 1e-4 : 1e-6) * (steepest + norm))
           << "point " << i << " parameter " << p;
     }
   }
 }
 
-TEST(TexelCost, TenResidualsStandForAll) {
+TEST(TexelCost, ProductsAreThoseOfAllResiduals) {
   std::mt19937 random(13);
   constexpr int kViews = 11;
   TexelObservations observations(kViews);
@@ -195,16 +197,44 @@ TEST(TexelCost, TenResidualsStandForAll) {
 
     double variables[kTexelParameters];
     ToVariables(point.texel, variables);
-    const TexelCost cost(point.options, observations, point.prior, &rows);
-    double f[kGramSize];
-    Eigen::Matrix<double, kGramSize, kTexelParameters> j;
-    cost(variables, f, j.data());
-    const Eigen::Map<const Eigen::Matrix<double, kGramSize, 1>> ten(f);
-    const double scale = (jacobian.transpose() * jacobian).norm();
-    EXPECT_LT((j.transpose() * j - jacobian.transpose() * jacobian).norm(), 1e-12 * scale);
-    EXPECT_LT((j.transpose() * ten - jacobian.transpose() * residuals).norm(),
-              1e-12 * scale * (1 + residuals.norm()));
-    EXPECT_NEAR(ten.squaredNorm(), residuals.squaredNorm(), 1e-12 * residuals.squaredNorm());
+    TexelGram gram;
+    EvaluateCost(point.options, observations, point.prior, variables, &rows, &gram);
+    Eigen::MatrixXd all_columns(count, kGramSize);
+    all_columns << jacobian, residuals;
+    const Eigen::MatrixXd expected = all_columns.transpose() * all_columns;
+    for (int a = 0; a < kGramSize; ++a) {
+      for (int b = a; b < kGramSize; ++b) {
+        EXPECT_NEAR(gram[a][b], expected(a, b), 1e-12 * expected.norm());
+      }
+    }
+  }
+}
+
+// A matrix with the zeros of a texel's, plus damping: the solution satisfies it.
+TEST(TexelCholesky, SolvesDampedNormalEquations) {
+  std::mt19937 random(17);
+  constexpr int kViews = 11;
+  TexelObservations observations(kViews);
+  KernelRows rows(kViews);
+  for (int i = 0; i < 100; ++i) {
+    const Point point = RandomPoint(&random, kViews);
+    Fill(point, &observations);
+    TexelGram gram;
+    EvaluateGram(point.options, observations, point.texel, &rows, &gram);
+    double damping[kTexelParameters], right[kTexelParameters], solution[kTexelParameters];
+    for (int p = 0; p < kTexelParameters; ++p) {
+      damping[p] = Draw(&random, 0.01, 1.0);
+      right[p] = Draw(&random, -1.0, 1.0);
+    }
+    TexelCholesky(gram, damping).Solve(right, &solution);
+    for (int p = 0; p < kTexelParameters; ++p) {
+      double sum = damping[p] * solution[p], size = std::abs(right[p]);
+      for (int q = 0; q < kTexelParameters; ++q) {
+        sum += gram[std::min(p, q)][std::max(p, q)] * solution[q];
+        size += std::abs(gram[std::min(p, q)][std::max(p, q)] * solution[q]);
+      }
+      EXPECT_NEAR(sum, right[p], 1e-11 * size);
+    }
   }
 }
 
