@@ -23,6 +23,9 @@ endif()
 add_library(glint_compile_options INTERFACE)
 # g++ 12 sees these four where there are none, in std::string of its own (GCC bugs 105651, 105329).
 target_compile_options(glint_compile_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Werror "$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds>"
-  -ffp-contract=off -fno-math-errno)
-target_include_directories(glint_compile_options INTERFACE ${PROJECT_SOURCE_DIR})
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Werror>"
+  "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds>>"
+  "$<BUILD_INTERFACE:-ffp-contract=off;-fno-math-errno>")
+target_compile_features(glint_compile_options INTERFACE cxx_std_20)
+target_include_directories(glint_compile_options INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/glint>)

@@ -4,6 +4,12 @@
 #   share/glint/models            trained weights; programs look here (fitting/weights/find_model.cc)
 #   share/glint/schemas           of manifests
 #   share/man, share/*completion  from what the programs say of themselves (target package_texts)
+#
+# and, as the component `development`, which the package leaves out (cmake --install build
+# --component development --prefix DIR), what find_package(Glint) needs:
+#
+#   include/glint                 public headers, under the paths that the sources use
+#   lib/libglint_*.a, lib/cmake/Glint
 include(GNUInstallDirs)
 
 file(GLOB glint_models CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fitting/models/*.safetensors)
@@ -28,6 +34,34 @@ add_custom_target(package_texts
 add_dependencies(package_texts programs)
 install(DIRECTORY ${texts}/ DESTINATION share OPTIONAL)
 
+# Libraries that other programs can use, each after those it needs; GlintConfig.cmake.in says what
+# packages they need.
+function(glint_install_libraries)
+  install(TARGETS ${ARGN} glint_compile_options EXPORT GlintTargets
+    ARCHIVE DESTINATION lib COMPONENT development)
+  foreach(library ${ARGN})
+    string(REPLACE glint_ "" name ${library})
+    get_target_property(folder ${library} SOURCE_DIR)
+    file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${folder})
+    set_target_properties(${library} PROPERTIES EXPORT_NAME ${name})
+    install(DIRECTORY ${folder}/ DESTINATION include/glint/${path} COMPONENT development
+      FILES_MATCHING PATTERN "*.h" PATTERN "*.inl" EXCLUDE)
+  endforeach()
+endfunction()
+glint_install_libraries(glint_cpu glint_memory glint_parallel glint_resampling glint_reflectance
+  glint_render glint_camera glint_board glint_contract)
+set_target_properties(glint_compile_options PROPERTIES EXPORT_NAME compile_options)
+install(EXPORT GlintTargets NAMESPACE Glint:: DESTINATION lib/cmake/Glint COMPONENT development)
+include(CMakePackageConfigHelpers)
+configure_package_config_file(cmake/GlintConfig.cmake.in ${CMAKE_BINARY_DIR}/GlintConfig.cmake
+  INSTALL_DESTINATION lib/cmake/Glint)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/GlintConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/GlintConfig.cmake ${CMAKE_BINARY_DIR}/GlintConfigVersion.cmake
+  DESTINATION lib/cmake/Glint COMPONENT development)
+
+set(CPACK_COMPONENTS_ALL Unspecified)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_NAME glint)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME glint)
 set(CPACK_PACKAGE_CONTACT "Glint developers <glint@localhost>")

@@ -1,5 +1,5 @@
 // All residuals of a texel one by one with their Jacobian, for a general solver and for tests;
-// texel_cost.h hands the same sums of squares to TinySolver in a smaller form.
+// The solver sees their products only (texel_cost.h).
 #pragma once
 
 #include <span>
