@@ -97,26 +97,30 @@ void AddOptions(OptionSet* set, BoardOptions* options) {
   set->Add("paper", &sheet.paper,
            "A0 to A6, Letter, Legal, Tabloid, or WIDTHxHEIGHT in millimetres");
   set->Add("landscape", &sheet.landscape, "the paper's longer side is horizontal");
-  set->AddRange("margin-mm", &sheet.margin_mm, 0, 200, "white at the paper's edges");
+  set->AddRange("margin-mm", &sheet.margin_mm, 0, 200, "white margin at the paper's edges");
   set->Add("squares", &sheet.squares,
-           "COLUMNS,ROWS (markers: ACROSS,DOWN the frame); left out: as many as fit");
+           "COLUMNS,ROWS (markers: ACROSS,DOWN the frame); if omitted, as many as fit");
   set->AddRange("square-mm", &sheet.square_mm, 0, 1000,
-                "side of a square, or of a marker of kind markers; 0: chosen to fit the paper");
+                "side of a square (--kind markers: of a marker); 0: chosen to fit the paper");
   set->AddRange("marker-mm", &sheet.marker_mm, 0, 1000,
                 "side of a ChArUco marker; 0: derived from the square");
-  set->Add("dictionary", &sheet.dictionary,
-           "OpenCV's name, or AprilTag's, such as tag36h11, which kind markers has by default");
-  set->Add("legacy-layout", &sheet.legacy_layout, "ChArUco as OpenCV before 4.6 lays it out");
+  set->Add(
+      "dictionary", &sheet.dictionary,
+      "marker dictionary, by OpenCV or AprilTag name; for --kind markers, tag36h11 unless given");
+  set->Add("legacy-layout", &sheet.legacy_layout,
+           "use the ChArUco layout of OpenCV versions before 4.6");
   set->Add("window", &sheet.window,
            "FIRST_COLUMN,FIRST_ROW,COLUMNS,ROWS of squares left out for the sample");
   set->Add("sample-mm", &sheet.sample_mm, "WIDTH,HEIGHT of the sample that the window must hold");
   set->Add("full-board", &sheet.full_board, "no window");
   set->Add("patches", &sheet.patches,
            "reflectances of grey patches above the board, such as 0.85,0.6,0.36,0.18,0.09,0.04");
-  set->AddRange("paper-reflectance", &sheet.paper_reflectance, 0.05, 1, "of the white paper");
+  set->AddRange("paper-reflectance", &sheet.paper_reflectance, 0.05, 1,
+                "reflectance of the white paper");
   set->Add("from", &options->from, "print (or correct) this board.json instead of a new board");
-  set->AddRange("measured", &options->measured, 0, 1e5,
-                "length of the printed ruler in mm: corrects DIR/board.json and prints nothing");
+  set->AddRange(
+      "measured", &options->measured, 0, 1e5,
+      "length of the printed ruler in mm: corrects DIR/board.json; no new sheet is written");
 }
 
 }  // namespace
@@ -128,7 +132,7 @@ int main(int argc, char** argv) {
   glint::AddOptions(&set, &options);
   const glint::ProgramInfo info{
       "glint-board",
-      "Writes a calibration board to print: PDF and SVG in exact millimetres, and board.json, "
+      "Writes a calibration board to print: PDF and SVG, true to scale, and board.json, "
       "which calib reads.",
       GLINT_VERSION,
       "Examples:\n  glint board wood --sample-mm 100,100\n"

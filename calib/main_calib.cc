@@ -105,14 +105,13 @@ int main(int argc, char** argv) {
   glint::AddCalibOptions(&set, &options);
   bool check = false;
   set.Add("check", &check,
-          "look at the photographs quickly and say what is missing while the sample still lies on "
-          "the table; writes nothing",
+          "quickly check, before you put the sample away, what the capture still lacks; writes "
+          "nothing",
           glint::Invalidates::kNo);
   const glint::ProgramInfo info{
       "glint-calib",
       "Finds the board in each photograph and estimates intrinsics, poses and the flash's power; "
-      "or "
-      "takes poses and intrinsics from COLMAP.",
+      "or takes poses and intrinsics from COLMAP.",
       GLINT_VERSION,
       "Examples:\n  glint calib wood\n  glint calib wood --model RADIAL --cameras one\n"
       "  glint calib wood --check\n  glint calib wood --poses colmap\n"

@@ -122,16 +122,17 @@ ProgramResult Run(const Settings& settings) {
 int main(int argc, char** argv) {
   glint::Settings settings;
   glint::OptionSet set;
-  set.AddPositional("out", &settings.out, "the curve's file, for [radiometry] encoding", true);
-  set.Add("photos", &settings.photos, "photographs of one still scene at several exposures");
+  set.AddPositional("out", &settings.out,
+                    "file to write the curve to; name it in [radiometry] encoding", true);
+  set.Add("photos", &settings.photos, "photographs of one static scene at several exposures");
   set.Add("exposures", &settings.exposures,
-          "relative exposure of each photograph; left out: by EXIF");
+          "relative exposure of each photograph; if omitted, from EXIF");
   set.Add("patches", &settings.patches,
           "grey patches of known reflectance in the photographs (JSON; see docs/capture.md), "
           "instead of a series");
   set.Add("one-curve", &settings.one_curve, "the same curve for R, G and B");
   set.AddRange("exposure-sigma", &settings.exposure_sigma, 0, 0.5,
-               "how far off the exposures may be, relative; 0: they are exact");
+               "relative standard deviation of the exposures; 0: exact");
   const glint::ProgramInfo info{
       "glint-response",
       "Estimates a camera's tone curve from an exposure series or from grey patches.",

@@ -53,7 +53,7 @@ ProgramResult ReportMaps(const Table1Row& row, bool resampled) {
       "map average  {:.6f}\nrender       {:.6f}   ({} novel views and lights, clipped to [0, 1])\n",
       maps.diffuse, maps.specular, maps.roughness, maps.normal, maps.average(), row.render,
       kNovelViews);
-  if (resampled) result.text += "the estimate was resampled to the truth's size\n";
+  if (resampled) result.text += "the estimate was resampled to the size of the ground truth\n";
   return result;
 }
 
@@ -61,7 +61,8 @@ ProgramResult ReportMaps(const Table1Row& row, bool resampled) {
 // ones.
 void ReportCoverage(const SvbrdfMaps& maps, const SvbrdfMaps& truth, const StatedDeviations& stated,
                     ProgramResult* result) {
-  result->text += "truth within the stated deviations (normal, diffuse, specular, roughness)\n";
+  result->text +=
+      "ground truth within the stated standard deviations (normal, diffuse, specular, roughness)\n";
   for (const auto& [name, percent, widths] :
        {std::tuple{"coverage_68", 68, 1.0}, std::tuple{"coverage_95", 95, 1.96}}) {
     const Coverage share = CoverageOf(maps, truth, stated, widths);
@@ -77,9 +78,10 @@ void ReportCoverage(const SvbrdfMaps& maps, const SvbrdfMaps& truth, const State
 int RunMaps(int argc, char** argv, const ProgramInfo& info) {
   fs::path estimate_path, truth_path;
   OptionSet options;
-  options.AddPositional("estimate", &estimate_path, "svbrdf.exr, manifest.json, strip or folder",
-                        true);
-  options.AddPositional("truth", &truth_path, "likewise", true);
+  options.AddPositional("estimate", &estimate_path,
+                        "estimated maps: svbrdf.exr, manifest.json, strip or folder", true);
+  options.AddPositional("truth", &truth_path,
+                        "ground-truth maps: svbrdf.exr, manifest.json, strip or folder", true);
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     SvbrdfMaps estimate = ReadAnyMaps(estimate_path, kPaperSize);
     const SvbrdfMaps truth = ReadAnyMaps(truth_path, estimate.width);
@@ -108,8 +110,8 @@ int RunViews(int argc, char** argv, const ProgramInfo& info) {
   options.AddPositional("fit", &fit_path,
                         "manifest.json of fit or refine, its folder, or svbrdf.exr", true);
   options.AddPositional("views-of", &set_path, "manifest.json of rectify", true);
-  options.Add("views", &only, "only these views (names of views or photographs)");
-  options.Add("exclude", &exclude, "not these");
+  options.Add("views", &only, "only these views, by view name or photograph name");
+  options.Add("exclude", &exclude, "views to leave out, by view name or photograph name");
   options.Add("pairs", &pairs, "folder for pictures: photograph, rendering, 4 × difference");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     const fs::path file = fs::is_directory(set_path) ? set_path / "manifest.json" : set_path;
@@ -177,8 +179,8 @@ ProgramResult ReportCameras(const CalibrationErrors& errors) {
       errors.largest_position_percent, errors.corner_rms_texel, errors.largest_corner_rms_texel,
       errors.light_power_percent);
   if (errors.missing_photos > 0) {
-    result.text +=
-        fmt::format("{} photographs of the truth were not calibrated\n", errors.missing_photos);
+    result.text += fmt::format("{} photographs of the ground truth were not calibrated\n",
+                               errors.missing_photos);
   }
   return result;
 }
@@ -219,7 +221,8 @@ int RunCameras(int argc, char** argv, const ProgramInfo& info) {
                         "folder truth/ of a synthetic capture, or manifest.json of calib", true);
   options.AddPositional("estimate", &estimate, "manifest.json of calib", true);
   options.AddChoice("align", &align, {"none", "similarity"},
-                    "similarity: move and scale the estimate's cameras onto the truth's first");
+                    "similarity: first align the estimated cameras to the true ones by their "
+                    "centres (rotation, translation, scale)");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions&) {
     const Reference reference = ReadReference(truth);
     Calibration calibration = ReadCalibration(ManifestIn(estimate));
@@ -246,12 +249,15 @@ int RunCameras(int argc, char** argv, const ProgramInfo& info) {
 
 int main(int argc, char** argv) {
   std::vector<Verb> verbs = {
-      {"maps", "Compares maps with true ones: the six figures of Gao et al. 2019, table 1.",
+      {"maps",
+       "Compares maps with ground truth: the six error measures of Gao et al. 2019, table 1.",
        "Example: glint-eval maps demo/glint/refine/svbrdf.exr demo/truth/svbrdf.exr", RunMaps},
       {"views", "Renders views from a fit and compares them with the photographs.",
        "Example: glint-eval views cards/glint/refine cards/glint/rectify --views photo_07.jpg",
        RunViews},
-      {"cameras", "Compares a calibration with the truth of a synthetic capture, or with another.",
+      {"cameras",
+       "Compares a calibration with the ground truth of a synthetic capture, or with another "
+       "calibration.",
        "Examples:\n  glint-eval cameras demo/truth demo/glint/calib/manifest.json\n"
        "  glint-eval cameras board/glint/calib colmap/glint/calib --align similarity",
        RunCameras}};
@@ -259,8 +265,10 @@ int main(int argc, char** argv) {
   verbs.push_back(LightVerb());
   verbs.push_back(LimitsVerb());
   for (const Verb& verb : ExperimentVerbs()) verbs.push_back(verb);
-  return RunVerb(argc, argv,
-                 {"glint-eval", "Measures results: maps, renderings, cameras, the paper's tables.",
-                  GLINT_VERSION, ""},
-                 verbs);
+  return RunVerb(
+      argc, argv,
+      {"glint-eval",
+       "Evaluates maps, renderings and cameras, and reproduces the paper's tables and figures.",
+       GLINT_VERSION, ""},
+      verbs);
 }

@@ -36,8 +36,9 @@ struct MaterialChoice {
 
   void AddTo(OptionSet* options) {
     options->Add("maps", &maps,
-                 "svbrdf.exr, strip or folder of maps to take instead of making them");
-    options->Add("family", &family, "family of the procedural material; none: drawn from the seed");
+                 "svbrdf.exr, strip or folder of maps to use instead of generating them");
+    options->Add("family", &family,
+                 "family of the procedural material; if omitted: drawn from the seed");
   }
   MaterialSource Load(std::uint64_t seed, int size) const {
     if (!maps.empty()) return LoadMaterial(maps.string(), size);
@@ -83,7 +84,7 @@ int RunMaterial(int argc, char** argv, const ProgramInfo& info) {
   OptionSet options;
   options.AddPositional("out", &out, "file (….exr) or folder to write svbrdf.exr into", false);
   choice.AddTo(&options);
-  options.AddRange("size", &size, 8, 8192, "texels a side");
+  options.AddRange("size", &size, 8, 8192, "texels per side");
   options.Add("png", &png, "also write a preview: normal, diffuse, specular, roughness");
   options.Add("list", &list, "list the families and do nothing else");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
@@ -125,8 +126,8 @@ int RunPack(int argc, char** argv, const ProgramInfo& info) {
   OptionSet options;
   options.AddPositional("materials", &given, "folders of maps, or folders that hold such folders",
                         true);
-  options.Add("out", &out, "pack to write, ….safetensors (needed)");
-  options.AddRange("size", &size, 8, 8192, "texels a side");
+  options.Add("out", &out, "pack to write, ….safetensors (required)");
+  options.AddRange("size", &size, 8, 8192, "texels per side");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions&) {
     if (out.empty()) throw UserError("out: found nothing; name a file to write");
     MaterialPack pack;
@@ -157,29 +158,32 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   options.Add("board", &board,
               "board.json of the board round the sample (default: a frame on A4), or none: a "
               "patterned table, for --poses colmap");
-  options.AddRange("photos", &plan.photos, 1, 1000, "photographs; the first is about a top view");
+  options.AddRange("photos", &plan.photos, 1, 1000,
+                   "number of photographs; the first is roughly a top view");
   options.AddRange("megapixels", &plan.megapixels, 0.05, 60, "size of a photograph, 4:3");
   options.AddRange("sample-mm", &plan.sample_mm, 10, 1000, "side of the square sample");
-  options.AddRange("texels", &texels, 16, 8192, "texels a side of a procedural material");
+  options.AddRange("texels", &texels, 16, 8192, "texels per side of a procedural material");
   options.Add("distance-mm", &distance_mm, "camera's distance: nearest,farthest");
   options.AddRange("tilt-deg", &plan.largest_tilt_deg, 0, 65, "largest tilt of the later views");
   options.Add("flash-offset-mm", &flash_mm, "flash in the camera frame: right,down,forward");
   options.Add("flash-tint", &tint, "colour of the flash: r,g,b in (0, 1]");
-  options.AddRange("ambient", &plan.ambient, 0, 10, "room light relative to the flash's");
+  options.AddRange("ambient", &plan.ambient, 0, 10, "ambient illumination relative to the flash");
   options.AddRange("vignetting", &plan.vignetting, 0, 0.8, "light lost in the picture's corners");
   options.AddRange("exposure-ev", &plan.exposure_ev, 0, 4,
                    "exposures spread over plus and minus this many stops");
   options.AddRange("exif-error", &plan.exif_error, 0, 0.5,
-                   "relative standard deviation of the exposures that EXIF tells");
-  options.AddRange("jpeg-quality", &capture.jpeg_quality, 1, 100, "of .jpg photographs");
-  options.Add("tell-flash", &capture.tell_flash, "capture.toml gives the flash's offset");
+                   "relative error (standard deviation) of the exposures recorded in EXIF");
+  options.AddRange("jpeg-quality", &capture.jpeg_quality, 1, 100,
+                   "JPEG quality of .jpg photographs");
+  options.Add("tell-flash", &capture.tell_flash, "write the flash's offset into capture.toml");
   options.AddRange("paper-level", &plan.paper_level, 1e-3, 4,
                    "radiance of the brightest paper; the sensor clips at 1");
   options.AddRange("noise", &capture.noise.scale, 0, 100, "sensor noise; 0: none, 1: a phone's");
-  options.AddRange("lens-blur-px", &capture.lens_blur_px, 0, kMostBlur_px,
-                   "standard deviation of the lens's point spread; 0: a pixel's box alone");
+  options.AddRange(
+      "lens-blur-px", &capture.lens_blur_px, 0, kMostBlur_px,
+      "standard deviation of the lens's point spread; 0: only the pixel's own box filter");
   options.AddChoice("format", &capture.format, {"jpg", "png", "exr"},
-                    "of the photographs; exr: linear float, not clipped");
+                    "file format of the photographs; exr: linear float, not clipped");
   options.AddChoice("encoding", &capture.encoding, {"gamma2.2", "srgb", "linear"},
                     "tone curve of 8-bit photographs");
   options.AddRange("resolution", &capture.resolution_px, 8, 8192,
@@ -219,7 +223,7 @@ int RunViews(int argc, char** argv, const ProgramInfo& info) {
   options.AddPositional("maps", &maps, "maps, or procedural:SEED, or procedural:FAMILY:SEED", true);
   options.AddPositional("out", &out, "folder of the new capture", true);
   AddViewSetOptions(&views, &options);
-  options.AddRange("resolution", &resolution, 8, 4096, "texels a side");
+  options.AddRange("resolution", &resolution, 8, 4096, "texels per side");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     const MaterialSource material = LoadMaterial(maps, resolution);
     WriteViewSet(out, material, views, common);
@@ -238,10 +242,10 @@ int RunStatistics(int argc, char** argv, const ProgramInfo& info) {
   options.AddPositional("materials", &materials,
                         "real maps, or folders of folders of maps, to compare with", true);
   options.Add("out", &out, "folder for statistics.json, .csv and .png");
-  options.Add("family", &family, "compare one procedural family; none: drawn from the seed");
-  options.AddRange("seeds", &seeds, 1, 100000, "procedural materials");
-  options.AddRange("first-seed", &first, 0, 2e9, "the first one's seed");
-  options.AddRange("size", &size, 8, 2048, "texels a side, a power of two");
+  options.Add("family", &family, "compare one procedural family; if omitted: drawn from the seed");
+  options.AddRange("seeds", &seeds, 1, 100000, "number of procedural materials");
+  options.AddRange("first-seed", &first, 0, 2e9, "seed of the first one");
+  options.AddRange("size", &size, 8, 2048, "texels per side, a power of two");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     if (out.empty()) throw UserError("out: found nothing; name a folder to write to");
     const auto seed = static_cast<std::uint64_t>(first);
@@ -267,14 +271,16 @@ int main(int argc, char** argv) {
        RunCapture},
       {"pack", "Packs folders of maps into one file that glint-train mixes into its data.",
        "Example: glint-synth pack materials/train --out materials.safetensors", RunPack},
-      {"views", "Renders rectified views from maps: a capture whose stage rectify is done.",
+      {"views",
+       "Renders rectified views from maps, as a capture with its rectify stage already done.",
        "Example: glint-synth views procedural:7 set --count 5 && glint-fit set", RunViews},
       {"statistics",
        "Compares the statistics of procedural materials with those of real ones: histograms, power "
        "spectra, correlations and spreads, each with a distance.",
        "Example: glint-synth statistics data/materials/train --out statistics", RunStatistics}};
-  return RunVerb(argc, argv,
-                 {"glint-synth", "Makes synthetic materials, captures and views, with their truth.",
-                  GLINT_VERSION, ""},
-                 verbs);
+  return RunVerb(
+      argc, argv,
+      {"glint-synth", "Makes synthetic materials, captures and views, with their ground truth.",
+       GLINT_VERSION, ""},
+      verbs);
 }

@@ -1,4 +1,4 @@
-// glint-fit: maps from rectified views, in the learned space or texel by texel.
+// glint-fit: maps from rectified views, in the latent space or texel by texel.
 #include <fmt/format.h>
 
 #include "fitting/latent/fit_stage.h"

@@ -26,72 +26,82 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
   app->add_option("--out", files->weights, "weights file to write (safetensors)")->required();
   app->add_option("--checkpoint", files->checkpoint, "checkpoint file (default: OUT.checkpoint)");
   app->add_option("--log", files->log_csv, "loss log, CSV (default: OUT.csv)");
-  app->add_flag("--resume", files->resume, "go on from the checkpoint when it exists");
-  app->add_option("--steps", o->steps, "steps of the optimiser");
-  app->add_option("--minutes", o->minutes, "training time, counted over all resumes");
-  app->add_option("--batch", o->batch, "crops per step")->capture_default_str();
-  app->add_option("--crop", o->crop, "texels along a crop, multiple of 32")->capture_default_str();
+  app->add_flag("--resume", files->resume, "continue from the checkpoint if there is one");
+  app->add_option("--steps", o->steps, "number of optimiser steps");
+  app->add_option("--minutes", o->minutes, "training time in minutes, counted over all resumes");
+  app->add_option("--batch", o->batch, "number of crops per step")->capture_default_str();
+  app->add_option("--crop", o->crop, "crop size in texels, a multiple of 32")
+      ->capture_default_str();
   app->add_option("--lr", o->learning_rate, "highest learning rate")->capture_default_str();
-  app->add_option("--warmup", o->warmup_steps, "steps of rising rate")->capture_default_str();
+  app->add_option("--warmup", o->warmup_steps, "steps over which the learning rate rises")
+      ->capture_default_str();
   app->add_option("--warmup-from", o->warmup_from,
-                  "step the rate rises from: a checkpoint's, when --resume lengthens a training")
+                  "step at which warm-up starts; set it to the checkpoint's step when --resume "
+                  "extends a run")
       ->capture_default_str();
-  app->add_option("--accumulate", o->accumulate, "batches whose gradients make one step")
+  app->add_option("--accumulate", o->accumulate, "batches whose gradients are accumulated per step")
       ->capture_default_str();
-  app->add_option("--from", o->from, "weights to begin with, of any training (default: new ones)")
+  app->add_option("--from", o->from,
+                  "initial weights, from any earlier training run (default: newly initialised)")
       ->check(CLI::ExistingFile);
   app->add_option("--map-weight", o->map_weight, "weight of the map term")->capture_default_str();
   app->add_option("--render-weight", o->render_weight, "weight of the rendering term")
       ->capture_default_str();
-  app->add_option("--render-views", o->render_views, "renderings per crop (DIR: 9)")
+  app->add_option("--render-views", o->render_views, "number of renderings per crop (DIR: 9)")
       ->capture_default_str();
-  app->add_option("--normal-weight", o->normal_weight, "of normals in the map term")
+  app->add_option("--normal-weight", o->normal_weight, "weight of normals in the map loss")
       ->capture_default_str();
-  app->add_option("--average-decay", o->average_decay, "of the moving average of weights")
+  app->add_option("--average-decay", o->average_decay, "decay of the weights' moving average")
       ->capture_default_str();
   app->add_option("--bf16", o->bf16, "multiply in bf16 where the CPU can")->capture_default_str();
-  app->add_option("--pool-window", o->pool.window, "materials a step chooses from")
+  app->add_option("--pool-window", o->pool.window, "number of materials that a step chooses from")
       ->capture_default_str();
-  app->add_option("--pool-first", o->pool.first, "materials made before the first step")
+  app->add_option("--pool-first", o->pool.first,
+                  "number of materials generated before the first step")
       ->capture_default_str();
-  app->add_option("--pool-per-step", o->pool.per_step, "new materials per step")
+  app->add_option("--pool-per-step", o->pool.per_step, "number of new materials per step")
       ->capture_default_str();
-  app->add_option("--material-size", o->pool.material_size, "texels along a material")
+  app->add_option("--material-size", o->pool.material_size, "side of a material in texels")
       ->capture_default_str();
-  app->add_option("--checkpoint-minutes", o->checkpoint_minutes, "between checkpoints")
+  app->add_option("--checkpoint-minutes", o->checkpoint_minutes, "minutes between checkpoints")
       ->capture_default_str();
-  app->add_option("--seed", o->seed, "of weights, materials and crops")->capture_default_str();
-  app->add_option("--threads", o->threads, "torch threads; results repeat for a fixed number")
+  app->add_option("--seed", o->seed, "seed of weights, materials and crops")->capture_default_str();
+  app->add_option("--threads", o->threads,
+                  "torch threads; results are reproducible for a fixed number of threads")
       ->capture_default_str();
 }
 
 void AddAutoencoderOptions(CLI::App* app, AutoencoderTrainOptions* o) {
-  app->add_option("--channels", o->channels, "channels of the five levels, the last the code's")
+  app->add_option("--channels", o->channels,
+                  "channels at each of the five levels (the last is the latent code)")
       ->delimiter(',')
       ->capture_default_str();
   app->add_option("--smoothness", o->smoothness, "weight of the smoothness term (DIR: 2)")
       ->capture_default_str();
-  app->add_option("--smoothness-share", o->smoothness_share, "share of the batch it is taken on")
+  app->add_option("--smoothness-share", o->smoothness_share,
+                  "fraction of the batch to which the smoothness term is applied")
       ->capture_default_str();
-  app->add_option("--noise-variance", o->noise_variance, "of the code's disturbance")
+  app->add_option("--noise-variance", o->noise_variance,
+                  "variance of the noise added to the latent code")
       ->capture_default_str();
   app->add_option("--normalisation", o->normalisation,
                   "batch normalisation: none, on the code, or on all convolutions")
       ->check(CLI::IsMember({"none", "code", "all"}))
       ->capture_default_str();
-  app->add_option("--principal-start", o->principal_start, "start from principal components")
+  app->add_option("--principal-start", o->principal_start, "initialise from principal components")
       ->capture_default_str();
 }
 
 void AddEstimatorOptions(CLI::App* app, EstimatorTrainOptions* o) {
-  app->add_option("--channels", o->channels,
-                  "channels of the five levels, of the full resolution, of the global track")
+  app->add_option(
+         "--channels", o->channels,
+         "channels at each of the five levels, then at full resolution, then of the global track")
       ->delimiter(',')
       ->capture_default_str();
-  app->add_option("--spread-weight", o->spread_weight, "of the predicted errors' likelihood")
+  app->add_option("--spread-weight", o->spread_weight, "weight of the predicted errors' likelihood")
       ->capture_default_str();
   app->add_option("--batch-photographs", o->batch_photographs,
-                  "photographs per step, at most; samples with many make smaller batches")
+                  "maximum number of photographs per step; samples with many make smaller batches")
       ->capture_default_str();
 }
 
@@ -114,15 +124,15 @@ struct MaterialOptions {
 
   void AddTo(CLI::App* app) {
     app->add_option("--materials", pack, "pack of real materials to mix in (glint-synth pack)");
-    app->add_option("--materials-share", pack_share, "of all materials that come from the pack")
+    app->add_option("--materials-share", pack_share, "fraction of materials drawn from the pack")
         ->capture_default_str();
     app->add_option(
            "--glazed-share", glazed_share,
-           "of all materials that are made dark dielectrics, mostly glossy, wholly or in part")
+           "fraction of materials turned, wholly or partly, into dark, mostly glossy dielectrics")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
     app->add_option("--one-substance-share", one_substance_share,
-                    "of all materials whose roughness and specular albedo hardly vary")
+                    "fraction of materials with nearly constant roughness and specular albedo")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
   }
@@ -178,13 +188,13 @@ int main(int argc, char** argv) {
   EstimatorTrainOptions estimator_options;
   TrainFiles files;
   MaterialOptions materials;
-  CLI::App* autoencoder = app.add_subcommand("autoencoder", "the learned space of `glint-fit`");
+  CLI::App* autoencoder =
+      app.add_subcommand("autoencoder", "train the auto-encoder whose latent space glint-fit uses");
   AddCommonOptions(autoencoder, &autoencoder_options, &files);
   AddAutoencoderOptions(autoencoder, &autoencoder_options);
   materials.AddTo(autoencoder);
-  CLI::App* bootstrap = app.add_subcommand(
-      "bootstrap",
-      "the estimator of maps from any number of photographs, the initialisation of `glint-fit`");
+  CLI::App* bootstrap =
+      app.add_subcommand("bootstrap", "train the estimator that initialises glint-fit");
   AddCommonOptions(bootstrap, &estimator_options, &files);
   AddEstimatorOptions(bootstrap, &estimator_options);
   materials.AddTo(bootstrap);

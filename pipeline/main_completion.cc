@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   return glint::RunProgram(
       argc, argv,
       {"glint-completion",
-       "Prints a script by which a shell completes Glint's verbs, options, choices and files.",
+       "Prints a shell completion script for Glint's verbs, options, values and files.",
        GLINT_VERSION,
        "Examples:\n"
        "  glint completion bash > ~/.local/share/bash-completion/completions/glint\n"

@@ -1,4 +1,4 @@
-// glint-demo: a synthetic capture, every stage on it, and the errors against the truth.
+// glint-demo: a synthetic capture, every stage on it, and the errors relative to ground truth.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -36,9 +36,9 @@ glint::ProgramResult Demo(const fs::path& folder) {
   }
   Step("Every stage on it", "glint-run", {folder.string()});
   const fs::path work = folder / "glint", truth = folder / "truth";
-  Step("Errors of cameras against the truth", "glint-eval",
+  Step("Errors of the cameras relative to ground truth", "glint-eval",
        {"cameras", truth.string(), (work / "calib/manifest.json").string()});
-  Step("Errors of the maps", "glint-eval",
+  Step("Errors of the maps relative to ground truth", "glint-eval",
        {"maps", (work / "refine/svbrdf.exr").string(), (truth / "svbrdf.exr").string()});
   const fs::path whole = fs::absolute(folder);
   const std::string page = (whole / "glint/report/index.html").string();
@@ -58,8 +58,8 @@ int main(int argc, char** argv) {
   return glint::RunProgram(
       argc, argv,
       {"glint-demo",
-       "Makes a synthetic phone capture, runs every stage on it and compares the result with the "
-       "truth.",
+       "Makes a synthetic phone capture, runs every stage on it and compares the result with "
+       "ground truth.",
        GLINT_VERSION, "Example: glint demo leather && glint view leather", false},
       &options, [&](const glint::CommonOptions&) { return Demo(folder); });
 }

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
                         true);
   return glint::RunProgram(
       argc, argv,
-      {"glint-manual", "Writes manual pages: one of glint, and one of each verb.", GLINT_VERSION,
+      {"glint-manual", "Writes manual pages: one for glint and one for each verb.", GLINT_VERSION,
        "Example: glint manual ~/.local/share/man/man1 && man glint-run", false},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         const auto files = glint::WriteManual(folder, glint::DescribeCommands(), GLINT_VERSION);

@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
       argc, argv,
       {"glint-overview",
        "Writes one page about many captures: what failed and why, the verdict on "
-       "the photographs, key figures, and a link to each capture's page.",
+       "the photographs, key numbers, and a link to each capture's page.",
        GLINT_VERSION, "Example: glint overview captures/* --out captures.html", false},
       &options, [&](const CommonOptions&) { return Write(folders, page); });
 }

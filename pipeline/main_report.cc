@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
       argc, argv,
       {"glint-report",
        "Writes one HTML file with maps, photographs beside re-renderings, cameras, lights and the "
-       "figures of every stage.",
+       "key numbers of every stage.",
        GLINT_VERSION, "Example: glint report wood --from fit"},
       &set,
       [&](const CommonOptions& common) { return WriteReport(folder, &set, &options, common); });

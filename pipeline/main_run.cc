@@ -18,15 +18,16 @@ struct RunArguments {
 void AddOptions(glint::OptionSet* options, RunArguments* o) {
   options->AddPositional("CAPTURE", &o->run.capture, "folder of the capture", false);
   options->Add("from", &o->run.from, "start at this stage; keep earlier results");
-  options->Add("until", &o->run.until, "end after this stage");
+  options->Add("until", &o->run.until, "stop after this stage");
   options->Add("dry-run", &o->dry_run, "only say which stages would run and why");
   options->AddRange("jobs,-j", &o->jobs, 0, 1024, "same as --threads");
-  options->AddChoice("method", &o->run.choices.method, {"start", "classic", "latent", "refined"},
-                     "start: maps as a network estimates them, nothing fitted; classic: maps "
-                     "fitted texel by texel; latent: in the learned space; refined (default): "
-                     "latent, then per texel");
+  options->AddChoice(
+      "method", &o->run.choices.method, {"start", "classic", "latent", "refined"},
+      "start: maps as a network estimates them, nothing fitted; classic: maps "
+      "fitted texel by texel; latent: in the auto-encoder's latent space; refined (default): "
+      "latent, then per texel");
   options->Add("quick", &o->quick,
-               "a first look in seconds, while the sample still lies on the table: the same as "
+               "a first look in seconds, before you put the sample away: the same as "
                "--method start; run again without it to fit the maps");
   options->Add("exclude", &o->run.choices.exclude,
                "photographs (file or view names) held out from fit and refine");
@@ -68,9 +69,8 @@ int main(int argc, char** argv) {
   return glint::RunProgram(
       argc, argv,
       {"glint-run",
-       "Runs every out-of-date stage of a capture: calib, rectify, "
-       "fit, refine, tile (with a "
-       "section [tile] in capture.toml), export, report.",
+       "Runs every out-of-date stage of a capture: calib, rectify, fit, refine, tile (with a "
+       "[tile] section in capture.toml), export, report.",
        GLINT_VERSION,
        "Examples:\n  glint run wood\n  glint run wood --quick\n  glint run wood --until rectify\n"
        "  glint run wood --exclude img_003.jpg,img_007.jpg --method latent"},

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
       argc, argv,
       {"glint-status",
        "Shows for each stage whether its result is up to date with the options of the last glint "
-       "run (and if not, why), its size and its main figures.",
+       "run (and if not, why), its size and its key numbers.",
        GLINT_VERSION, "", false},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         const glint::Capture capture = glint::ReadCapture(folder);

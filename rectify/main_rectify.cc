@@ -1,4 +1,4 @@
-// glint-rectify: photographs and their calibration to linear top views.
+// glint-rectify: photographs and their calibration to top views in linear radiance.
 #include <fmt/format.h>
 
 #include "pipeline/contract/capture.h"
@@ -67,10 +67,10 @@ int main(int argc, char** argv) {
   glint::OptionSet set;
   set.AddPositional("capture", &folder, "the capture's folder", false);
   glint::AddRectifyOptions(&set, &options);
-  const glint::ProgramInfo info{
-      "glint-rectify",
-      "Resamples each calibrated photograph to a linear, undistorted top view of the sample.",
-      GLINT_VERSION, "Example: glint rectify wood --resolution 512"};
+  const glint::ProgramInfo info{"glint-rectify",
+                                "Resamples each calibrated photograph to an undistorted top view "
+                                "of the sample in linear radiance.",
+                                GLINT_VERSION, "Example: glint rectify wood --resolution 512"};
   return glint::RunProgram(argc, argv, info, &set, [&](const glint::CommonOptions& common) {
     return glint::Run(folder, &set, &options, common);
   });

@@ -58,48 +58,47 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
                  "also write the calibration for another program: colmap, to glint/colmap",
                  Invalidates::kNo);
   set->AddChoice("model", &options->model, ModelChoices(),
-                 "COLMAP's camera model; auto: the simplest that predicts held-out photos as well "
-                 "as the best (boards "
-                 "only; with --poses colmap, OPENCV)");
-  set->AddChoice(
-      "cameras", &options->cameras, {"auto", "one", "each"},
-      "auto: photos of the same size and EXIF focal length share their intrinsics; one: all "
-      "do; each: none do");
-  set->Add("hold", &options->hold, "distortion parameters held at 0, such as p1 p2");
+                 "COLMAP's camera model; auto: the simplest model whose held-out error is not "
+                 "significantly above that of the best (boards only; with --poses colmap, OPENCV)");
+  set->AddChoice("cameras", &options->cameras, {"auto", "one", "each"},
+                 "auto: photos of the same size and EXIF focal length share their intrinsics; one: "
+                 "all photos share one set; each: every photo has its own");
+  set->Add("hold", &options->hold, "distortion parameters held at 0, such as p1,p2");
   set->Add("fix-intrinsics", &options->fix_intrinsics,
-           "manifest of another calibration whose intrinsics are taken as they are",
+           "manifest of another calibration whose intrinsics are used unchanged",
            Invalidates::kNo);  // its content is an input, and the place of the file tells nothing
   set->Add(
       "library", &options->library,
       "folder of calib manifests: a camera whose EXIF matches one of them takes its intrinsics",
       Invalidates::kNo);  // likewise
   set->AddChoice("board-shape", &options->board_shape, {"flat", "bent"},
-                 "bent: how far the board rises in its middle is solved for");
+                 "bent: also estimate how far the board bulges in the middle");
   set->AddRange("reject-sigmas", &options->reject_sigmas, 2, 1000,
                 "corners farther off than this many robust standard deviations are rejected");
   set->AddRange("min-reject-px", &options->min_reject_px, 0, 1000,
                 "corners off by less than this are never rejected");
-  set->AddRange("min-corners", &options->min_corners, 4, 10000, "a photo with fewer is rejected");
+  set->AddRange("min-corners", &options->min_corners, 4, 10000,
+                "photos with fewer corners are rejected");
   set->AddRange("detect-px", &options->detect_px, 200, 20000,
-                "boards are looked for in a copy whose longer side is at most this; their corners "
-                "are placed in the photo itself");
+                "boards are detected in a copy downscaled to this longer side; corners are then "
+                "located in the full-resolution photo");
   set->AddChoice(
       "light", &options->light, {"board", "camera"},
-      "board: flash position, lens fall-off, exposures and room light from the board's "
+      "board: flash position, lens fall-off, exposures and ambient illumination from the board's "
       "white paper; camera: the light at the lens or at [light] offset_mm, exposures from "
       "EXIF");
   set->AddRange("plane-tolerance", &options->plane_tolerance, 1e-5, 0.2,
                 "--poses colmap: points farther from the sample's plane than this fraction of the "
                 "cameras' distance are not part of it");
   set->AddRange("feature-px", &options->feature_px, 200, 20000,
-                "--poses colmap: features are looked for in a copy whose longer side is at most "
-                "this");
+                "--poses colmap: features are detected in a copy downscaled to this longer side");
   set->AddChoice(
       "triage", &options->triage, {"warn", "drop", "off"},
       "blurred, dark, overexposed and duplicate photographs; warn: name them; drop: leave "
       "them out too; off: do not check");
-  set->AddRange("paper-reflectance", &options->paper_reflectance, 0.05, 1,
-                "of the board's white, from which the light's power is estimated");
+  set->AddRange(
+      "paper-reflectance", &options->paper_reflectance, 0.05, 1,
+      "reflectance of the board's white paper, from which the light's power is estimated");
 }
 
 BundleOptions BundleOptionsOf(const CalibOptions& options) {

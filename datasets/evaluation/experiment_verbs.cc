@@ -13,22 +13,25 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
                 std::vector<double>* counts, OptionSet* options) {
   options->AddPositional("materials", &experiment->materials,
                          "maps, folders of materials, procedural:SEED or procedural:FIRST..LAST; "
-                         "none: eight reserved seeds",
+                         "if omitted: eight reserved seeds",
                          false);
   options->Add("counts", counts, "numbers of views");
-  options->Add("methods", &experiment->methods, "of start, classic, latent, refined, uncorrected");
-  options->Add("work", &experiment->work, "folder that keeps views and results (required)");
-  options->AddRange("size", &experiment->size, 8, 4096, "texels a side");
+  options->Add("methods", &experiment->methods,
+               "any of: start, classic, latent, refined, uncorrected");
+  options->Add("work", &experiment->work, "folder in which views and results are kept (required)");
+  options->AddRange("size", &experiment->size, 8, 4096, "texels per side");
   ViewSetOptions* views = &experiment->views;
   options->AddChoice("rule", &views->rule, {"dir", "photo", "flash"}, "as in glint-synth views");
-  options->AddRange("discrepancy", &views->discrepancy, 0, 2, "likewise");
+  options->AddRange("discrepancy", &views->discrepancy, 0, 2, "as in glint-synth views");
   if (paper.name != "hdr") {
-    options->AddChoice("bits", &views->bits, {"8", "float"}, "likewise");
+    options->AddChoice("bits", &views->bits, {"8", "float"}, "as in glint-synth views");
   }
-  options->AddChoice("encoding", &views->encoding, {"gamma2.2", "srgb", "linear"}, "likewise");
+  options->AddChoice("encoding", &views->encoding, {"gamma2.2", "srgb", "linear"},
+                     "as in glint-synth views");
   options->Add("fit-args", &experiment->fit_arguments,
                "more arguments for glint-fit, comma-separated");
-  options->Add("refine-args", &experiment->refine_arguments, "likewise for glint-refine");
+  options->Add("refine-args", &experiment->refine_arguments,
+               "more arguments for glint-refine, comma-separated");
   if (paper.name == "table1") {
     options->Add("disturb", &experiment->disturb,
                  "also with views disturbed: registration .5 texel, light 5°, environment 5 %");
@@ -38,13 +41,13 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
                  "equirectangular radiance map, .hdr or .exr (default: a white surround)");
   }
   if (paper.name == "exposure") {
-    options->Add("stops", &experiment->stops, "exposures, as in --stops=-6,0,2");
+    options->Add("stops", &experiment->stops, "exposures in stops, as in --stops=-6,0,2");
   }
   if (paper.name == "topview") {
-    options->Add("tilts", &experiment->tilts, "least angles off the normal, degrees");
+    options->Add("tilts", &experiment->tilts, "minimum angles from the normal, in degrees");
   }
   if (paper.name == "start") {
-    options->Add("starts", &experiment->starts, "of random, heuristic, network, truth, rough");
+    options->Add("starts", &experiment->starts, "any of: random, heuristic, network, truth, rough");
   }
   if (paper.name == "ablation") {
     options->Add("weights", &experiment->weights, "NAME=FILE of each auto-encoder (required)");

@@ -48,19 +48,22 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
   OptionSet options;
   options.AddPositional("sets", &sets,
                         "folders that glint-import reads, or captures with rectified views", true);
-  options.Add("work", &experiment.work, "folder that keeps captures and results (required)");
+  options.Add("work", &experiment.work, "folder in which captures and results are kept (required)");
   options.Add("pairs", &pairs,
-              "photographs to hold out, by number from 0 on or by name: groups apart by ';', as in "
+              "views to hold out, by number (from 0) or by name; separate groups with ';', as in "
               "'2,6;7,8'");
-  options.Add("shown", &fitted, "photographs to fit, all others held out; likewise");
+  options.Add("shown", &fitted,
+              "views to fit; all others are held out; numbers, names and groups as in --pairs");
   options.Add("methods", &experiment.methods,
-              "of start (the initialisation), classic, latent, refined");
+              "any of: start (the initialisation), classic, latent, refined");
   options.Add("programs", &programs,
               "NAME=FOLDER of other builds' programs to compare with, comma-separated");
   options.Add("import-args", &experiment.import_arguments,
               "more arguments for glint-import, comma-separated");
-  options.Add("fit-args", &experiment.fit_arguments, "likewise for glint-fit");
-  options.Add("refine-args", &experiment.refine_arguments, "likewise for glint-refine");
+  options.Add("fit-args", &experiment.fit_arguments,
+              "more arguments for glint-fit, comma-separated");
+  options.Add("refine-args", &experiment.refine_arguments,
+              "more arguments for glint-refine, comma-separated");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     if (common.check) throw UserError("check: an experiment is no stage; leave the option out");
     experiment.sets.assign(sets.begin(), sets.end());
@@ -78,7 +81,8 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
 
 Verb HoldoutVerb() {
   return {"holdout",
-          "Fits some photographs of real captures and compares the maps with those held out.",
+          "Fits maps to some photographs of real captures and compares renderings with the "
+          "photographs held out.",
           "Example: glint-eval holdout sets/cards sets/wood --pairs '2,6;7,8' --shown 0 --work h",
           RunHoldoutVerb};
 }

@@ -11,20 +11,22 @@ int RunLight(int argc, char** argv, const ProgramInfo& info) {
   experiment.capture = PhoneCapture();
   CapturePlanOptions& plan = experiment.capture.plan;
   OptionSet options;
-  options.Add("work", &experiment.work, "folder that keeps captures and results (required)");
-  options.AddRange("seeds", &experiment.seeds, 1, 10000, "captures");
-  options.AddRange("first-seed", &experiment.first_seed, 0, 1e9, "the first one's seed");
+  options.Add("work", &experiment.work, "folder in which captures and results are kept (required)");
+  options.AddRange("seeds", &experiment.seeds, 1, 10000, "number of captures");
+  options.AddRange("first-seed", &experiment.first_seed, 0, 1e9, "seed of the first capture");
   options.AddRange("map-seeds", &experiment.map_seeds, 0, 10000,
-                   "of these also fit maps, with --light board and with --light camera");
-  options.AddRange("resolution", &experiment.resolution, 16, 4096, "texels a side of the maps");
-  options.AddRange("photos", &plan.photos, 1, 1000, "photographs of a capture");
+                   "number of these captures for which maps are also fitted, with --light board "
+                   "and with --light camera");
+  options.AddRange("resolution", &experiment.resolution, 16, 4096, "texels per side of the maps");
+  options.AddRange("photos", &plan.photos, 1, 1000, "number of photographs per capture");
   options.AddRange("megapixels", &plan.megapixels, 0.05, 60, "size of a photograph");
   options.AddRange("vignetting", &plan.vignetting, 0, 0.8, "light lost in the picture's corners");
-  options.AddRange("exposure-ev", &plan.exposure_ev, 0, 4, "spread of the exposures, stops");
-  options.AddRange("ambient", &plan.ambient, 0, 10, "room light relative to the flash's");
+  options.AddRange("exposure-ev", &plan.exposure_ev, 0, 4, "spread of the exposures, in stops");
+  options.AddRange("ambient", &plan.ambient, 0, 10, "ambient illumination relative to the flash");
   options.Add("fit-args", &experiment.fit_arguments,
               "more arguments for glint-fit, comma-separated");
-  options.Add("refine-args", &experiment.refine_arguments, "likewise for glint-refine");
+  options.Add("refine-args", &experiment.refine_arguments,
+              "more arguments for glint-refine, comma-separated");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     if (experiment.work.empty()) {
       throw UserError("work: found nothing; name a folder for the results");
@@ -41,7 +43,7 @@ int RunLight(int argc, char** argv, const ProgramInfo& info) {
 Verb LightVerb() {
   return {"light",
           "Calibrates the light of synthetic phone captures from the board and compares it with "
-          "the truth: errors, and how often they lie within the stated deviations.",
+          "ground truth: errors, and how often they lie within the stated standard deviations.",
           "Example: glint-eval light --work light --seeds 20 --map-seeds 3", RunLight};
 }
 

@@ -182,13 +182,14 @@ ProgramResult Measure(const LimitsOptions& options, int threads) {
 int RunLimits(int argc, char** argv, const ProgramInfo& info) {
   LimitsOptions limits;
   OptionSet options;
-  options.AddPositional("materials", &limits.materials, "as in table1", false);
+  options.AddPositional("materials", &limits.materials, "as in glint-eval table1", false);
   options.Add("weights", &limits.weights,
               "NAME=FILE of each auto-encoder (default: the shipped one)");
   options.Add("work", &limits.work, "folder for the results (required)");
-  options.AddRange("size", &limits.size, 8, 4096, "texels a side");
-  options.AddRange("iterations", &limits.iterations, 0, 1e6,
-                   "most steps that fit a code to the maps; 0: only encode and decode");
+  options.AddRange("size", &limits.size, 8, 4096, "texels per side");
+  options.AddRange(
+      "iterations", &limits.iterations, 0, 1e6,
+      "maximum number of steps that fit a code to the maps; 0: only encode and decode");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     if (limits.work.empty()) throw UserError("work: found nothing; name a folder for the results");
     if (common.check) throw UserError("status: a measurement is no stage; leave the option out");
@@ -200,8 +201,8 @@ int RunLimits(int argc, char** argv, const ProgramInfo& info) {
 
 Verb LimitsVerb() {
   return {"limits",
-          "What auto-encoders can express of materials: errors of encoded and decoded maps, and of "
-          "codes fitted to the maps themselves.",
+          "How well auto-encoders represent materials: errors of maps encoded and decoded, and of "
+          "maps decoded from directly fitted codes.",
           "Example: glint-eval limits procedural:1000000000 --work /tmp/limits", RunLimits};
 }
 

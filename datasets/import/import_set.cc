@@ -119,12 +119,11 @@ void AddImportOptions(OptionSet* set, ImportOptions* options) {
                 "the sample is the central square of this many pixels; 0: use the layout's");
   set->Add("convention", &options->convention,
            "reflectance convention: photograph, dir2019, materialgan, or keywords as in "
-           "docs/views.md; empty: the "
-           "source's");
+           "docs/views.md; if omitted, the source's");
   set->Add("light-power", &options->light_power,
-           "estimate, a number, or r,g,b in radiance·mm²; empty: the source's");
+           "estimate, a number, or r,g,b in radiance·mm²; if omitted, the source's");
   set->AddChoice("encoding", &options->encoding, {"", "auto", "srgb", "gamma2.2", "linear"},
-                 "of the images; empty: the source's");
+                 "encoding of the images; if omitted, the source's");
   set->AddRange(
       "saturation-level", &options->saturation_level, 0.5, 1.01,
       "stored value (full scale is 1) from which a pixel of an 8- or 16-bit image counts as "

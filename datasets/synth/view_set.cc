@@ -186,31 +186,33 @@ Disturbance DisturbanceOf(const ViewSetOptions& options) {
 }  // namespace
 
 void AddViewSetOptions(ViewSetOptions* options, OptionSet* set) {
-  set->AddRange("count", &options->count, 1, 10000, "views");
-  set->AddChoice(
-      "rule", &options->rule, {"dir", "photo", "flash"},
-      "dir: camera = light, DIR 2019's synthetic geometry; photo: a phone's poses, flash "
-      "beside the lens, inverse square; flash: the same from nearer the top, as published flash "
-      "captures");
+  set->AddRange("count", &options->count, 1, 10000, "number of views");
+  set->AddChoice("rule", &options->rule, {"dir", "photo", "flash"},
+                 "dir: camera and light co-located, DIR 2019's synthetic geometry; photo: a "
+                 "phone's poses, flash beside the lens, inverse square; flash: the same, but "
+                 "nearer vertical, like published flash captures");
   set->AddChoice("bits", &options->bits, {"8", "float"}, "8: clipped and rounded; float: exact");
   set->AddChoice("encoding", &options->encoding, {"gamma2.2", "srgb", "linear"},
-                 "what the 8 bits are spaced evenly in (linear: as in DIR 2019)");
+                 "tone curve of the 8-bit views (DIR 2019, i.e. Gao et al. 2019, uses linear)");
   set->AddRange("exposure-stops", &options->exposure_stops, -20, 20,
-                "all photographs exposed longer by 2^stops, known to the manifest");
+                "all photographs exposed longer by 2^stops, recorded in the manifest");
   set->AddRange("least-tilt-deg", &options->least_tilt_deg, 0, 65,
-                "no top view: all cameras this much to 10° more off the normal (rule dir)");
+                "no top view: every camera is tilted between this angle and 10° more (--rule dir "
+                "only); 0: off");
   Disturbance* disturbance = &options->disturbance;
   set->AddRange("light-off-deg", &disturbance->light_off_deg, 0, 60,
-                "turns every light by this, unknown to the manifest");
+                "turn every light by this angle; not recorded in the manifest");
   set->Add("light-together", &disturbance->light_together,
-           "turns all lights in one direction: the flash is elsewhere beside the lens");
+           "turn all lights in the same direction, as if the flash sat at a different place beside "
+           "the lens");
   set->AddRange("registration-texel", &disturbance->registration_texel, 0, 100,
-                "moves the corners of every view by this (RMS), unknown to the manifest");
-  set->AddRange("environment-percent", &disturbance->environment_percent, 0, 1000,
-                "light of the surroundings relative to the flash's on a white plane, likewise");
+                "move the corners of every view by this (RMS); not recorded in the manifest");
+  set->AddRange(
+      "environment-percent", &disturbance->environment_percent, 0, 1000,
+      "ambient illumination on a white plane relative to the flash; not recorded in the manifest");
   set->AddRange("discrepancy", &options->discrepancy, 0, 2,
-                "photographs of what the reflectance model does not express: other lobes, relief, "
-                "diffuse blur, errors of a capture, JPEG; 1: as real samples");
+                "strength of effects that the reflectance model cannot represent (other lobes, "
+                "relief, diffuse blur, capture errors, JPEG); 1: as in real samples");
   set->Add("environment", &disturbance->environment,
            "equirectangular radiance map, .hdr or .exr (default: a white surround)");
 }

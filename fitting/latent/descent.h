@@ -25,7 +25,7 @@ class Descent {
   bool converged() const { return converged_; }
   const std::vector<double>& losses() const { return losses_; }
 
-  // `values` had `loss` and `gradient`; they take a step.
+  // `values` had `loss` and `gradient`; they take a step. Another optimiser: replace AdamStep here.
   void Step(double loss, std::span<const float> gradient, std::span<float> values);
   double rate() const { return rate_; }
 

@@ -169,10 +169,9 @@ Json Data(const FitResult& fit, const RectifiedSet& set, const FitStageOptions& 
 }  // namespace
 
 void AddFitOptions(OptionSet* set, FitStageOptions* options) {
-  set->AddChoice(
-      "method", &options->method, {"latent", "classic", "start"},
-      "latent: in the learned space; classic: the maps themselves, texel by texel; start: "
-      "the initial maps, unfitted");
+  set->AddChoice("method", &options->method, {"latent", "classic", "start"},
+                 "latent: in the auto-encoder's latent space; classic: the maps themselves, texel "
+                 "by texel; start: the initial maps, unfitted");
   set->AddChoice(
       "bootstrap", &options->bootstrap, {"estimator", "heuristic"},
       "how the initial maps are estimated; estimator: a trained network, from the photograph "
@@ -187,25 +186,25 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
   set->AddRange(
       "finest-size", &options->finest_size, 0, 1 << 20,
       "latent: texels along the longer side of the finest level; finer detail is left to "
-      "refinement, which recovers it equally well from any start; 0: the full resolution");
+      "refinement, which recovers it equally well from any initial maps; 0: the full resolution");
   set->AddRange("learning-rate", &options->learning_rate, 0, 1,
                 "Adam's rate at the start of a level; 0: the method's default");
-  set->AddRange(
-      "tune-iterations", &options->tune_iterations, -1, 1e6,
-      "latent: steps of fine-tuning the decoder on this sample, after the latent code; below 0: "
-      "the method's default");
+  set->AddRange("tune-iterations", &options->tune_iterations, -1, 1e6,
+                "latent: fine-tuning steps for the decoder on this sample, once the latent code "
+                "has been fitted; below 0: the method's default");
   set->AddRange("tune-rate", &options->tune_rate, 0, 1,
-                "latent: rate of the decoder's weights, relative to the latent code's; 0: the "
-                "method's default");
+                "latent: learning rate of the decoder's weights, relative to the latent code's; 0: "
+                "the method's default");
   set->AddRange("code-prior", &options->code_prior, -1, 1e6,
                 "latent: weight of the penalty on the latent code's magnitude; below 0: the "
                 "method's default");
   set->Add("start", &options->start,
-           "maps to start from, an svbrdf.exr (default: estimated from the photographs)");
+           "initial maps, an svbrdf.exr (default: estimated from the photographs)");
   set->Add("weights", &options->weights, "the auto-encoder's weights (default: those shipped)");
   set->Add("estimator", &options->estimator, "the estimator's weights (default: those shipped)");
-  set->Add("views", &options->views, "views to use, by name or photo (default: all)");
-  set->Add("exclude", &options->exclude, "views to hold out, by name or photo");
+  set->Add("views", &options->views,
+           "views to use, by view name or photograph name (default: all)");
+  set->Add("exclude", &options->exclude, "views to hold out, by view name or photograph name");
 }
 
 std::vector<fs::path> FitInputs(const FitStageOptions& options) {

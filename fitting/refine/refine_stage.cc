@@ -222,7 +222,8 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
   set->AddRange("iterations", &refine->iterations, 1, 1000,
                 "maximum number of Levenberg-Marquardt steps per solve");
   set->AddRange("starts", &refine->starts, 1, 8,
-                "solves per texel: one from the start, the others from different roughnesses");
+                "solver runs per texel: one from the initial maps, the others from other initial "
+                "roughness values");
   set->AddRange("neighbour-passes", &refine->neighbour_passes, 0, 16,
                 "how many times a texel tries its neighbours' solutions");
   set->AddRange(
@@ -235,21 +236,23 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "longer side, in texels, of the grid from which texels are drawn for the estimation; "
       "larger maps are thinned evenly to this size");
   set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the priors' weight; 0: none");
-  set->AddRange("robust-scale", &refine->robust_scale, 1e-3, 100,
-                "residuals (logarithms) beyond this count linearly");
+  set->AddRange(
+      "robust-scale", &refine->robust_scale, 1e-3, 100,
+      "log-radiance residuals larger than this are penalised linearly instead of quadratically");
   set->AddChoice(
       "correct-views", &options->correction.when, {"auto", "always", "never"},
-      "estimate errors of lights, registration and ambient light from the photographs; "
+      "estimate errors in lights, registration and ambient illumination from the photographs; "
       "auto: with five or more distinct views, and applied only where it lowers the cost "
       "by 2 %");
   set->AddRange("flash-offset", &options->flash_offset, 0, 1,
                 "expected standard deviation of the flash's offset from its stated position, "
                 "relative to its distance, if the light was not calibrated; one offset is "
                 "estimated for all photographs; 0: none");
-  set->AddRange("exposure-spread", &options->exposure_spread, 0, 1,
-                "expected standard deviation of single photographs' log exposures, if the light "
-                "was not calibrated; both spread and exposures are estimated from the "
-                "photographs; 0: keep the stated exposures");
+  set->AddRange(
+      "exposure-spread", &options->exposure_spread, 0, 1,
+      "expected standard deviation of individual photographs' log exposures, if the light "
+      "was not calibrated; both spread and exposures are estimated from the "
+      "photographs; 0: keep the stated exposures");
   set->AddRange("light-spread", &options->light_spread, 0, 1,
                 "expected standard deviation of each photograph's light position, perpendicular "
                 "to the light's direction, relative to its distance, if the light was not "
@@ -267,9 +270,10 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 Invalidates::kNo);
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");
-  set->Add("views", &options->views, "views to use, by name or photo (default: those of fit)");
-  set->Add("exclude", &options->exclude, "views to hold out, by name or photo");
-  set->Add("from", &options->from, "maps to start from, an svbrdf.exr (default: the fit's)");
+  set->Add("views", &options->views,
+           "views to use, by view name or photograph name (default: those of fit)");
+  set->Add("exclude", &options->exclude, "views to hold out, by view name or photograph name");
+  set->Add("from", &options->from, "initial maps, an svbrdf.exr (default: the fit's)");
 }
 
 RefineStart ResolveRefineStart(const fs::path& work, const RefineStageOptions& options) {

@@ -149,10 +149,20 @@ std::string Limits(const Option& option) {
   return fmt::format(" ({})", fmt::join(parts, "; "));
 }
 
+// The choices that a person can type: an empty one only stands for an option that is not given.
+template <class Option>
+std::vector<std::string> NamedChoices(const Option& option) {
+  std::vector<std::string> named;
+  for (const std::string& choice : option.choices) {
+    if (!choice.empty()) named.push_back(choice);
+  }
+  return named;
+}
+
 // What stands after an option's name in the help.
 template <class Option>
 std::string Placeholder(const Option& option) {
-  if (!option.choices.empty()) return fmt::format("{}", fmt::join(option.choices, "|"));
+  if (!option.choices.empty()) return fmt::format("{}", fmt::join(NamedChoices(option), "|"));
   constexpr const char* kWords[] = {"",     "N",    "N",        "NUMBER",
                                     "TEXT", "PATH", "TEXT,...", "NUMBER,..."};
   return kWords[option.target.index()];
@@ -238,7 +248,7 @@ Json OptionSet::Describe() const {
                       {"help", option.help},
                       {"kind", KindOf(option.target)},
                       {"positional", option.positional}};
-    if (!option.choices.empty()) described["choices"] = option.choices;
+    if (!option.choices.empty()) described["choices"] = NamedChoices(option);
     if (option.has_range) described.update({{"low", option.low}, {"high", option.high}});
     if (const std::string text = DefaultText(option.target); !text.empty()) {
       described["default"] = text;

@@ -2,7 +2,7 @@
 // the echo in the manifest and the help text.
 //
 //   struct RefineOptions { int iterations = 50; … };
-//   options.Add("iterations", &o.iterations, "most Levenberg–Marquardt steps per texel");
+//   options.Add("iterations", &o.iterations, "maximum number of solver steps");
 #pragma once
 
 #include <cstdint>

@@ -51,8 +51,8 @@ inline int RunVerb(int argc, char** argv, const ProgramInfo& program,
     std::fprintf(out, "%s: error: %s\n\n", program.name.c_str(),
                  wanted.empty() ? "a verb is needed" : ("found no verb '" + wanted + "'").c_str());
   }
-  std::fprintf(out, "%s\n\nUsage: %s VERB [OPTIONS]; VERB --help says more.\n\nVerbs:\n",
-               program.description.c_str(), program.name.c_str());
+  std::fprintf(out, "%s\n\nUsage: %s VERB [OPTIONS]; for details, run %s VERB --help.\n\nVerbs:\n",
+               program.description.c_str(), program.name.c_str(), program.name.c_str());
   for (const Verb& verb : verbs) {
     std::fprintf(out, "  %-10s %s\n", verb.name.c_str(), verb.description.c_str());
   }

@@ -20,9 +20,9 @@ int PrintHelp(std::FILE* stream, int code) {
     std::fprintf(stream, "  %-9s %s\n", verb.name.c_str(), verb.summary.c_str());
   }
   std::fputs(
-      "\nglint help VERB says more. A capture, step by step:\n"
+      "\nFor details, run glint help VERB. A capture, step by step:\n"
       "  glint init wood        # after putting photographs into wood/photos\n"
-      "  glint run wood         # all stages; a second run does only what changed\n"
+      "  glint run wood         # all stages; a second run redoes only what has changed\n"
       "  glint status wood\n",
       stream);
   return code;

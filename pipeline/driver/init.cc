@@ -384,7 +384,7 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
           "\"                # auto, srgb, gamma2.2, linear, a curve\n\n";
   text += "[light]\noffset_mm = " + List(options.light_offset_mm) +
           "           # the flash from the lens: x right, y down, z forward\n";
-  text += "# power = 30000                  # radiance times mm^2; left out: estimated\n";
+  text += "# power = 30000                  # radiance times mm^2; if omitted, estimated\n";
   text += "# ambient = [0, 0, 0]\n\n";
   text += "# Options of the stages, as on their command lines (glint help fit):\n";
   text += result->has_board ? "# [calib]\n" : "";

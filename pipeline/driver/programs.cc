@@ -37,7 +37,7 @@ constexpr KnownVerb kKnownVerbs[] = {
     {"overview", "write one page about many captures"},
     {"completion", "print a shell completion script"},
     {"manual", "write manual pages"},
-    {"eval", "compare maps or re-rendered views with the truth"},
+    {"eval", "compare maps or re-rendered views with ground truth"},
     {"synth", "make synthetic materials and captures"},
     {"train", "train the auto-encoder and the estimator"},
 };

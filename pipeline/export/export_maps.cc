@@ -91,17 +91,18 @@ void AddExportOptions(OptionSet* set, ExportOptions* options) {
   set->AddRange(
       "height-longest", &options->height_longest, 0, 100,
       "longest wavelength kept in the height map, as a fraction of the sample's shorter side; "
-      "longer ones are mostly spurious curvature from systematic errors of normals; 0: all");
+      "longer ones are mostly spurious curvature from systematic errors in the normals; 0: all");
   set->AddRange("occlusion-reach", &options->occlusion_reach, 0.001, 1,
                 "search radius of ambient occlusion, as a fraction of the sample's shorter side");
   set->AddRange("material-size", &options->material_size, 16, 16384,
                 "largest side, in texels, of the maps from which height, ambient occlusion and the "
                 "pictures in the .glb are made; larger ones are reduced by averaging");
   set->AddRange("metal-radius", &options->metal.radius, 0, 64,
-                "radius, in texels, of like-coloured neighbours that decide metalness together");
+                "neighbourhood radius, in texels, within which texels of similar colour share one "
+                "metalness decision");
   set->AddRange("metal-colour-width", &options->metal.colour_width, 0.001, 10,
-                "largest difference in colour (square root of albedo) between texels that decide "
-                "metalness together");
+                "largest colour difference (square root of albedo) between texels that share a "
+                "metalness decision");
   set->AddRange("metal-blend-cost", &options->metal.blend_cost, 0, 1,
                 "penalty on intermediate metalness, largest at 1/2, in units of log radiance");
   set->Add("formats", &options->formats,

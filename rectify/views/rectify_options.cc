@@ -22,10 +22,9 @@ void AddRectifyOptions(OptionSet* set, RectifyOptions* options) {
       "clipped; above 1: never");
   set->AddRange("float-saturation-level", &options->float_saturation_level, 0, 1e9,
                 "the same for float photos; 0: they never clip");
-  set->AddChoice(
-      "exposure", &options->exposure, {"calib", "exif", "equal"},
-      "relative exposure of the photos; calib: as calib estimated it, otherwise as exif; "
-      "exif: from EXIF if all photos have it; equal: the same for all");
+  set->AddChoice("exposure", &options->exposure, {"calib", "exif", "equal"},
+                 "relative exposure of the photos; calib: from calib, or like exif if calib "
+                 "estimated none; exif: from EXIF if all photos have it; equal: the same for all");
   set->AddRange("frame-height-mm", &options->frame_height_mm, 0, 100,
                 "thickness of the board round the sample: what it shadows or hides is masked");
   set->AddRange("frame-margin-mm", &options->frame_margin_mm, 0, 1000,
