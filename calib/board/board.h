@@ -13,6 +13,8 @@
 
 namespace glint {
 
+// To add a kind: its enumerator here, its name in board_geometry.cc, how it is described in
+// pipeline/contract/board_file.cc, found in calib/corners and printed in calib/printing.
 // kMarkers: single ArUco or AprilTag markers at listed places, as on a frame round the sample.
 enum class BoardKind { kCheckerboard, kCharuco, kMarkers };
 
@@ -86,6 +88,7 @@ Board MakeMarkerBoard(const std::string& dictionary, std::vector<ListedMarker> m
 
 // "charuco", "checkerboard", "markers", as descriptions have it.
 std::string BoardKindName(BoardKind kind);
+std::optional<BoardKind> BoardKindNamed(const std::string& name);  // none: no such kind
 
 // Multiplies every length of the board, as a printer that scales does.
 void ScaleBoard(double factor, Board* board);

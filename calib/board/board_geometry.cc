@@ -28,6 +28,14 @@ std::string BoardKindName(BoardKind kind) {
   return "markers";
 }
 
+std::optional<BoardKind> BoardKindNamed(const std::string& name) {
+  for (const BoardKind kind :
+       {BoardKind::kCharuco, BoardKind::kCheckerboard, BoardKind::kMarkers}) {
+    if (name == BoardKindName(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
 Board MakeMarkerBoard(const std::string& dictionary, std::vector<ListedMarker> markers) {
   Board board;
   board.kind = BoardKind::kMarkers;

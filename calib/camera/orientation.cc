@@ -1,6 +1,9 @@
 #include "calib/camera/orientation.h"
 
+#include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -16,9 +19,12 @@ Camera OnceTurned(const Camera& camera) {
   if (!one_focal) std::swap(turned.parameters[0], turned.parameters[1]);
   turned.parameters[centre] = camera.height_px - camera.parameters[centre + 1];
   turned.parameters[centre + 1] = camera.parameters[centre];
-  if (camera.model == CameraModel::kOpenCv || camera.model == CameraModel::kFullOpenCv) {
-    turned.parameters[6] = camera.parameters[7];
-    turned.parameters[7] = -camera.parameters[6];
+  const std::vector<std::string>& names = CameraParameterNames(camera.model);
+  const auto tangential = std::find(names.begin(), names.end(), "p1");
+  if (tangential != names.end()) {
+    const auto p1 = static_cast<size_t>(tangential - names.begin());
+    turned.parameters[p1] = camera.parameters[p1 + 1];
+    turned.parameters[p1 + 1] = -camera.parameters[p1];
   }
   return turned;
 }

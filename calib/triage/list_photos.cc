@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 
 #include "pipeline/contract/errors.h"
 #include "pipeline/contract/photo_name.h"
@@ -16,16 +14,6 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMost = 10000;
 
-bool IsPhotoName(const fs::path& file) {
-  static constexpr std::array kEndings = {".jpg",  ".jpeg", ".png",  ".tif",
-                                          ".tiff", ".exr",  ".heic", ".heif"};
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end() ||
-         IsRawFileName(file) || IsVideoFileName(file);
-}
-
 std::vector<fs::path> FindPhotos(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw UserError(folder, "", "no such folder", "give a folder of photographs");
@@ -36,7 +24,10 @@ std::vector<fs::path> FindPhotos(const fs::path& folder) {
   for (; !error && at != fs::recursive_directory_iterator(); at.increment(error)) {
     const std::string name = at->path().filename();
     if (name == "glint" && at->is_directory()) at.disable_recursion_pending();
-    if (name[0] == '.' || !at->is_regular_file() || !IsPhotoName(at->path())) continue;
+    if (name[0] == '.' || !at->is_regular_file() ||
+        !(IsPhotoFileName(at->path()) || IsVideoFileName(at->path()))) {
+      continue;
+    }
     files.push_back(at->path());
     if (files.size() < kMost) continue;
     throw UserError(folder, "", "more than " + std::to_string(kMost) + " photographs",

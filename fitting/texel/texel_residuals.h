@@ -1,4 +1,4 @@
-// All residuals of a texel one by one with their Jacobian, for a general solver and for tests;
+// All residuals of a texel one by one with their Jacobian, for a general solver and for tests.
 // The solver sees their products only (texel_cost.h).
 #pragma once
 

@@ -188,15 +188,11 @@ BoardFile ReadBoardFile(const fs::path& file) {
   }
   const std::string mend = "use \"charuco\", \"checkerboard\" or \"markers\"";
   const std::string kind = object.Text("kind", mend);
+  const std::optional<BoardKind> known = BoardKindNamed(kind);
+  if (!known) object.Reject("kind", mend);
   BoardFile result;
-  if (kind == "markers") {
-    result.board = MarkerBoardIn(&object);
-  } else if (kind == "charuco" || kind == "checkerboard") {
-    result.board =
-        SquaresIn(&object, kind == "charuco" ? BoardKind::kCharuco : BoardKind::kCheckerboard);
-  } else {
-    object.Reject("kind", mend);
-  }
+  result.board =
+      *known == BoardKind::kMarkers ? MarkerBoardIn(&object) : SquaresIn(&object, *known);
   ReadExtras(&object, &result.board);
   if (object.Has("sheet")) result.sheet = SheetIn(object.Member("sheet"));
   if (object.Has("about")) object.Text("about", "give a text");

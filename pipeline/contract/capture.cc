@@ -326,7 +326,7 @@ void DescribeBoard(TableReader* table, Capture* capture) {
                   "\"board.json\"");
   }
   const std::string kind = table->Text("kind", "charuco", {"charuco", "checkerboard"});
-  board.kind = kind == "charuco" ? BoardKind::kCharuco : BoardKind::kCheckerboard;
+  board.kind = BoardKindNamed(kind).value();
   const auto squares =
       table->Integers("squares", 2, false, "give [columns, rows] of squares as whole numbers");
   const auto corners =

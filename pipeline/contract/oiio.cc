@@ -2,6 +2,8 @@
 
 #include <OpenEXR/ImfHeader.h>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <mutex>
 #include <set>
@@ -102,13 +104,17 @@ void RequireFile(const std::filesystem::path& file) {
 }
 
 // OpenEXR allocates what an attribute's length says, up to 2 GiB, before it looks for the bytes.
-// Its header is a list of (name, type, length, bytes), all lengths of 4 bytes, little endian.
+// Its header is a list of (name, type, length, bytes), all lengths of 4 bytes, little endian. Files
+// that are not OpenEXR, whatever they are called, pass.
 void RequireAttributesWithinFile(const std::filesystem::path& file) {
-  constexpr std::size_t kMagicAndVersion = 8, kLongestName = 256;
+  constexpr std::size_t kLongestName = 256;
+  constexpr std::array<char, 4> kMagic = {0x76, 0x2f, 0x31, 0x01};
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   std::ifstream stream(file, std::ios::binary);
-  stream.seekg(kMagicAndVersion);
+  std::array<char, 8> magic_and_version = {};
+  stream.read(magic_and_version.data(), magic_and_version.size());
+  if (!std::equal(kMagic.begin(), kMagic.end(), magic_and_version.begin())) return;
   std::string name, type;
   while (std::getline(stream, name, '\0') && !name.empty() && name.size() < kLongestName &&
          std::getline(stream, type, '\0') && type.size() < kLongestName) {
@@ -143,6 +149,7 @@ std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
                                             const OIIO::ImageSpec* configuration) {
   SetUpOiio();
   RequireFile(file);
+  RequireAttributesWithinFile(file);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), configuration);
   if (!input) {
     RejectUnreadable(file, OIIO::geterror(), OIIO::get_string_attribute("input_format_list"));

@@ -20,6 +20,12 @@ bool HasEnding(const std::filesystem::path& file, const std::array<const char*, 
 
 }  // namespace
 
+bool IsPhotoFileName(const std::filesystem::path& file) {
+  static constexpr std::array kEndings = {".jpg",  ".jpeg", ".png",  ".tif",
+                                          ".tiff", ".exr",  ".heic", ".heif"};
+  return HasEnding(file, kEndings) || IsRawFileName(file);
+}
+
 bool IsRawFileName(const std::filesystem::path& file) {
   static constexpr std::array kEndings = {".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dng",
                                           ".erf", ".iiq", ".kdc", ".mrw", ".nef", ".nrw",

@@ -8,6 +8,10 @@
 
 namespace glint {
 
+// Whether the file name's ending is that of a photograph: JPEG, PNG, TIFF, EXR, HEIF, RAW. What is
+// taken for a photograph in a folder; photo.cc reads others too that OpenImageIO knows.
+bool IsPhotoFileName(const std::filesystem::path& file);
+
 // Whether the file name's ending is that of a camera's RAW format (DNG, CR2, NEF…).
 bool IsRawFileName(const std::filesystem::path& file);
 

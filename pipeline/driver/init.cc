@@ -19,19 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kPhotoExtensions = {".jpg",  ".jpeg", ".png",  ".tif",
-                                         ".tiff", ".exr",  ".heic", ".heif"};
 constexpr double kFrameSquares = 3;     // squares left standing at each side of the default window
 constexpr double kSampleMargin_mm = 5;  // between the window's edge and the sample
 
 std::string Lower(std::string text) {
   for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return text;
-}
-
-bool IsPhoto(const fs::path& file) {
-  return IsRawFileName(file) || std::find(kPhotoExtensions.begin(), kPhotoExtensions.end(),
-                                          Lower(file.extension())) != kPhotoExtensions.end();
 }
 
 // Extensions of photographs (or videos) in a folder, and how many files have each.
@@ -72,7 +65,7 @@ std::string Patterns(const fs::path& folder, const std::string& subfolder,
 
 size_t Photographs(const fs::path& folder) {
   size_t count = 0;
-  for (const auto& [extension, files] : CountFiles(folder, IsPhoto)) count += files;
+  for (const auto& [extension, files] : CountFiles(folder, IsPhotoFileName)) count += files;
   for (const auto& [extension, files] : CountFiles(folder, IsVideoFileName)) count += files;
   return count;
 }
@@ -132,7 +125,7 @@ Board DescribedBoard(const InitOptions& options, std::vector<double>* window) {
   RequireCount(options.squares, 2, "squares", "COLUMNS,ROWS");
   RequireWhole(options.squares, "squares");
   Board board;
-  board.kind = options.board == "charuco" ? BoardKind::kCharuco : BoardKind::kCheckerboard;
+  board.kind = BoardKindNamed(options.board).value();
   board.squares_x = static_cast<int>(options.squares[0]);
   board.squares_y = static_cast<int>(options.squares[1]);
   board.square_mm = options.square_mm;
@@ -266,7 +259,7 @@ fs::path OnlyPhoto(const InitOptions& options) {
   std::vector<fs::path> photos;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.is_regular_file() && IsPhoto(entry.path())) photos.push_back(entry.path());
+    if (entry.is_regular_file() && IsPhotoFileName(entry.path())) photos.push_back(entry.path());
   }
   if (photos.size() == 1) return photos[0];
   throw UserError(folder, "", std::to_string(photos.size()) + " photographs",
@@ -313,7 +306,7 @@ void CheckEncoding(const std::string& encoding) {
 std::string PhotoText(const InitOptions& options, size_t* files) {
   size_t videos = 0;
   const std::string subfolder = PhotoFolder(options.folder);
-  const std::string patterns = Patterns(options.folder, subfolder, IsPhoto, files);
+  const std::string patterns = Patterns(options.folder, subfolder, IsPhotoFileName, files);
   const std::string video = Patterns(options.folder, subfolder, IsVideoFileName, &videos);
   std::string text = "[photos]\n";
   if (!patterns.empty() || video.empty()) {
@@ -357,7 +350,7 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   result->single = options.single;
   std::string board_photos;
   if (result->has_board) {
-    board_photos = Patterns(options.folder, "board", IsPhoto, &result->board_photos);
+    board_photos = Patterns(options.folder, "board", IsPhotoFileName, &result->board_photos);
   }
   const Surroundings around = result->has_board ? WithBoard(options, board_photos)
                               : options.single  ? FromAbove(options)

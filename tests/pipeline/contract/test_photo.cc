@@ -187,6 +187,15 @@ TEST(Photo, RawThatIsNoneIsRefused) {
               HasSubstr("a camera that LibRaw does not know"));
 }
 
+// OpenEXR would allocate what an attribute's length says, before it looks for the bytes.
+TEST(Photo, ExrIsCheckedWhateverItIsCalled) {
+  const test::TemporaryFolder folder;
+  const std::string header("\x76\x2f\x31\x01\x02\0\0\0note\0string\0\xff\xff\xff\x7fshort", 29);
+  const fs::path file = folder.Write("a.jpg", header);
+  EXPECT_THAT(test::MessageOf<UserError>([&] { PhotoSize(file); }),
+              HasSubstr("an attribute of 2147483647 bytes in a file of 29"));
+}
+
 TEST(Photo, HeicWithoutDecoderIsTheEnvironmentsFault) {
   const test::TemporaryFolder folder;
   const fs::path heic = folder.Write("a.heic", Heic(Box("irot", BigEndian(1, 1))));
