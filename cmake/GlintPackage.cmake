@@ -45,7 +45,8 @@ function(glint_install_libraries)
     file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${folder})
     set_target_properties(${library} PROPERTIES EXPORT_NAME ${name})
     install(DIRECTORY ${folder}/ DESTINATION include/glint/${path} COMPONENT development
-      FILES_MATCHING PATTERN "*.h" PATTERN "*.inl" EXCLUDE)
+      FILES_MATCHING PATTERN "*.h" PATTERN kernel.h EXCLUDE PATTERN render_autograd.h EXCLUDE
+      PATTERN render_reference.h EXCLUDE)  # the kernel's inside; torch's
   endforeach()
 endfunction()
 glint_install_libraries(glint_cpu glint_memory glint_parallel glint_resampling glint_reflectance
@@ -68,6 +69,7 @@ set(CPACK_PACKAGE_CONTACT "Glint developers <glint@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "relightable material maps from flash photographs")
 set(CPACK_PACKAGE_DESCRIPTION "Glint turns flash photographs of a flat material sample into SVBRDF
 maps (normal, diffuse, roughness, specular) and into materials for glTF, MaterialX, USD and Blender.")
+set(CPACK_COMPONENT_UNSPECIFIED_DESCRIPTION "${CPACK_PACKAGE_DESCRIPTION}")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)

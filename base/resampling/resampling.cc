@@ -120,6 +120,7 @@ std::vector<float> CutRows(std::span<const float> planes, int width, int height,
 
 void PutRows(std::span<const float> rows, int width, int height, int first,
              std::span<float> planes) {
+  if (rows.empty()) return;
   const size_t row = static_cast<size_t>(width), plane = row * static_cast<size_t>(height);
   const size_t count = rows.size() / (planes.size() / plane);
   size_t to = static_cast<size_t>(first) * row;

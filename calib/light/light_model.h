@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "fitting/reflectance/brdf_core.h"
+
 namespace glint::light {
 
 // What of a spot no unknown changes.
@@ -25,10 +27,8 @@ inline constexpr double kPi = 3.14159265358979323846;
 // a reflectance of 1 at normal incidence. Fresnel's rise is left out: it needs grazing light.
 template <class T>
 T GlossOverWhite(const T& n_dot_l, const T& n_dot_v, const T& n_dot_h) {
-  const double alpha = kGlossRoughness * kGlossRoughness, k = alpha / 2;
-  const T d = T(alpha) / (n_dot_h * n_dot_h * T(alpha * alpha - 1) + T(1));
-  const T smith = (n_dot_l * T(1 - k) + T(k)) * (n_dot_v * T(1 - k) + T(k));
-  return d * d / (T(4) * smith);
+  const Cosines<T> cosines{n_dot_l, n_dot_v, n_dot_h, T(1) - n_dot_h * n_dot_h};
+  return EvaluateSpecular(cosines, T(kGlossRoughness)).over_cosine * T(kPi);
 }
 
 // cosθ/d² · (1 + g) per unit of q; false where the flash is behind the board.

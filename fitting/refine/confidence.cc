@@ -42,8 +42,9 @@ std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
            by_y[axis] * by_y[axis] * yy;
   };
 
+  // A variance that rounding made negative, or no number, is one of which nothing is known.
   const auto deviation = [](double v) {
-    return static_cast<float>(std::min(std::sqrt(std::max(v, 0.0)), kWidest));
+    return static_cast<float>(v > 0 ? std::min(std::sqrt(v), kWidest) : kWidest);
   };
   std::array<float, kConfidencePlanes> planes;
   planes[kSigmaNormalX] = deviation(normal_variance(0));

@@ -1,5 +1,6 @@
 // The formulas of the reflectance model (brdf.h) with their partial derivatives, once for all that
 // evaluate it: numbers, automatic differentiation (ceres::Jet), and vectors of texels or views.
+// fitting/render/render_reference.cc writes them a second time, to check these.
 //
 // A texel in a view has a specular lobe S = D·G·NoL/(4·NoL·NoV) (SpecularTerms, SpecularSlopes), a
 // diffuse one w·k_d/π (DiffuseTerms) and, by channel,

@@ -21,9 +21,9 @@ namespace {
 
 namespace glint {
 
-template <class T>
+// V is another type for each instruction set, and so are these classes: the linker shares none.
+template <class V, class T>
 struct VectorArithmetic {
-  using V = typename kernel::Lanes<T>::Vector;
   using Scalar = T;
   GLINT_INLINE static V Constant(T x) { return kernel::Broadcast(x); }
   GLINT_INLINE static V MultiplyAdd(const V& a, const V& b, const V& c) {
@@ -37,9 +37,9 @@ struct VectorArithmetic {
   }
 };
 template <>
-struct Arithmetic<kernel::Floats> : VectorArithmetic<float> {};
+struct Arithmetic<kernel::Floats> : VectorArithmetic<kernel::Floats, float> {};
 template <>
-struct Arithmetic<kernel::Doubles> : VectorArithmetic<double> {};
+struct Arithmetic<kernel::Doubles> : VectorArithmetic<kernel::Doubles, double> {};
 
 }  // namespace glint
 

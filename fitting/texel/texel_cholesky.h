@@ -11,8 +11,8 @@ class TexelCholesky {
  public:
   using Vector = double[kTexelParameters];
 
-  // Of the leading kTexelParameters rows of `matrix` with `damping` added to the diagonal. Not
-  // positive definite: solutions are not numbers.
+  // Of the leading kTexelParameters rows of `matrix` with `damping` added to the diagonal. Where a
+  // pivot is lost to rounding, solutions are wrong or not numbers: judge them.
   TexelCholesky(const TexelGram& matrix, const Vector& damping) {
     for (int i = 0; i < kTexelParameters; ++i) {
       for (int j = i; j < kTexelParameters; ++j) factor_[i][j] = matrix[i][j];

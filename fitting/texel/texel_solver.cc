@@ -35,6 +35,7 @@ class LevenbergMarquardt {
     Variables& x = *variables;
     evaluate(x, &gram_);
     start_cost = CostOf(gram_);
+    if (!std::isfinite(start_cost)) return;
     for (int i = 0; i < kTexelParameters; ++i) scale_[i] = 1.0 / (1.0 + std::sqrt(gram_[i][i]));
     double damping = 1.0 / kFirstRadius, growth = 2.0;
     while (!Minimal()) {
@@ -50,16 +51,15 @@ class LevenbergMarquardt {
       if (std::sqrt(step_squares) < kStepTolerance * (std::sqrt(squares) + kStepTolerance)) break;
       evaluate(at, &tried);
       const double gain = 2.0 * (CostOf(gram_) - CostOf(tried));
-      const double ratio = gain / expected;
-      if (!(ratio > 0.0)) {  // the step was not a number, or led uphill
+      if (!(gain > 0.0 && expected > 0.0)) {  // not a number, or uphill
         damping *= growth;
         growth *= 2.0;
         continue;
       }
       std::copy_n(at, kTexelParameters, x);
       gram_ = tried;
-      if (std::abs(gain) < squares_tolerance) break;
-      const double beyond = 2.0 * ratio - 1.0;
+      if (gain < squares_tolerance) break;
+      const double beyond = 2.0 * gain / expected - 1.0;
       damping *= std::max(1.0 / 3.0, 1.0 - beyond * beyond * beyond);
       growth = 2.0;
     }

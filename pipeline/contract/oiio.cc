@@ -103,33 +103,60 @@ void RequireFile(const std::filesystem::path& file) {
   }
 }
 
-// OpenEXR allocates what an attribute's length says, up to 2 GiB, before it looks for the bytes.
-// Its header is a list of (name, type, length, bytes), all lengths of 4 bytes, little endian. Files
-// that are not OpenEXR, whatever they are called, pass.
-void RequireAttributesWithinFile(const std::filesystem::path& file) {
-  constexpr std::size_t kLongestName = 256;
-  constexpr std::array<char, 4> kMagic = {0x76, 0x2f, 0x31, 0x01};
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
-  std::array<char, 8> magic_and_version = {};
-  stream.read(magic_and_version.data(), magic_and_version.size());
-  if (!std::equal(kMagic.begin(), kMagic.end(), magic_and_version.begin())) return;
+[[noreturn]] void RejectLength(const std::filesystem::path& file, const char* what,
+                               std::uint32_t length, std::uintmax_t size) {
+  throw UserError(file, "header",
+                  std::string(what) + " of " + std::to_string(length) + " bytes in a file of " +
+                      std::to_string(size),
+                  "the file is damaged; copy or make it again");
+}
+
+std::uint32_t LittleEndian(const std::array<unsigned char, 4>& b) {
+  return b[0] | b[1] << 8 | b[2] << 16 | static_cast<std::uint32_t>(b[3]) << 24;
+}
+
+// A list of (name, type, length, bytes) after magic number and version, all lengths of 4 bytes.
+void RequireAttributesWithin(const std::filesystem::path& file, std::uintmax_t size,
+                             std::istream& stream) {
+  constexpr std::size_t kMagicAndVersion = 8, kLongestName = 256;
+  stream.seekg(kMagicAndVersion);
   std::string name, type;
   while (std::getline(stream, name, '\0') && !name.empty() && name.size() < kLongestName &&
          std::getline(stream, type, '\0') && type.size() < kLongestName) {
-    unsigned char bytes[4] = {};
-    stream.read(reinterpret_cast<char*>(bytes), 4);
-    const std::uint32_t length =
-        bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<std::uint32_t>(bytes[3]) << 24;
-    if (stream && length > size) {
-      throw UserError(file, "header",
-                      "an attribute of " + std::to_string(length) + " bytes in a " + "file of " +
-                          std::to_string(size),
-                      "the file is damaged; make it again");
-    }
+    std::array<unsigned char, 4> bytes = {};
+    stream.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
+    const std::uint32_t length = LittleEndian(bytes);
+    if (stream && length > size) RejectLength(file, "an attribute", length, size);
     stream.seekg(length, std::ios::cur);
   }
+}
+
+// A list of (length, type, bytes, checksum) after the signature, big endian.
+void RequireChunksWithin(const std::filesystem::path& file, std::uintmax_t size,
+                         std::istream& stream) {
+  constexpr std::size_t kSignature = 8, kTypeAndChecksum = 8;
+  stream.seekg(kSignature);
+  std::array<unsigned char, 4> bytes = {};
+  while (stream.read(reinterpret_cast<char*>(bytes.data()), bytes.size())) {
+    std::reverse(bytes.begin(), bytes.end());
+    const std::uint32_t length = LittleEndian(bytes);
+    if (length > size) RejectLength(file, "a chunk", length, size);
+    stream.seekg(length + kTypeAndChecksum, std::ios::cur);
+  }
+}
+
+// OpenEXR and libpng allocate what a length says, up to 2 GiB, before they look for the bytes. What
+// a file is called does not matter: its first bytes choose its reader.
+void RequireLengthsWithinFile(const std::filesystem::path& file) {
+  constexpr std::array<char, 4> kExr = {0x76, 0x2f, 0x31, 0x01};
+  constexpr std::array<char, 4> kPng = {static_cast<char>(0x89), 'P', 'N', 'G'};
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  std::array<char, 4> magic = {};
+  stream.read(magic.data(), magic.size());
+  if (magic == kExr) RequireAttributesWithin(file, size, stream);
+  if (magic == kPng) RequireChunksWithin(file, size, stream);
 }
 
 void RequireSize(const std::filesystem::path& file, const OIIO::ImageSpec& spec,
@@ -149,7 +176,7 @@ std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
                                             const OIIO::ImageSpec* configuration) {
   SetUpOiio();
   RequireFile(file);
-  RequireAttributesWithinFile(file);
+  RequireLengthsWithinFile(file);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), configuration);
   if (!input) {
     RejectUnreadable(file, OIIO::geterror(), OIIO::get_string_attribute("input_format_list"));
@@ -161,7 +188,7 @@ std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
 std::unique_ptr<OIIO::ImageInput> OpenExr(const std::filesystem::path& file, HowRead how) {
   SetUpOiio();
   RequireFile(file);
-  RequireAttributesWithinFile(file);
+  RequireLengthsWithinFile(file);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create("openexr");
   OIIO::ImageSpec spec;
   if (!input || !input->open(file.string(), spec)) {

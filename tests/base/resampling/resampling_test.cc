@@ -97,6 +97,12 @@ TEST(Rows, CutAndPutBackAreTheBlocksTheyWere) {
   EXPECT_EQ(copy, planes);
 }
 
+TEST(Rows, NoneArePutNowhere) {
+  std::vector<float> planes(6, 1.0f);
+  PutRows({}, 0, 3, 0, planes);
+  EXPECT_EQ(planes, std::vector<float>(6, 1.0f));
+}
+
 TEST(PickEvery, TakesTheMiddleOfEveryStrideOfEveryBlock) {
   std::vector<float> planes(2 * 7 * 5);
   for (size_t i = 0; i < planes.size(); ++i) planes[i] = static_cast<float>(i);

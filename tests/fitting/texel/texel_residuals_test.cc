@@ -12,6 +12,7 @@
 #include "fitting/texel/texel_cholesky.h"
 #include "fitting/texel/texel_cost.h"
 #include "fitting/texel/texel_parameters.h"
+#include "fitting/texel/texel_solver.h"
 
 namespace glint {
 namespace {
@@ -204,7 +205,8 @@ TEST(TexelCost, ProductsAreThoseOfAllResiduals) {
     const Eigen::MatrixXd expected = all_columns.transpose() * all_columns;
     for (int a = 0; a < kGramSize; ++a) {
       for (int b = a; b < kGramSize; ++b) {
-        EXPECT_NEAR(gram[a][b], expected(a, b), 1e-12 * expected.norm());
+        const double size = std::sqrt(expected(a, a) * expected(b, b));
+        EXPECT_NEAR(gram[a][b], expected(a, b), 1e-12 * size);
       }
     }
   }
@@ -236,6 +238,50 @@ TEST(TexelCholesky, SolvesDampedNormalEquations) {
       EXPECT_NEAR(sum, right[p], 1e-11 * size);
     }
   }
+}
+
+// A texel seen without noise in twelve views, and a start beside it.
+struct Seen {
+  Seen() : observations(kViews) {
+    std::mt19937 random(18);
+    point = RandomPoint(&random, kViews);
+    point.texel = {0.3, 0.1, 0.2, 0.1, 0.4, 0.1, 0.4, 0.1, -0.05};
+    point.prior = TexelPrior();
+    for (size_t v = 0; v < kViews; ++v) {
+      ShadeRadiance(TexelFromValues(point.texel.data()), point.geometry[v],
+                    point.options.diffuse_weight, point.radiance[v].data());
+      point.clipped[v] = {false, false, false};
+    }
+    start = point.texel;
+    for (int p = 0; p <= kRough; ++p) start[p] *= 1.3;
+    start[kSlopeX] -= 0.1;
+  }
+  TexelSolution Solve(int most_iterations) {
+    Fill(point, &observations);
+    TexelSolver solver(point.options, most_iterations, kViews);
+    return solver.Solve(observations, point.prior, start);
+  }
+  static constexpr int kViews = 12;
+  Point point;
+  TexelObservations observations;
+  TexelValues start;
+};
+
+TEST(TexelSolver, FindsTheTexelThatWasPhotographed) {
+  Seen seen;
+  const TexelSolution solution = seen.Solve(100);
+  EXPECT_TRUE(solution.converged);
+  EXPECT_LT(solution.cost, 1e-8 * solution.start_cost);
+  for (int p = 0; p < kTexelParameters; ++p) {
+    EXPECT_NEAR(solution.values[p], seen.point.texel[p], 1e-3) << "parameter " << p;
+  }
+}
+
+TEST(TexelSolver, SaysThatItDidNotConverge) {
+  Seen seen;
+  const TexelSolution stopped = seen.Solve(2);
+  EXPECT_FALSE(stopped.converged);
+  EXPECT_LT(stopped.cost, stopped.start_cost);
 }
 
 TEST(TexelKernel, SumsDoNotDependOnPaddingAndSatisfiedClippingCostsNothing) {

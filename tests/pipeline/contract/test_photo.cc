@@ -187,13 +187,15 @@ TEST(Photo, RawThatIsNoneIsRefused) {
               HasSubstr("a camera that LibRaw does not know"));
 }
 
-// OpenEXR would allocate what an attribute's length says, before it looks for the bytes.
-TEST(Photo, ExrIsCheckedWhateverItIsCalled) {
+// Their readers would allocate what a length says, before they look for the bytes.
+TEST(Photo, LengthsBeyondTheFileAreRefusedWhateverItIsCalled) {
   const test::TemporaryFolder folder;
-  const std::string header("\x76\x2f\x31\x01\x02\0\0\0note\0string\0\xff\xff\xff\x7fshort", 29);
-  const fs::path file = folder.Write("a.jpg", header);
-  EXPECT_THAT(test::MessageOf<UserError>([&] { PhotoSize(file); }),
+  const std::string exr("\x76\x2f\x31\x01\x02\0\0\0note\0string\0\xff\xff\xff\x7fshort", 29);
+  EXPECT_THAT(test::MessageOf<UserError>([&] { PhotoSize(folder.Write("a.jpg", exr)); }),
               HasSubstr("an attribute of 2147483647 bytes in a file of 29"));
+  const std::string png("\x89PNG\r\n\x1a\n\x58\x04\xf9\0tEXtshort", 21);
+  EXPECT_THAT(test::MessageOf<UserError>([&] { PhotoSize(folder.Write("b.jpg", png)); }),
+              HasSubstr("a chunk of 1476720896 bytes in a file of 21"));
 }
 
 TEST(Photo, HeicWithoutDecoderIsTheEnvironmentsFault) {
