@@ -186,10 +186,10 @@ BoardFile ReadBoardFile(const fs::path& file) {
     object.Reject("glint_board",
                   "this program reads version " + std::to_string(kBoardFormat) + " of the format");
   }
-  const std::string mend = "use \"charuco\", \"checkerboard\" or \"markers\"";
-  const std::string kind = object.Text("kind", mend);
+  const std::string remedy = "use \"charuco\", \"checkerboard\" or \"markers\"";
+  const std::string kind = object.Text("kind", remedy);
   const std::optional<BoardKind> known = BoardKindNamed(kind);
-  if (!known) object.Reject("kind", mend);
+  if (!known) object.Reject("kind", remedy);
   BoardFile result;
   result.board =
       *known == BoardKind::kMarkers ? MarkerBoardIn(&object) : SquaresIn(&object, *known);
