@@ -3,13 +3,13 @@
 
 #include <cmath>
 
+#include "base/errors/errors.h"
 #include "calib/printing/draw_sheet.h"
 #include "calib/printing/drawing.h"
 #include "calib/printing/sheet_plan.h"
 #include "pipeline/contract/board_file.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
 #include "pipeline/contract/program.h"
+#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

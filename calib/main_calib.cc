@@ -4,13 +4,13 @@
 #include <chrono>
 #include <utility>
 
+#include "base/errors/errors.h"
 #include "calib/capture/calibrate_capture.h"
 #include "calib/capture/export_colmap.h"
 #include "calib/capture/guide_capture.h"
 #include "calib/capture/pose_source.h"
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/contract/program.h"
 
 namespace glint {

@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "base/errors/errors.h"
 #include "calib/response/response.h"
 #include "calib/response/response_picture.h"
 #include "calib/response/sample_photos.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/contract/program.h"
 #include "rectify/linearize/response_curve.h"
 

@@ -50,7 +50,7 @@ function(glint_install_libraries)
   endforeach()
 endfunction()
 glint_install_libraries(glint_cpu glint_memory glint_parallel glint_resampling glint_reflectance
-  glint_render glint_camera glint_board glint_contract)
+  glint_render glint_camera glint_board glint_files glint_images glint_photos glint_contract)
 set_target_properties(glint_compile_options PROPERTIES EXPORT_NAME compile_options)
 install(EXPORT GlintTargets NAMESPACE Glint:: DESTINATION lib/cmake/Glint COMPONENT development)
 include(CMakePackageConfigHelpers)

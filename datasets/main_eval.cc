@@ -5,6 +5,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "base/errors/errors.h"
 #include "datasets/evaluation/calibration_error.h"
 #include "datasets/evaluation/experiment_verbs.h"
 #include "datasets/evaluation/holdout_verb.h"
@@ -16,11 +17,10 @@
 #include "datasets/synth/material_source.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/contract/verbs.h"
+#include "pipeline/files/files.h"
 
 namespace {
 

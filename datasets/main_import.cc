@@ -1,11 +1,11 @@
 // glint-import: views that another program rectified become a capture that starts at fit.
 #include <fmt/format.h>
 
+#include "base/errors/errors.h"
 #include "calib/guidance/rectified_guidance.h"
 #include "datasets/import/import_set.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
 #include "pipeline/contract/program.h"
+#include "pipeline/files/files.h"
 #include "rectify/views/rectify_capture.h"
 
 namespace glint {

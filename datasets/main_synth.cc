@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors/errors.h"
 #include "datasets/procedural/material.h"
 #include "datasets/statistics/comparison_files.h"
 #include "datasets/synth/capture_writer.h"
@@ -11,10 +12,9 @@
 #include "datasets/synth/view_set.h"
 #include "fitting/training/material_pack.h"
 #include "pipeline/contract/board_file.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/contract/verbs.h"
+#include "pipeline/images/image.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/programs.h"

@@ -1,9 +1,9 @@
 // glint-export: the material for other programs.
 #include <fmt/format.h>
 
+#include "base/errors/errors.h"
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/export/export_stage.h"
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/program.h"
+#include "pipeline/files/files.h"
 #include "pipeline/overview/overview_page.h"
 
 namespace {

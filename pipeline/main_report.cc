@@ -1,9 +1,9 @@
 // glint-report: one HTML page of the whole result.
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/files.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/contract/stage.h"
+#include "pipeline/files/files.h"
 #include "pipeline/report/report.h"
 
 namespace {

@@ -1,7 +1,7 @@
 // glint-run: every stage that is not up to date.
 #include <string>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/driver/run.h"
 #include "pipeline/driver/status.h"

@@ -1,7 +1,7 @@
 // glint-verify: whether results on disk are what their stages wrote.
 #include <cstdio>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/driver/verify.h"
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdlib>
 
+#include "base/errors/errors.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/contract/subprocess.h"
 

@@ -13,7 +13,7 @@
 #include "calib/light/paper.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/photos/photo.h"
 #include "rectify/views/rectify_photo.h"
 
 namespace glint {

@@ -1,9 +1,9 @@
 // glint-rectify: photographs and their calibration to top views in linear radiance.
 #include <fmt/format.h>
 
+#include "base/errors/errors.h"
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/contract/program.h"
 #include "rectify/views/rectify_capture.h"
 

@@ -80,7 +80,7 @@ struct BoardMarker {  // as ListedMarker, in the sample frame
   Eigen::Vector2d corners_in_sample_mm[4];
 };
 
-// Returns what is wrong with the description ("" when nothing): field, found, mend.
+// Returns what is wrong with the description ("" when nothing): field, found, remedy.
 std::string CheckBoard(const Board& board);
 
 // A marker frame of these markers. Not checked: CheckBoard does that.

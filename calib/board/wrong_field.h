@@ -6,8 +6,8 @@
 namespace glint {
 
 inline std::string WrongField(const std::string& field, const std::string& found,
-                              const std::string& mend) {
-  return field + ": found " + found + "; " + mend;
+                              const std::string& remedy) {
+  return field + ": found " + found + "; " + remedy;
 }
 
 }  // namespace glint

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/errors/errors.h"
 #include "calib/bundle/bundle_internal.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

@@ -11,9 +11,9 @@
 #include <memory>
 #include <string>
 
+#include "base/errors/errors.h"
 #include "calib/bundle/bundle_internal.h"
 #include "calib/bundle/cost.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint::bundle {
 

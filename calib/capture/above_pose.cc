@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "base/errors/errors.h"
 #include "calib/camera/orientation.h"
 #include "calib/capture/assumed_camera.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

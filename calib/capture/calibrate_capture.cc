@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "base/errors/errors.h"
 #include "calib/bundle/residual_picture.h"
 #include "calib/camera/orientation.h"
 #include "calib/capture/above_pose.h"
@@ -21,8 +22,7 @@
 #include "calib/guidance/coverage_picture.h"
 #include "calib/guidance/polar_picture.h"
 #include "pipeline/contract/board_file.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
+#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {
@@ -113,7 +113,7 @@ void WarnOfUncertainty(const BundleResult& bundle) {
     if (sigma < 0.01) continue;
     spdlog::warn(
         "the focal length is uncertain by {:.1f} %; photographs tilted by 20 to 40 degrees in "
-        "several directions mend that",
+        "several directions fix that",
         100 * sigma);
   }
 }

@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/errors/errors.h"
 #include "calib/camera/orientation.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "calib/camera/orientation.h"
 #include "calib/light/light_picture.h"
-#include "pipeline/contract/files.h"
+#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {
@@ -192,7 +192,7 @@ std::vector<std::string> LightAdvice(const CalibSummary& summary) {
   if (flash > kFlash_mm) {
     advice.push_back(fmt::format(
         "the flash's place is uncertain by {:.1f} mm; photographs tilted by 20 to 40 degrees in "
-        "several directions mend that",
+        "several directions fix that",
         flash));
   }
   const auto& first = summary.calibration.photos[0];
@@ -203,7 +203,7 @@ std::vector<std::string> LightAdvice(const CalibSummary& summary) {
     if (share <= kAmbientOfFlash) continue;
     advice.push_back(
         fmt::format("the room's light is uncertain by {:.1f} % of the flash's; photographs from "
-                    "more heights mend that, or a darker room makes it needless",
+                    "more heights fix that, or a darker room makes it needless",
                     100 * share));
     break;
   }
@@ -211,7 +211,7 @@ std::vector<std::string> LightAdvice(const CalibSummary& summary) {
     if (sigma <= kVignetting) continue;
     advice.push_back(fmt::format(
         "the lens's fall-off is uncertain by {:.1f} %; photographs with the board at the picture's "
-        "rim mend that",
+        "rim fix that",
         100 * sigma));
   }
   if (light.rms_percent > kResidual) {

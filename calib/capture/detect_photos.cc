@@ -6,11 +6,11 @@
 #include <opencv2/core.hpp>
 #include <tuple>
 
+#include "base/errors/errors.h"
 #include "base/parallel/parallel.h"
 #include "calib/capture/reduced_photo.h"
 #include "calib/corners/markers.h"
 #include "calib/guidance/clipping.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/contract/progress.h"
 
 namespace glint {

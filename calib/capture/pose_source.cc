@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
+#include "base/errors/errors.h"
 #include "calib/colmap/run_colmap.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

@@ -4,10 +4,10 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/jpeg_end.h"
-#include "pipeline/contract/photo_header.h"
+#include "base/errors/errors.h"
+#include "pipeline/files/files.h"
+#include "pipeline/photos/jpeg_end.h"
+#include "pipeline/photos/photo_header.h"
 
 namespace glint {
 namespace {

@@ -8,8 +8,8 @@
 #include <map>
 #include <optional>
 
+#include "base/errors/errors.h"
 #include "calib/capture/sample_plane.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

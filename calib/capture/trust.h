@@ -12,8 +12,8 @@
 #include "calib/validation/diagnosis.h"
 #include "calib/validation/model_choice.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/json.h"
 #include "pipeline/contract/stage.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

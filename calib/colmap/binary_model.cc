@@ -6,9 +6,9 @@
 #include <cstring>
 #include <type_traits>
 
+#include "base/errors/errors.h"
 #include "calib/colmap/colmap_camera.h"
 #include "calib/colmap/model_io.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint::colmap {
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "base/errors/errors.h"
 #include "calib/colmap/colmap_camera.h"
 #include "calib/colmap/model_io.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint::colmap {
 namespace {
@@ -89,14 +89,14 @@ void CheckModel(const std::vector<fs::path>& files, const ColmapModel& model) {
   const auto cameras = IndexOf(files[0], "camera", model.cameras);
   const auto images = IndexOf(files[1], "image", model.images);
   const auto points = IndexOf(files[2], "point", model.points);
-  const std::string mend = "the three files are not of one model; export it again";
+  const std::string remedy = "the three files are not of one model; export it again";
   for (const ColmapImage& image : model.images) {
     const std::string field = fmt::format("image {} ({})", image.id, image.name);
     if (cameras.count(image.camera_id) == 0) {
       throw UserError(files[1], field,
                       fmt::format("camera {}, which {} does not have", image.camera_id,
                                   files[0].filename().string()),
-                      mend);
+                      remedy);
     }
     for (const ColmapObservation& observation : image.observations) {
       if (observation.point_id == kNoColmapPoint || points.count(observation.point_id) > 0)
@@ -104,7 +104,7 @@ void CheckModel(const std::vector<fs::path>& files, const ColmapModel& model) {
       throw UserError(files[1], field,
                       fmt::format("point {}, which {} does not have", observation.point_id,
                                   files[2].filename().string()),
-                      mend);
+                      remedy);
     }
   }
   for (const ColmapPoint& point : model.points) {
@@ -118,7 +118,7 @@ void CheckModel(const std::vector<fs::path>& files, const ColmapModel& model) {
           files[2], fmt::format("point {}", point.id),
           fmt::format("feature {} of image {}, which {} does not have", element.observation,
                       element.image_id, files[1].filename().string()),
-          mend);
+          remedy);
     }
   }
 }

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 namespace {

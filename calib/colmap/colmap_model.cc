@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <fstream>
 
+#include "base/errors/errors.h"
 #include "calib/colmap/model_io.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
+#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {
@@ -57,10 +57,10 @@ const ColmapCamera* ColmapModel::FindCamera(std::uint32_t id) const {
 }
 
 std::vector<fs::path> ColmapModelFiles(const fs::path& folder) {
-  const std::string mend =
+  const std::string remedy =
       "give the folder of a COLMAP model: cameras, images and points3D, all .bin or all .txt "
       "(COLMAP: File, Export model)";
-  if (!fs::is_directory(folder)) throw UserError(folder, "", "no such folder", mend);
+  if (!fs::is_directory(folder)) throw UserError(folder, "", "no such folder", remedy);
   const fs::path where = ModelFolder(folder);
   std::string extension = HasAll(where, ".bin") ? ".bin" : HasAll(where, ".txt") ? ".txt" : "";
   if (extension.empty()) extension = HasAny(where, ".bin") ? ".bin" : ".txt";
@@ -68,7 +68,7 @@ std::vector<fs::path> ColmapModelFiles(const fs::path& folder) {
   for (const char* part : kParts) {
     files.push_back(where / (part + extension));
     if (!fs::is_regular_file(files.back())) {
-      throw UserError(files.back(), "", "no such file", mend);
+      throw UserError(files.back(), "", "no such file", remedy);
     }
   }
   return files;

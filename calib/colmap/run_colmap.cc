@@ -9,13 +9,14 @@
 #include <iterator>
 #include <map>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/hash.h"
-#include "pipeline/contract/image.h"
-#include "pipeline/contract/json.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/subprocess.h"
+#include "pipeline/files/files.h"
+#include "pipeline/files/hash.h"
+#include "pipeline/files/json.h"
+#include "pipeline/images/image.h"
+#include "pipeline/photos/photo.h"
 #include "rectify/linearize/encoding.h"
 
 namespace glint {

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string_view>
 
+#include "base/errors/errors.h"
 #include "calib/colmap/colmap_camera.h"
 #include "calib/colmap/model_io.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint::colmap {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pipeline/contract/image.h"
+#include "pipeline/photos/photo.h"
 
 namespace glint {
 

@@ -37,16 +37,16 @@ void AddUnseen(const Verdict& v, List* list) {
 }
 
 void AddFocal(const GuidanceInput& input, const Verdict& v, List* list) {
-  const std::string mend = "take two or three tilted by 20 to 40° toward different sides";
+  const std::string remedy = "take two or three tilted by 20 to 40° toward different sides";
   if (input.focal_assumed) {
     list->push_back({"focal", Importance::kNeeded,
                      "the focal length cannot be told from these photographs, so that angles here "
                      "are rough and a calibration would fail: " +
-                         mend});
+                         remedy});
   } else if (input.focal_sigma >= v.limits.focal_sigma) {
     list->push_back({"focal", Importance::kUseful,
                      fmt::format("the focal length is known to {:.1f} % only: {}",
-                                 100 * input.focal_sigma, mend)});
+                                 100 * input.focal_sigma, remedy)});
   }
 }
 

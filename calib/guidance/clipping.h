@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/corners/detector.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/photos/photo.h"
 
 namespace glint {
 

@@ -10,7 +10,7 @@
 
 #include "calib/guidance/coverage.h"
 #include "calib/guidance/suggestion.h"
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

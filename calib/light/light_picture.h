@@ -2,7 +2,7 @@
 #pragma once
 
 #include "calib/light/light.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 

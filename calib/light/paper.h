@@ -6,7 +6,7 @@
 
 #include "calib/board/board.h"
 #include "calib/corners/detector.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/photos/photo.h"
 #include "rectify/linearize/encoding.h"
 
 namespace glint {

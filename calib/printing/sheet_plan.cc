@@ -9,8 +9,8 @@
 #include <map>
 
 #include "base/colour/srgb.h"
+#include "base/errors/errors.h"
 #include "calib/board/dictionary.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

@@ -28,7 +28,7 @@ struct SheetOptions {
 };
 
 // The sheet and the board on it, by the options. Throws UserError: an option, what was found, the
-// mend.
+// remedy.
 BoardFile PlanSheet(const SheetOptions& options);
 
 // Width and height of the paper, in millimetres. Throws UserError: a name that nobody knows.

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "base/errors/errors.h"
 #include "calib/response/local_gamma.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

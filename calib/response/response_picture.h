@@ -1,7 +1,7 @@
 // A picture of a response curve.
 #pragma once
 
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 #include "rectify/linearize/response_curve.h"
 
 namespace glint {

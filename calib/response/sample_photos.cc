@@ -6,11 +6,12 @@
 #include <cmath>
 #include <optional>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
-#include "pipeline/contract/json.h"
-#include "pipeline/contract/json_file.h"
-#include "pipeline/contract/photo_name.h"
+#include "base/errors/errors.h"
+#include "pipeline/files/json.h"
+#include "pipeline/files/json_file.h"
+#include "pipeline/images/image.h"
+#include "pipeline/images/image_format.h"
+#include "pipeline/photos/photo.h"
 
 namespace glint {
 namespace {
@@ -158,12 +159,12 @@ ResponseProblems SampleSeries(const std::vector<fs::path>& photos,
 }
 
 std::vector<GreyPatch> ReadPatches(const fs::path& file) {
-  const std::string mend =
+  const std::string remedy =
       "write {\"patches\": [{\"x\": 100, \"y\": 80, \"width\": 40, \"height\": 40, "
       "\"reflectance\": 0.18}, …]}";
-  const Json json = ReadJsonFile(file, mend, 1u << 20);
+  const Json json = ReadJsonFile(file, remedy, 1u << 20);
   if (!json.is_object() || !json.contains("patches") || !json["patches"].is_array()) {
-    throw UserError(file, "patches", "no such list", mend);
+    throw UserError(file, "patches", "no such list", remedy);
   }
   std::vector<GreyPatch> patches;
   for (const Json& entry : json["patches"]) {
@@ -174,7 +175,8 @@ std::vector<GreyPatch> ReadPatches(const fs::path& file) {
       const bool number = entry.is_object() && entry.contains(key) && entry[key].is_number();
       *value = number ? entry[key].get<double>() : -1;
       if (*value >= 0 && *value < 1e6) continue;
-      throw UserError(file, fmt::format("patches[{}].{}", patches.size(), key), "no number", mend);
+      throw UserError(file, fmt::format("patches[{}].{}", patches.size(), key), "no number",
+                      remedy);
     }
     if (!(patch.reflectance > 0 && patch.reflectance <= 1)) {
       throw UserError(file, fmt::format("patches[{}].reflectance", patches.size()),

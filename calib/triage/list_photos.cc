@@ -4,8 +4,9 @@
 
 #include <algorithm>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/photo_name.h"
+#include "base/errors/errors.h"
+#include "pipeline/images/image_format.h"
+#include "pipeline/photos/photo_name.h"
 
 namespace glint {
 namespace {

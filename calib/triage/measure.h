@@ -7,7 +7,7 @@
 
 #include "calib/corners/detector.h"
 #include "calib/corners/gray_image.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/photos/photo.h"
 
 namespace glint {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/triage/measure.h"
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 
@@ -16,7 +16,7 @@ std::string_view RemarkName(RemarkKind kind);  // "blurred", "dark", …
 struct Remark {
   std::string photo;  // empty: it is about all
   RemarkKind kind = RemarkKind::kExif;
-  std::string text;               // what was found, with the measure and its limit, and the mend
+  std::string text;               // what was found, with the measure and its limit, and the remedy
   double measure = 0, limit = 0;  // 0, 0: a contradiction is not a number
   bool condemns = false;          // the photograph does more harm than good
 };

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calib/uncertainty/projection_uncertainty.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 

@@ -7,10 +7,10 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "base/errors/errors.h"
 #include "calib/uncertainty/implied_motion.h"
 #include "calib/uncertainty/projection_jacobian.h"
 #include "calib/uncertainty/uncertainty_picture.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <map>
 
+#include "base/errors/errors.h"
 #include "calib/uncertainty/projection_jacobian.h"
 #include "calib/validation/cross_validation.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

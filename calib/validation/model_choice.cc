@@ -6,8 +6,8 @@
 #include <cmath>
 #include <exception>
 
+#include "base/errors/errors.h"
 #include "calib/validation/cross_validation.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

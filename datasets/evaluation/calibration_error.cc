@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 namespace {

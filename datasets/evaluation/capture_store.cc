@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/errors/errors.h"
 #include "datasets/evaluation/link_files.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

@@ -8,17 +8,17 @@
 #include <optional>
 #include <set>
 
+#include "base/errors/errors.h"
 #include "datasets/evaluation/capture_store.h"
 #include "datasets/evaluation/corrected_lights.h"
 #include "datasets/evaluation/shipped_models.h"
 #include "datasets/evaluation/view_error.h"
 #include "datasets/statistics/population.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/hash.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/contract/subprocess.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/files/files.h"
+#include "pipeline/files/hash.h"
 
 namespace glint {
 namespace {

@@ -15,8 +15,8 @@
 
 #include "datasets/evaluation/experiment_result.h"
 #include "datasets/synth/view_set.h"
-#include "pipeline/contract/json.h"
 #include "pipeline/contract/program.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -2,7 +2,7 @@
 
 #include "datasets/evaluation/paper_experiments.h"
 #include "datasets/evaluation/picture_sheet.h"
-#include "pipeline/contract/files.h"
+#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "datasets/evaluation/map_error.h"
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

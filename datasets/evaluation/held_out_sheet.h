@@ -4,7 +4,7 @@
 #include <string>
 
 #include "datasets/evaluation/held_out_views.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 

@@ -7,15 +7,15 @@
 #include <cmath>
 #include <memory>
 
+#include "base/errors/errors.h"
 #include "datasets/evaluation/experiment.h"
 #include "datasets/evaluation/link_files.h"
 #include "datasets/evaluation/predicted_deviation.h"
 #include "datasets/evaluation/their_rendering.h"
 #include "datasets/evaluation/view_error.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/subprocess.h"
+#include "pipeline/files/files.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

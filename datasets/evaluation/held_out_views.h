@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/json.h"
 #include "pipeline/contract/program.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -2,10 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include "base/errors/errors.h"
 #include "datasets/evaluation/held_out_sheet.h"
 #include "datasets/evaluation/held_out_views.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
+#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

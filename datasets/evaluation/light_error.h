@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipeline/contract/calibration.h"
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors/errors.h"
 #include "datasets/evaluation/view_error.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
 #include "pipeline/contract/subprocess.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

@@ -1,7 +1,7 @@
 #include "datasets/evaluation/light_verb.h"
 
+#include "base/errors/errors.h"
 #include "datasets/evaluation/light_experiment.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

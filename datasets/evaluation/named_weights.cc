@@ -1,6 +1,6 @@
 #include "datasets/evaluation/named_weights.h"
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 

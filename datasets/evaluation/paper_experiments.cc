@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "base/errors/errors.h"
 #include "datasets/evaluation/named_weights.h"
 #include "datasets/evaluation/paper_figures.h"
 #include "datasets/evaluation/starts.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "datasets/evaluation/experiment.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/errors/errors.h"
 #include "fitting/reflectance/log_radiance.h"
 #include "fitting/view_correction/deviating_view.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/manifest.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

@@ -3,8 +3,8 @@
 #include <stdexcept>
 
 #include "fitting/weights/find_model.h"
-#include "pipeline/contract/hash.h"
 #include "pipeline/contract/manifest.h"
+#include "pipeline/files/hash.h"
 
 namespace glint {
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/errors/errors.h"
 #include "datasets/procedural/random.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

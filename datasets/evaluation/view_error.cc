@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/errors/errors.h"
 #include "base/resampling/resampling.h"
 #include "fitting/photographs/photographs.h"
 #include "fitting/photographs/picture_shift.h"
@@ -13,12 +14,11 @@
 #include "fitting/render/render_lit.h"
 #include "fitting/render/render_room.h"
 #include "fitting/view_correction/corrections_json.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/contract/rectified_rows.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/contract/svbrdf_rows.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

@@ -4,9 +4,10 @@
 #include <set>
 #include <vector>
 
+#include "base/errors/errors.h"
 #include "datasets/formats/map_values.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
+#include "pipeline/photos/photo.h"
 #include "rectify/linearize/encoding.h"
 
 namespace glint {

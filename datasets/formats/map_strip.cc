@@ -1,8 +1,9 @@
 #include "datasets/formats/map_strip.h"
 
+#include "base/errors/errors.h"
 #include "datasets/formats/map_values.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
+#include "pipeline/photos/photo.h"
 
 namespace glint {
 namespace {

@@ -1,24 +1,24 @@
 #include "datasets/formats/read_maps.h"
 
+#include "base/errors/errors.h"
 #include "datasets/formats/map_folder.h"
 #include "datasets/formats/map_strip.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kMend[] =
+constexpr char kRemedy[] =
     "give an svbrdf.exr, a strip of four maps (normal, diffuse, roughness, specular) or of five (a "
     "photo before them), or a folder with NAME_Color, NAME_NormalGL and NAME_Roughness";
 
 MapLayout DetectInFolder(const fs::path& folder) {
   if (fs::is_regular_file(folder / "svbrdf.exr")) return MapLayout::kSvbrdfExr;
   if (!FindMapFiles(folder).empty()) return MapLayout::kColorFolder;
-  throw UserError(folder, "", "a folder with no maps that are known", kMend);
+  throw UserError(folder, "", "a folder with no maps that are known", kRemedy);
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ std::string_view MapLayoutName(MapLayout layout) {
 
 MapLayout DetectMapLayout(const fs::path& path) {
   if (fs::is_directory(path)) return DetectInFolder(path);
-  if (!fs::is_regular_file(path)) throw UserError(path, "", "no such file or folder", kMend);
+  if (!fs::is_regular_file(path)) throw UserError(path, "", "no such file or folder", kRemedy);
   const ImageHeader header = ReadImageHeader(path);
   for (const std::string& channel : header.channels) {
     if (channel == "normal.X") return MapLayout::kSvbrdfExr;
@@ -48,7 +48,8 @@ MapLayout DetectMapLayout(const fs::path& path) {
   if (header.width == 5 * header.height) return MapLayout::kPhotoStrip;
   throw UserError(
       path, "size",
-      "a picture of " + std::to_string(header.width) + "x" + std::to_string(header.height), kMend);
+      "a picture of " + std::to_string(header.width) + "x" + std::to_string(header.height),
+      kRemedy);
 }
 
 SvbrdfMaps ReadMaps(const fs::path& path, const MapEncodings& encodings) {

@@ -37,7 +37,7 @@ MapLayout DetectMapLayout(const std::filesystem::path& path);
 // Reads any of the layouts. Base colour c and metalness m give diffuse c·(1 − m) and specular
 // F0 = 0.04·(1 − m) + c·m. Roughness is kept from 0 by 1/255's half; normals come out of unit
 // length and in the upper half space. Throws UserError naming the file, what was found and the
-// mend.
+// remedy.
 SvbrdfMaps ReadMaps(const std::filesystem::path& path, const MapEncodings& encodings = {});
 
 }  // namespace glint

@@ -4,9 +4,9 @@
 // convention without falloff has no scale. E = π; images in gamma 2.2.
 #include <numbers>
 
+#include "base/errors/errors.h"
 #include "datasets/import/foreign_set.h"
 #include "datasets/import/number_file.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

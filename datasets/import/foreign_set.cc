@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kMend[] =
+constexpr char kRemedy[] =
     "give a folder with views.json, with camera_pos.txt (MaterialGAN) or parameters.json, or DIR's "
     "NAME.txt in a folder *wlv";
 
@@ -46,7 +46,7 @@ ForeignSet ReadFolder(const fs::path& folder) {
     throw UserError(folder, "", std::to_string(wlv.size()) + " sets in a folder *wlv",
                     "name one of them, for example " + wlv[0].string());
   }
-  throw UserError(folder, "", "a folder in no layout that is known", kMend);
+  throw UserError(folder, "", "a folder in no layout that is known", kRemedy);
 }
 
 }  // namespace
@@ -67,11 +67,11 @@ std::string_view ForeignLayoutName(ForeignLayout layout) {
 
 ForeignSet ReadForeignSet(const fs::path& source) {
   if (fs::is_directory(source)) return ReadFolder(source);
-  if (!fs::is_regular_file(source)) throw UserError(source, "", "no such file or folder", kMend);
+  if (!fs::is_regular_file(source)) throw UserError(source, "", "no such file or folder", kRemedy);
   if (source.filename() == "parameters.json") return ReadMaterialGanJson(source.parent_path());
   if (source.extension() == ".json") return ReadViewsJson(source);
   if (EndsWithWlv(fs::absolute(source).parent_path())) return ReadDirSet(source);
-  throw UserError(source, "", "a file in no layout that is known", kMend);
+  throw UserError(source, "", "a file in no layout that is known", kRemedy);
 }
 
 void RequireInFront(const fs::path& file, const std::string& field, const View& view) {

@@ -38,7 +38,7 @@ struct ForeignSet {
 //   a folder with parameters.json                svbrdf-diff-renderer, by the same authors
 //   NAME.txt in a folder *wlv beside *images     DIR 2019's program; or the folder above with one
 //   such
-// Throws UserError naming file, field, what was found and the mend.
+// Throws UserError naming file, field, what was found and the remedy.
 ForeignSet ReadForeignSet(const std::filesystem::path& source);
 
 // The layouts' readers, for files known to be theirs.

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/progress.h"
 #include "rectify/linearize/encoding.h"
 #include "rectify/linearize/light_guess.h"

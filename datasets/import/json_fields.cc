@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 
@@ -24,9 +24,9 @@ const Json* JsonFields::Find(const std::string& field) {
   return found == json_.end() ? nullptr : &*found;
 }
 
-const Json& JsonFields::Require(const std::string& field, const std::string& mend) {
+const Json& JsonFields::Require(const std::string& field, const std::string& remedy) {
   const Json* found = Find(field);
-  if (found == nullptr) throw UserError(file_, Path(field), "no such field", mend);
+  if (found == nullptr) throw UserError(file_, Path(field), "no such field", remedy);
   return *found;
 }
 
@@ -39,21 +39,21 @@ std::string JsonFields::Text(const std::string& field, const std::string& fallba
 
 std::vector<double> JsonFields::Numbers(const std::string& field, const Json& value, size_t count,
                                         bool one_for_all, double low) const {
-  const std::string mend = std::string(one_for_all ? "a number or " : "") + "a list of " +
-                           std::to_string(count) + " numbers is expected" +
-                           (low == 0 ? ", none below 0" : "");
+  const std::string remedy = std::string(one_for_all ? "a number or " : "") + "a list of " +
+                             std::to_string(count) + " numbers is expected" +
+                             (low == 0 ? ", none below 0" : "");
   std::vector<double> numbers;
   if ((one_for_all || count == 1) && value.is_number()) {
     numbers.assign(count, value.get<double>());
   } else {
-    if (!value.is_array() || value.size() != count) Reject(Path(field), value, mend);
+    if (!value.is_array() || value.size() != count) Reject(Path(field), value, remedy);
     for (const Json& element : value) {
-      if (!element.is_number()) Reject(Path(field), value, mend);
+      if (!element.is_number()) Reject(Path(field), value, remedy);
       numbers.push_back(element.get<double>());
     }
   }
   for (const double number : numbers) {
-    if (!(std::abs(number) < -kAny) || number < low) Reject(Path(field), value, mend);
+    if (!(std::abs(number) < -kAny) || number < low) Reject(Path(field), value, remedy);
   }
   return numbers;
 }
@@ -62,8 +62,9 @@ std::string JsonFields::Path(const std::string& field) const {
   return name_.empty() ? field : name_ + "." + field;
 }
 
-void JsonFields::Reject(const std::string& path, const Json& value, const std::string& mend) const {
-  throw UserError(file_, path, ShownJson(value), mend);
+void JsonFields::Reject(const std::string& path, const Json& value,
+                        const std::string& remedy) const {
+  throw UserError(file_, path, ShownJson(value), remedy);
 }
 
 void JsonFields::RejectUnknown() const {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/json_file.h"
+#include "pipeline/files/json_file.h"
 
 namespace glint {
 
@@ -24,7 +24,7 @@ class JsonFields {
   JsonFields(const std::filesystem::path& file, const Json& json, std::string name);
 
   const Json* Find(const std::string& field);  // nullptr: absent
-  const Json& Require(const std::string& field, const std::string& mend);
+  const Json& Require(const std::string& field, const std::string& remedy);
   std::string Text(const std::string& field, const std::string& fallback);
 
   // `count` finite numbers, none below `low`, from a list; with `one_for_all` also from one number.
@@ -34,7 +34,7 @@ class JsonFields {
 
   std::string Path(const std::string& field) const;
   [[noreturn]] void Reject(const std::string& path, const Json& value,
-                           const std::string& mend) const;
+                           const std::string& remedy) const;
   // Throws for the first field that nobody asked for.
   void RejectUnknown() const;
 

@@ -9,11 +9,11 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/errors/errors.h"
 #include "datasets/import/foreign_set.h"
 #include "datasets/import/json_fields.h"
 #include "datasets/import/number_file.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/photos/photo.h"
 
 namespace glint {
 namespace {
@@ -125,14 +125,14 @@ ForeignSet ReadMaterialGanJson(const fs::path& folder) {
   set.description = {file};
   const Json json = ReadJsonFile(file, "copy the file again");
   JsonFields fields(file, json, "");
-  const std::string mend = "give image_size, idx, camera_pos, light_pos and light_pow";
+  const std::string remedy = "give image_size, idx, camera_pos, light_pos and light_pow";
   SetSize(file, "image_size",
-          fields.Numbers("image_size", fields.Require("image_size", mend), 1, true, 0)[0], &set);
+          fields.Numbers("image_size", fields.Require("image_size", remedy), 1, true, 0)[0], &set);
   const Vec3d power =
-      Power(fields.Numbers("light_pow", fields.Require("light_pow", mend), 3, true, 0));
-  const Json& indices = fields.Require("idx", mend);
-  const Json& cameras = fields.Require("camera_pos", mend);
-  const Json& lights = fields.Require("light_pos", mend);
+      Power(fields.Numbers("light_pow", fields.Require("light_pow", remedy), 3, true, 0));
+  const Json& indices = fields.Require("idx", remedy);
+  const Json& cameras = fields.Require("camera_pos", remedy);
+  const Json& lights = fields.Require("light_pos", remedy);
   if (!indices.is_array() || indices.empty()) fields.Reject("idx", indices, "give a list");
   for (const auto& [field, list] : {std::pair{"camera_pos", &cameras}, {"light_pos", &lights}}) {
     if (list->is_array() && list->size() == indices.size()) continue;

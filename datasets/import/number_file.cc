@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
+#include "base/errors/errors.h"
+#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

@@ -2,9 +2,9 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/errors/errors.h"
 #include "datasets/import/foreign_set.h"
 #include "datasets/import/json_fields.h"
-#include "pipeline/contract/errors.h"
 #include "rectify/linearize/encoding.h"
 
 namespace glint {

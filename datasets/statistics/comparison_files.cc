@@ -6,8 +6,8 @@
 
 #include "datasets/statistics/comparison_picture.h"
 #include "datasets/statistics/distance.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/files/files.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

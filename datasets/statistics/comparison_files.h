@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "datasets/statistics/comparison.h"
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

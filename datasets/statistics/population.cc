@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors/errors.h"
 #include "base/parallel/parallel.h"
 #include "datasets/statistics/fourier.h"
 #include "datasets/synth/material_source.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

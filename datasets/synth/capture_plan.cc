@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "base/errors/errors.h"
 #include "datasets/procedural/random.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

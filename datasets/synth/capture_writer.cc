@@ -6,18 +6,18 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/errors/errors.h"
 #include "base/parallel/parallel.h"
 #include "datasets/procedural/random.h"
 #include "datasets/synth/photo_file.h"
 #include "datasets/synth/photo_renderer.h"
 #include "pipeline/contract/board_file.h"
 #include "pipeline/contract/calibration.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/files/files.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

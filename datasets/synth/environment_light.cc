@@ -4,9 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/errors/errors.h"
 #include "fitting/render/renderer.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
+#include "pipeline/photos/photo.h"
 
 namespace glint {
 namespace {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "base/errors/errors.h"
 #include "datasets/formats/read_maps.h"
 #include "datasets/procedural/material.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/contract/svbrdf_file.h"
 
 namespace glint {

@@ -5,11 +5,11 @@
 #include <numbers>
 #include <string>
 
+#include "base/errors/errors.h"
 #include "base/parallel/parallel.h"
 #include "datasets/procedural/random.h"
 #include "datasets/synth/vec3.h"
 #include "fitting/reflectance/brdf.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

@@ -6,16 +6,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/errors/errors.h"
 #include "datasets/procedural/random.h"
 #include "datasets/synth/capture_plan.h"
 #include "datasets/synth/photo_file.h"
 #include "datasets/synth/vec3.h"
 #include "fitting/render/renderer.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/stage.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/files/files.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

@@ -28,7 +28,7 @@ struct LatentCode {
 
 class Autoencoder {
  public:
-  // Reads weights written by glint-train. Throws std::runtime_error "FILE: PART: found …; MEND".
+  // Reads weights written by glint-train. Throws std::runtime_error "FILE: PART: found …; REMEDY".
   static Autoencoder Load(const std::filesystem::path& weights);
   // Untrained, for tests.
   static Autoencoder Random(const std::array<int, 5>& channels, std::uint64_t seed);

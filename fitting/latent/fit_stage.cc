@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/errors/errors.h"
 #include "fitting/bootstrap/bootstrap.h"
 #include "fitting/estimator/estimator.h"
 #include "fitting/latent/levels.h"
 #include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/weights/find_model.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_file.h"
@@ -48,7 +48,7 @@ FitOptions Resolved(const FitStageOptions& options, size_t photographs, int thre
   return fit;
 }
 
-// Errors of the auto-encoder name file, part, found and mend; here they become the user's.
+// Errors of the auto-encoder name file, part, found and remedy; here they become the user's.
 template <class Action>
 auto AsUserError(const Action& action) {
   try {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/errors/errors.h"
 #include "base/parallel/parallel.h"
 #include "fitting/refine/estimate_sample.h"
 #include "fitting/refine/refine_rows.h"
@@ -13,11 +14,10 @@
 #include "fitting/refine/substances.h"
 #include "fitting/reflectance/brdf.h"
 #include "fitting/view_correction/corrections_json.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/memory_limit.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_rows.h"
+#include "pipeline/files/memory_limit.h"
 
 namespace glint {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/errors/errors.h"
 #include "fitting/reflectance/border.h"
 #include "fitting/render/renderer.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

@@ -29,7 +29,7 @@ PackedMaterial PackMaterial(const std::string& name, const SvbrdfMaps& maps);
 
 void WriteMaterialPack(const std::filesystem::path& path, const MaterialPack& pack);
 
-// Throws std::runtime_error "FILE: PART: found …; MEND".
+// Throws std::runtime_error "FILE: PART: found …; REMEDY".
 MaterialPack ReadMaterialPack(const std::filesystem::path& path);
 
 // A window of `window` texels at (column, row), resampled to size × size texels by averaging;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 

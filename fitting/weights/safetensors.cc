@@ -16,11 +16,11 @@ using Json = nlohmann::json;
 static_assert(std::endian::native == std::endian::little, "safetensors is little-endian");
 
 constexpr std::uint64_t kMaxHeaderBytes = 1u << 24;
-constexpr char kMend[] = "the file is damaged or not a weights file: fetch or train it again";
+constexpr char kRemedy[] = "the file is damaged or not a weights file: fetch or train it again";
 
 [[noreturn]] void Fail(const std::filesystem::path& path, const std::string& part,
-                       const std::string& found, const std::string& mend = kMend) {
-  throw std::runtime_error(path.string() + ": " + part + ": found " + found + "; " + mend);
+                       const std::string& found, const std::string& remedy = kRemedy) {
+  throw std::runtime_error(path.string() + ": " + part + ": found " + found + "; " + remedy);
 }
 
 std::string Hex(std::uint64_t value) {

@@ -4,7 +4,7 @@
 //
 // On writing, the metadata entry "checksum" gets the FNV-1a hash (64 bit, hexadecimal) of the
 // tensor bytes; reading checks it when present. All errors are std::runtime_error with a message of
-// the form "FILE: PART: found …; MEND".
+// the form "FILE: PART: found …; REMEDY".
 #pragma once
 
 #include <cstddef>

@@ -38,8 +38,8 @@ Tensor ReadTensor(const std::filesystem::path& path, const TensorFile& file,
 }
 
 void FailWeights(const std::filesystem::path& path, const std::string& field,
-                 const std::string& found, const std::string& mend) {
-  throw std::runtime_error(path.string() + ": " + field + ": found " + found + "; " + mend);
+                 const std::string& found, const std::string& remedy) {
+  throw std::runtime_error(path.string() + ": " + field + ": found " + found + "; " + remedy);
 }
 
 std::string RequireMetadata(const std::filesystem::path& path, const TensorFile& file,

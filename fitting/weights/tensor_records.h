@@ -24,9 +24,9 @@ TensorRecord ToRecord(const std::string& name, const torch::Tensor& tensor, bool
 torch::Tensor ReadTensor(const std::filesystem::path& path, const TensorFile& file,
                          const std::string& name, const std::vector<std::int64_t>& shape);
 
-// Throws std::runtime_error "PATH: FIELD: found FOUND; MEND".
+// Throws std::runtime_error "PATH: FIELD: found FOUND; REMEDY".
 [[noreturn]] void FailWeights(const std::filesystem::path& path, const std::string& field,
-                              const std::string& found, const std::string& mend);
+                              const std::string& found, const std::string& remedy);
 
 // Throws when the entry is missing, the second also when it is not `wanted`.
 std::string RequireMetadata(const std::filesystem::path& path, const TensorFile& file,

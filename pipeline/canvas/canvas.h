@@ -1,7 +1,7 @@
 // Pictures drawn with OpenCV, as images that Glint writes.
 #pragma once
 
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 
 namespace cv {
 class Mat;

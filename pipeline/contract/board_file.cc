@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/errors/errors.h"
 #include "calib/board/dictionary.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/json_file.h"
-#include "pipeline/contract/json_object.h"
+#include "pipeline/files/json_file.h"
+#include "pipeline/files/json_object.h"
 
 namespace glint {
 namespace {
@@ -27,9 +27,9 @@ Json ListOf(const BoardRectangle& r) {
 Eigen::Vector2d Point(const std::vector<double>& numbers) { return {numbers[0], numbers[1]}; }
 
 BoardRectangle RectangleIn(JsonObject* object, const std::string& key) {
-  const std::string mend = "give [left, bottom, right, top] in millimetres";
-  const auto n = object->Numbers(key, 4, mend);
-  if (!(n[0] < n[2]) || !(n[1] < n[3])) object->Reject(key, mend);
+  const std::string remedy = "give [left, bottom, right, top] in millimetres";
+  const auto n = object->Numbers(key, 4, remedy);
+  if (!(n[0] < n[2]) || !(n[1] < n[3])) object->Reject(key, remedy);
   return {n[0], n[1], n[2], n[3]};
 }
 
@@ -81,8 +81,8 @@ Board MarkerBoardIn(JsonObject* object) {
 Board SquaresIn(JsonObject* object, BoardKind kind) {
   Board board;
   board.kind = kind;
-  const std::string mend = "give [columns, rows] of squares";
-  const auto squares = object->Integers("squares", 2, mend);
+  const std::string remedy = "give [columns, rows] of squares";
+  const auto squares = object->Integers("squares", 2, remedy);
   board.squares_x = squares[0];
   board.squares_y = squares[1];
   board.square_mm = object->Number("square_mm", 1e-3, 1e4, "give the side of a square");

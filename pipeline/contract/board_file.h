@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "calib/board/board.h"
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 
@@ -27,7 +27,7 @@ struct BoardFile {
 
 Json ToJson(const BoardFile& file);
 
-// Throws UserError naming file, field, what was found and the mend; the board passes CheckBoard.
+// Throws UserError naming file, field, what was found and the remedy; the board passes CheckBoard.
 BoardFile ReadBoardFile(const std::filesystem::path& file);
 
 // The factor by which the board was printed too large (above 1) or too small, where its ruler

@@ -9,7 +9,7 @@
 
 #include "calib/camera/camera_model.h"
 #include "calib/camera/rigid3.h"
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <set>
 
+#include "base/errors/errors.h"
 #include "calib/board/dictionary.h"
 #include "pipeline/contract/board_file.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/photo_name.h"
 #include "pipeline/contract/stages.h"
-#include "pipeline/contract/toml_file.h"
-#include "pipeline/contract/video.h"
+#include "pipeline/files/toml_file.h"
+#include "pipeline/photos/photo_name.h"
+#include "pipeline/photos/video.h"
 
 namespace glint {
 namespace {
@@ -46,12 +46,12 @@ class TableReader {
   }
 
   [[noreturn]] void Reject(const toml::node& node, const std::string& key,
-                           const std::string& mend) const {
+                           const std::string& remedy) const {
     throw UserError(file_, TomlPlace{file_, name_ + "." + key}.Field(node), DescribeToml(node),
-                    mend);
+                    remedy);
   }
-  [[noreturn]] void Missing(const std::string& key, const std::string& mend) const {
-    throw UserError(file_, name_ + "." + key, "no such key", mend);
+  [[noreturn]] void Missing(const std::string& key, const std::string& remedy) const {
+    throw UserError(file_, name_ + "." + key, "no such key", remedy);
   }
 
   double Number(const std::string& key, double fallback, double low, double high,
@@ -80,32 +80,32 @@ class TableReader {
 
   // A list of `count` numbers (or one number repeated, where `one_for_all`); empty: absent.
   std::vector<double> Numbers(const std::string& key, size_t count, bool one_for_all,
-                              const std::string& mend) {
+                              const std::string& remedy) {
     const toml::node* node = Find(key);
     if (node == nullptr) return {};
     if (one_for_all && node->is_number()) return std::vector<double>(count, *node->value<double>());
     const toml::array* array = node->as_array();
-    if (array == nullptr || array->size() != count) Reject(*node, key, mend);
+    if (array == nullptr || array->size() != count) Reject(*node, key, remedy);
     std::vector<double> numbers;
     for (const toml::node& element : *array) {
       const auto value = element.is_number() ? element.value<double>() : std::nullopt;
-      if (!value || !std::isfinite(*value)) Reject(element, key, mend);
+      if (!value || !std::isfinite(*value)) Reject(element, key, remedy);
       numbers.push_back(*value);
     }
     return numbers;
   }
 
   // `count` points, as [[x, y], …] (one: [x, y]), one after the other; empty: absent.
-  std::vector<double> Points(const std::string& key, size_t count, const std::string& mend) {
+  std::vector<double> Points(const std::string& key, size_t count, const std::string& remedy) {
     const toml::node* node = Find(key);
     if (node == nullptr) return {};
     std::vector<double> numbers;
     const auto add = [&](const toml::node& point) {
       const toml::array* pair = point.as_array();
-      if (pair == nullptr || pair->size() != 2) Reject(point, key, mend);
+      if (pair == nullptr || pair->size() != 2) Reject(point, key, remedy);
       for (const toml::node& element : *pair) {
         const auto value = element.is_number() ? element.value<double>() : std::nullopt;
-        if (!value || !std::isfinite(*value)) Reject(element, key, mend);
+        if (!value || !std::isfinite(*value)) Reject(element, key, remedy);
         numbers.push_back(*value);
       }
     };
@@ -114,32 +114,32 @@ class TableReader {
       return numbers;
     }
     const toml::array* array = node->as_array();
-    if (array == nullptr || array->size() != count) Reject(*node, key, mend);
+    if (array == nullptr || array->size() != count) Reject(*node, key, remedy);
     for (const toml::node& point : *array) add(point);
     return numbers;
   }
 
   std::vector<int> Integers(const std::string& key, size_t count, bool one_for_all,
-                            const std::string& mend) {
-    const std::vector<double> numbers = Numbers(key, count, one_for_all, mend);
+                            const std::string& remedy) {
+    const std::vector<double> numbers = Numbers(key, count, one_for_all, remedy);
     std::vector<int> integers;
     for (const double number : numbers) {
       if (number != std::floor(number) || std::abs(number) > 1e9)
-        Reject(*table_->get(key), key, mend);
+        Reject(*table_->get(key), key, remedy);
       integers.push_back(static_cast<int>(number));
     }
     return integers;
   }
 
-  std::vector<std::string> Texts(const std::string& key, const std::string& mend) {
+  std::vector<std::string> Texts(const std::string& key, const std::string& remedy) {
     const toml::node* node = Find(key);
     if (node == nullptr) return {};
     if (node->is_string()) return {node->as_string()->get()};
     const toml::array* array = node->as_array();
-    if (array == nullptr) Reject(*node, key, mend);
+    if (array == nullptr) Reject(*node, key, remedy);
     std::vector<std::string> texts;
     for (const toml::node& element : *array) {
-      if (!element.is_string()) Reject(element, key, mend);
+      if (!element.is_string()) Reject(element, key, remedy);
       texts.push_back(element.as_string()->get());
     }
     return texts;
@@ -278,23 +278,23 @@ void ReadSample(const fs::path& file, const toml::table& document, Capture* capt
   const auto centre = table.Numbers("centre_mm", 2, false, "give [x, y] in millimetres");
   if (!centre.empty()) capture->board.board_centre_in_sample_mm = {-centre[0], -centre[1]};
 
-  const std::string mend = "give a width in texels, or [width, height], from 8 to 16384";
+  const std::string remedy = "give a width in texels, or [width, height], from 8 to 16384";
   const toml::node* node = table.Find("resolution_px");
   if (node == nullptr) {
     capture->resolution_px = {1024, static_cast<int>(std::lround(1024 * size[1] / size[0]))};
   } else if (node->is_integer()) {
     const auto width = node->as_integer()->get();
-    if (width < 8 || width > kMaxResolution_px) table.Reject(*node, "resolution_px", mend);
+    if (width < 8 || width > kMaxResolution_px) table.Reject(*node, "resolution_px", remedy);
     capture->resolution_px = {
         static_cast<int>(width),
         static_cast<int>(std::lround(static_cast<double>(width) * size[1] / size[0]))};
   } else {
-    const auto pair = table.Integers("resolution_px", 2, false, mend);
+    const auto pair = table.Integers("resolution_px", 2, false, remedy);
     capture->resolution_px = {pair[0], pair[1]};
   }
   for (const int side : capture->resolution_px) {
     if (side < 8 || side > kMaxResolution_px) {
-      throw UserError(file, "sample.resolution_px", std::to_string(side), mend);
+      throw UserError(file, "sample.resolution_px", std::to_string(side), remedy);
     }
   }
   table.RejectUnknown();
@@ -386,11 +386,11 @@ void ReadRadiometry(const fs::path& file, const toml::table& document, Capture* 
   if (!offset.empty()) capture->light_offset_mm = {offset[0], offset[1], offset[2]};
   for (auto [key, target] :
        {std::pair{"power", &capture->light_power}, std::pair{"ambient", &capture->ambient}}) {
-    const std::string mend = "give a number or [r, g, b], none below 0";
-    const auto numbers = light.Numbers(key, 3, true, mend);
+    const std::string remedy = "give a number or [r, g, b], none below 0";
+    const auto numbers = light.Numbers(key, 3, true, remedy);
     if (numbers.empty()) continue;
     for (const double number : numbers) {
-      if (number < 0) light.Reject(*document["light"][key].node(), key, mend);
+      if (number < 0) light.Reject(*document["light"][key].node(), key, remedy);
     }
     *target = {numbers[0], numbers[1], numbers[2]};
   }
@@ -505,7 +505,7 @@ Capture ReadCapture(const fs::path& folder) {
   ReadRadiometry(capture.file, *document, &capture);
   if (photos.present() && capture.photos.empty()) {
     throw UserError(capture.file, "photos.files", "no photograph that matches",
-                    "put photographs into the folder, or mend the pattern");
+                    "put photographs into the folder, or correct the pattern");
   }
   return capture;
 }

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "base/cpu/instruction_set.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
-#include "pipeline/contract/memory_limit.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/stages.h"
+#include "pipeline/files/memory_limit.h"
+#include "pipeline/photos/photo.h"
 
 namespace glint {
 namespace {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/hash.h"
-#include "pipeline/contract/json_file.h"
-#include "pipeline/contract/json_object.h"
+#include "base/errors/errors.h"
+#include "pipeline/files/hash.h"
+#include "pipeline/files/json_file.h"
+#include "pipeline/files/json_object.h"
 
 namespace glint {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 
@@ -40,7 +40,7 @@ struct Manifest {
 Json ToJson(const Manifest& manifest);
 
 // Reads and checks structure, format and stage. `expected_stage` empty: any. Throws UserError
-// naming file, field, found and mend.
+// naming file, field, found and remedy.
 Manifest ReadManifest(const std::filesystem::path& file, const std::string& expected_stage = "");
 
 // Compares the outputs on disk with their hashes; throws UserError on the first that differs.

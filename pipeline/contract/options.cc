@@ -12,8 +12,8 @@
 #include <sstream>
 #include <type_traits>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/toml_file.h"
+#include "base/errors/errors.h"
+#include "pipeline/files/toml_file.h"
 
 namespace glint {
 namespace {

@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace CLI {
 class App;

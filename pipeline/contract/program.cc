@@ -15,10 +15,10 @@
 #include <system_error>
 #include <thread>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/help_formatter.h"
-#include "pipeline/contract/memory_limit.h"
 #include "pipeline/contract/stage.h"
+#include "pipeline/files/memory_limit.h"
 
 namespace glint {
 namespace {

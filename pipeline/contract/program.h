@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "pipeline/contract/json.h"
 #include "pipeline/contract/options.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

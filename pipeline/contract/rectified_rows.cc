@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 namespace {

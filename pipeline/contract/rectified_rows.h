@@ -1,8 +1,8 @@
 // Rectified views read and written by rows: views of 16384² texels need 4 GB each.
 #pragma once
 
-#include "pipeline/contract/exr_rows.h"
 #include "pipeline/contract/rectified_set.h"
+#include "pipeline/images/exr_rows.h"
 
 namespace glint {
 

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/photo_name.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/rectified_rows.h"
+#include "pipeline/photos/photo_name.h"
 
 namespace glint {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "fitting/reflectance/view.h"
-#include "pipeline/contract/json.h"
 #include "pipeline/contract/manifest.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -16,10 +16,10 @@
 #include <map>
 
 #include "base/cpu/instruction_set.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/hash.h"
-#include "pipeline/contract/image.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/run_progress.h"
+#include "pipeline/files/hash.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

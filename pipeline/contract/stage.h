@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/files.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/contract/options.h"
 #include "pipeline/contract/program.h"
+#include "pipeline/files/files.h"
 
 namespace glint {
 

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <thread>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 extern char** environ;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 namespace {

@@ -4,7 +4,7 @@
 #include "base/resampling/resampling.h"
 #include "fitting/reflectance/convention.h"
 #include "fitting/reflectance/svbrdf_maps.h"
-#include "pipeline/contract/exr_rows.h"
+#include "pipeline/images/exr_rows.h"
 
 namespace glint {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/program.h"
 
 namespace glint {

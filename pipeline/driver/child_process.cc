@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/programs.h"
 
@@ -30,9 +30,10 @@ int PrintHelp(std::FILE* stream, int code) {
 
 int UnknownVerb(const std::string& verb) {
   const std::string closest = ClosestVerb(verb, ListVerbs());
-  const std::string mend = closest.empty() ? "see glint --help" : "did you mean: glint " + closest;
+  const std::string remedy =
+      closest.empty() ? "see glint --help" : "did you mean: glint " + closest;
   std::fprintf(stderr, "glint: error: found the unknown verb '%s'; %s\n", verb.c_str(),
-               mend.c_str());
+               remedy.c_str());
   return kExitUser;
 }
 

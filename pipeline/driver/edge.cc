@@ -11,7 +11,7 @@
 #include <locale>
 #include <sstream>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/run_progress.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/stage_graph.h"

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "pipeline/contract/memory_limit.h"
 #include "pipeline/contract/run_progress.h"
+#include "pipeline/files/memory_limit.h"
 
 namespace glint {
 

@@ -7,12 +7,14 @@
 #include <set>
 #include <sstream>
 
+#include "base/errors/errors.h"
 #include "calib/board/board.h"
 #include "pipeline/contract/board_file.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/image.h"
-#include "pipeline/contract/photo_name.h"
+#include "pipeline/files/files.h"
+#include "pipeline/images/image.h"
+#include "pipeline/images/image_format.h"
+#include "pipeline/photos/photo.h"
+#include "pipeline/photos/photo_name.h"
 
 namespace glint {
 namespace {

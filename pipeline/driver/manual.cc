@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "pipeline/contract/files.h"
+#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

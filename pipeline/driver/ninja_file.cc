@@ -3,8 +3,8 @@
 #include <fstream>
 #include <set>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/hash.h"
+#include "base/errors/errors.h"
+#include "pipeline/files/hash.h"
 
 namespace glint {
 namespace {

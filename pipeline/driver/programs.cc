@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/stages.h"
 
 namespace glint {

@@ -13,17 +13,17 @@
 #include <set>
 #include <thread>
 
+#include "base/errors/errors.h"
 #include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/hash_cache.h"
 #include "pipeline/contract/manifest.h"
-#include "pipeline/contract/photo_name.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/contract/run_progress.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/programs.h"
+#include "pipeline/files/files.h"
+#include "pipeline/files/hash_cache.h"
+#include "pipeline/photos/photo_name.h"
 
 namespace glint {
 namespace {

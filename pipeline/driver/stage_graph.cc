@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/photo_name.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/stages.h"
+#include "pipeline/photos/photo_name.h"
 
 namespace glint {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <sstream>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/programs.h"

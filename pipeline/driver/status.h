@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/json.h"
 #include "pipeline/driver/stage_graph.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/hash.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/manifest.h"
+#include "pipeline/files/hash.h"
 
 namespace glint {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

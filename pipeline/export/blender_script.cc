@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 namespace {

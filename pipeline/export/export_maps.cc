@@ -7,9 +7,9 @@
 #include "base/colour/srgb.h"
 #include "base/parallel/parallel.h"
 #include "fitting/reflectance/border.h"
-#include "pipeline/contract/exr_rows.h"
-#include "pipeline/contract/png_rows.h"
 #include "pipeline/export/material_formats.h"
+#include "pipeline/images/exr_rows.h"
+#include "pipeline/images/png_rows.h"
 
 namespace glint {
 namespace {

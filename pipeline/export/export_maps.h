@@ -20,12 +20,12 @@
 
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/relief/height_field.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/image.h"
-#include "pipeline/contract/json.h"
 #include "pipeline/contract/options.h"
 #include "pipeline/contract/stage.h"
 #include "pipeline/export/metal_roughness.h"
+#include "pipeline/files/files.h"
+#include "pipeline/files/json.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 

@@ -5,14 +5,14 @@
 #include <tuple>
 #include <utility>
 
+#include "base/errors/errors.h"
 #include "base/resampling/resampling.h"
 #include "fitting/relief/ambient_occlusion.h"
 #include "fitting/relief/height_field.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/exr_rows.h"
-#include "pipeline/contract/files.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/export/material_rows.h"
+#include "pipeline/files/files.h"
+#include "pipeline/images/exr_rows.h"
 
 namespace glint {
 namespace {

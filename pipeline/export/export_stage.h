@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/json.h"
 #include "pipeline/contract/stage.h"
 #include "pipeline/export/export_maps.h"
 #include "pipeline/export/material_formats.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

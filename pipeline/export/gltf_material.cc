@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "base/colour/srgb.h"
-#include "pipeline/contract/image.h"
-#include "pipeline/contract/json.h"
 #include "pipeline/export/export_maps.h"
+#include "pipeline/files/json.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

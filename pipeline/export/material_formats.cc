@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/export/blender_script.h"
 #include "pipeline/export/gltf_material.h"
 #include "pipeline/export/materialx_material.h"

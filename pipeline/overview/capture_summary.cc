@@ -4,13 +4,13 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/errors/errors.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/hash.h"
-#include "pipeline/contract/json_file.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/stage_graph.h"
+#include "pipeline/files/hash.h"
+#include "pipeline/files/json_file.h"
 
 namespace glint {
 namespace {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pipeline/contract/hash.h"
+#include "pipeline/files/hash.h"
 #include "pipeline/report/html.h"
 
 namespace glint {

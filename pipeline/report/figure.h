@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

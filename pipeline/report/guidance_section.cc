@@ -1,6 +1,7 @@
 #include "pipeline/report/guidance_section.h"
 
-#include "pipeline/contract/files.h"
+#include "pipeline/files/files.h"
+#include "pipeline/photos/photo.h"
 #include "pipeline/report/figure.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/metrics_html.h"

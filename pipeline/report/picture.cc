@@ -6,8 +6,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "base/errors/errors.h"
 #include "base/resampling/resampling.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/report/html.h"
 
 namespace glint {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 
 namespace glint {
 

@@ -2,8 +2,8 @@
 
 #include <tuple>
 
+#include "base/errors/errors.h"
 #include "base/resampling/resampling.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/report/corrections_section.h"
 #include "pipeline/report/downloads_section.h"
 #include "pipeline/report/guidance_section.h"

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "datasets/evaluation/view_error.h"
-#include "pipeline/contract/json.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/contract/options.h"
 #include "pipeline/contract/rectified_set.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/exr_rows.h"
-#include "pipeline/contract/hash.h"
+#include "base/errors/errors.h"
+#include "pipeline/files/hash.h"
+#include "pipeline/images/exr_rows.h"
+#include "pipeline/photos/photo.h"
 #include "pipeline/report/downloads_section.h"
 #include "pipeline/report/figure.h"
 #include "pipeline/report/guidance_section.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 #include "pipeline/report/report.h"
 
 namespace glint {

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "base/colour/srgb.h"
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
+
+#include "pipeline/images/image_format.h"
 
 namespace glint {
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/contract/image.h"
-#include "pipeline/contract/photo_name.h"
+#include "pipeline/images/image.h"
+#include "pipeline/photos/photo_name.h"
 #include "rectify/linearize/response_curve.h"
 
 namespace glint {

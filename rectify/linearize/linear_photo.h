@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "pipeline/contract/image.h"
+#include "pipeline/photos/photo.h"
 #include "rectify/linearize/encoding.h"
 
 namespace glint {

@@ -4,23 +4,23 @@
 #include <cmath>
 #include <string>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/json_file.h"
+#include "base/errors/errors.h"
+#include "pipeline/files/files.h"
+#include "pipeline/files/json_file.h"
 
 namespace glint {
 namespace {
 
 constexpr size_t kMostBytes = 4u << 20;
 constexpr const char* kChannels[] = {"R", "G", "B"};
-constexpr char kMend[] = "write it again with glint-response";
+constexpr char kRemedy[] = "write it again with glint-response";
 
 std::vector<float> ReadChannel(const std::filesystem::path& file, const Json& curve,
                                const std::string& name) {
   const std::string field = "curve." + name;
   if (!curve.is_object() || !curve.contains(name) || !curve[name].is_array() ||
       curve[name].size() != kResponseCodes) {
-    throw UserError(file, field, "no list of 256 numbers", kMend);
+    throw UserError(file, field, "no list of 256 numbers", kRemedy);
   }
   std::vector<float> values;
   for (const Json& number : curve[name]) {
@@ -28,11 +28,11 @@ std::vector<float> ReadChannel(const std::filesystem::path& file, const Json& cu
     const bool rises = values.empty() ? value == 0 : value > values.back();
     if (!(value >= 0 && value <= 1 && rises)) {
       throw UserError(file, field + "[" + std::to_string(values.size()) + "]", number.dump(),
-                      "the curve must rise from 0 to 1; " + std::string(kMend));
+                      "the curve must rise from 0 to 1; " + std::string(kRemedy));
     }
     values.push_back(static_cast<float>(value));
   }
-  if (values.back() != 1) throw UserError(file, field, "a curve that does not end at 1", kMend);
+  if (values.back() != 1) throw UserError(file, field, "a curve that does not end at 1", kRemedy);
   return values;
 }
 
@@ -63,12 +63,12 @@ void WriteResponseCurve(const std::filesystem::path& file, const ResponseCurve& 
 }
 
 ResponseCurve ReadResponseCurve(const std::filesystem::path& file) {
-  const Json json = ReadJsonFile(file, kMend, kMostBytes);
+  const Json json = ReadJsonFile(file, kRemedy, kMostBytes);
   if (!json.is_object() || json.value("format", Json()) != "glint-response") {
-    throw UserError(file, "", "no response curve (format: glint-response)", kMend);
+    throw UserError(file, "", "no response curve (format: glint-response)", kRemedy);
   }
   if (json.value("version", Json()) != 1) {
-    throw UserError(file, "version", json.value("version", Json()).dump(), kMend);
+    throw UserError(file, "version", json.value("version", Json()).dump(), kRemedy);
   }
   ResponseCurve curve;
   for (int c = 0; c < 3; ++c) {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <set>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/hash.h"
-#include "pipeline/contract/photo_name.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/rectified_rows.h"
+#include "pipeline/files/hash.h"
+#include "pipeline/photos/photo_name.h"
 #include "rectify/linearize/light_guess.h"
 #include "rectify/views/frame_mask.h"
 #include "rectify/views/photo_stream.h"

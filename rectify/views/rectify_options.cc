@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 namespace {

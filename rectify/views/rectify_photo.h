@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pipeline/contract/calibration.h"
-#include "pipeline/contract/json.h"
 #include "pipeline/contract/rectified_set.h"
+#include "pipeline/files/json.h"
 #include "rectify/resample/resample.h"
 #include "rectify/views/rectify_options.h"
 

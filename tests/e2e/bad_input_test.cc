@@ -1,10 +1,11 @@
 // Bad input: exit code 2 (1 where it is the computation that fails), one message that names the
-// file, the field, what was found and the mend; nothing written outside glint/, earlier results
+// file, the field, what was found and the remedy; nothing written outside glint/, earlier results
 // kept.
 #include <gmock/gmock.h>
 
-#include "pipeline/contract/image.h"
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
+#include "pipeline/images/image.h"
+#include "pipeline/photos/photo.h"
 #include "tests/e2e/capture_fixture.h"
 
 namespace glint::test {
@@ -34,7 +35,7 @@ class BadInputTest : public CaptureTest {
       ++errors;
     }
     EXPECT_EQ(errors, 1u) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("; ")) << "no mend";
+    EXPECT_THAT(outcome.err, HasSubstr("; ")) << "no remedy";
     EXPECT_EQ(Differences(sources, Sources(capture())), "") << "written outside glint/";
     EXPECT_EQ(Differences(results, ResultsBut(but)), "") << "earlier results touched";
   }

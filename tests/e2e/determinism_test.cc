@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "pipeline/contract/json.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/files/json.h"
 #include "tests/e2e/capture_fixture.h"
 
 namespace glint::test {

@@ -3,18 +3,18 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "base/errors/errors.h"
 #include "calib/colmap/colmap_model.h"
 #include "datasets/import/foreign_set.h"
 #include "fitting/weights/safetensors.h"
 #include "pipeline/contract/board_file.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/hash_cache.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/files/hash_cache.h"
+#include "pipeline/photos/photo.h"
 #include "rectify/linearize/response_curve.h"
 
 namespace glint::fuzz {

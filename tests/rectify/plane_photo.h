@@ -9,7 +9,8 @@
 
 #include "calib/camera/camera_model.h"
 #include "calib/camera/rigid3.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
+#include "pipeline/photos/photo.h"
 
 namespace glint {
 

@@ -12,7 +12,7 @@
 #include <set>
 #include <thread>
 
-#include "pipeline/contract/json.h"
+#include "pipeline/files/json.h"
 #include "tests/e2e/capture_fixture.h"
 #include "tests/fuzz/targets.h"
 #include "tests/reliability/trials.h"
@@ -162,20 +162,21 @@ TEST_F(Trials, BadDisk) {
 }
 
 TEST_F(Trials, OrdinaryUserWithoutPermission) {
-  RunTrials(
-      "an ordinary user in a folder of someone else's: exit code 3, the mend said", 3, [&](int i) {
-        fs::permissions(folder(), fs::perms(0755));
-        if (i % 2 == 0) fs::remove_all(capture() / "glint");
-        WriteAll(capture() / "capture.toml", ReadAll(capture() / "capture.toml") + "# changed\n");
-        const Outcome outcome = RunProgram(Run({"--force"}), [] {
-          if (::setgid(65534) != 0 || ::setuid(65534) != 0) ::_exit(77);
-        });
-        if (outcome.code == 77) return std::string("cannot become another user here");
-        if (outcome.code != 3 || outcome.err.find("writable") == std::string::npos) {
-          return "exit code " + std::to_string(outcome.code) + ": " + outcome.err;
-        }
-        return Recovered();
-      });
+  RunTrials("an ordinary user in a folder of someone else's: exit code 3, the remedy said", 3,
+            [&](int i) {
+              fs::permissions(folder(), fs::perms(0755));
+              if (i % 2 == 0) fs::remove_all(capture() / "glint");
+              WriteAll(capture() / "capture.toml",
+                       ReadAll(capture() / "capture.toml") + "# changed\n");
+              const Outcome outcome = RunProgram(Run({"--force"}), [] {
+                if (::setgid(65534) != 0 || ::setuid(65534) != 0) ::_exit(77);
+              });
+              if (outcome.code == 77) return std::string("cannot become another user here");
+              if (outcome.code != 3 || outcome.err.find("writable") == std::string::npos) {
+                return "exit code " + std::to_string(outcome.code) + ": " + outcome.err;
+              }
+              return Recovered();
+            });
 }
 
 TEST_F(Trials, Stdout) {

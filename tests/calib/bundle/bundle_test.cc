@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "base/errors/errors.h"
 #include "calib/board/board.h"
 #include "calib/bundle/residual_picture.h"
-#include "pipeline/contract/errors.h"
 #include "tests/calib/testing/board_scene.h"
 
 namespace glint {

@@ -15,7 +15,7 @@
 #include "calib/colmap/colmap_camera.h"
 #include "calib/colmap/colmap_model.h"
 #include "pipeline/contract/calibration.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 #include "tests/calib/testing/synthetic_photo.h"
 
 namespace glint {
@@ -292,7 +292,7 @@ TEST_F(CalibProgram, RefusesPhotosThatAllLookStraightDown) {
     testing::WritePhoto(capture / "photos" / ("p" + std::to_string(i) + ".png"), TakePhoto(i, 0));
   }
   ExpectUserError(capture, {"capture.toml", "6 photographs", "tilt the phone"});
-  // The intrinsics of the good capture mend that.
+  // The intrinsics of the good capture fix that.
   Calibrate(root_ / "good");
   const Result result =
       Calibrate(capture, "--fix-intrinsics " + (root_ / "good/glint/calib/manifest.json").string());

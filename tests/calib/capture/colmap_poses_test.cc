@@ -12,8 +12,8 @@
 #include "calib/colmap/colmap_camera.h"
 #include "calib/colmap/colmap_model.h"
 #include "pipeline/contract/calibration.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/manifest.h"
+#include "pipeline/images/image.h"
 #include "tests/calib/testing/synthetic_photo.h"
 #include "tests/support/process.h"
 

@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 
 namespace glint {
 namespace {

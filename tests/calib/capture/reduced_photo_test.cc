@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "tests/support/process.h"
 
 namespace glint {

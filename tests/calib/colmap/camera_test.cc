@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "base/errors/errors.h"
 #include "calib/camera/similarity3.h"
 #include "calib/colmap/colmap_camera.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

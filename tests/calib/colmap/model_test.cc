@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/errors/errors.h"
 #include "calib/colmap/colmap_camera.h"
 #include "calib/colmap/colmap_model.h"
-#include "pipeline/contract/errors.h"
 #include "tests/support/process.h"
 
 namespace glint {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "calib/printing/draw_sheet.h"
-#include "pipeline/contract/files.h"
+#include "pipeline/files/files.h"
 #include "tests/calib/printing/raster_check.h"
 
 int main(int argc, char** argv) {

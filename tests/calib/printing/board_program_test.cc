@@ -8,7 +8,7 @@
 
 #include "pipeline/contract/board_file.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/files.h"
+#include "pipeline/files/files.h"
 #include "tests/support/process.h"
 
 namespace glint {

@@ -5,11 +5,11 @@
 
 #include <set>
 
+#include "base/errors/errors.h"
 #include "calib/printing/draw_sheet.h"
 #include "calib/printing/drawing.h"
 #include "calib/printing/sheet_plan.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
+#include "pipeline/files/files.h"
 #include "tests/calib/printing/raster_check.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"

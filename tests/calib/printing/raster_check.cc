@@ -7,8 +7,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "base/errors/errors.h"
 #include "calib/corners/saddle.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint::testing {
 

@@ -8,8 +8,8 @@
 #include <functional>
 #include <random>
 
+#include "base/errors/errors.h"
 #include "calib/response/sample_photos.h"
-#include "pipeline/contract/errors.h"
 #include "rectify/linearize/encoding.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/message_of.h"

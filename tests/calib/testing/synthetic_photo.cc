@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 
 namespace glint::testing {
 namespace {

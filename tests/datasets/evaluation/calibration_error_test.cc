@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "base/errors/errors.h"
 #include "datasets/synth/capture_plan.h"
-#include "pipeline/contract/errors.h"
 
 namespace glint {
 namespace {

@@ -5,13 +5,13 @@
 
 #include <cstdlib>
 
+#include "base/errors/errors.h"
 #include "datasets/evaluation/capture_store.h"
 #include "datasets/evaluation/shipped_models.h"
 #include "datasets/evaluation/starts.h"
 #include "datasets/procedural/material.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/hash.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/files/hash.h"
 #include "tests/support/process.h"
 
 namespace glint {

@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/errors/errors.h"
 #include "datasets/evaluation/predicted_deviation.h"
 #include "datasets/procedural/material.h"
 #include "datasets/synth/view_set.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/contract/manifest.h"
 #include "tests/support/process.h"
 

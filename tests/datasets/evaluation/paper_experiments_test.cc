@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <set>
 
+#include "base/errors/errors.h"
 #include "datasets/evaluation/paper_figures.h"
-#include "pipeline/contract/errors.h"
 #include "tests/support/process.h"
 
 namespace glint {

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/errors/errors.h"
 #include "datasets/procedural/material.h"
 #include "datasets/synth/view_set.h"
 #include "fitting/render/render_lit.h"
 #include "fitting/render/render_room.h"
 #include "fitting/view_correction/corrections_json.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/hash.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/files/files.h"
+#include "pipeline/files/hash.h"
 #include "tests/support/process.h"
 
 namespace glint {

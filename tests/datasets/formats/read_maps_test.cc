@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/images/image.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"

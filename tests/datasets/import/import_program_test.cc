@@ -4,12 +4,12 @@
 
 #include <cmath>
 
+#include "base/errors/errors.h"
 #include "datasets/import/import_set.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
-#include "pipeline/contract/json.h"
 #include "pipeline/contract/rectified_set.h"
+#include "pipeline/files/json.h"
+#include "pipeline/images/image.h"
 #include "tests/support/process.h"
 
 namespace glint {

@@ -8,7 +8,7 @@
 #include "datasets/formats/read_maps.h"
 #include "datasets/import/import_set.h"
 #include "fitting/reflectance/texel_at.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/process.h"
 

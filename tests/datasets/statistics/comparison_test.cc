@@ -5,9 +5,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "base/errors/errors.h"
 #include "datasets/procedural/material.h"
 #include "datasets/statistics/comparison_files.h"
-#include "pipeline/contract/errors.h"
 #include "pipeline/contract/svbrdf_file.h"
 
 namespace glint {

@@ -7,12 +7,13 @@
 #include <iterator>
 #include <map>
 
+#include "base/errors/errors.h"
 #include "datasets/procedural/material.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/images/image.h"
+#include "pipeline/photos/photo.h"
 #include "tests/support/process.h"
 
 namespace glint {

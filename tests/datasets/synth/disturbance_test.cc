@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/errors/errors.h"
 #include "datasets/procedural/material.h"
 #include "datasets/synth/view_set.h"
-#include "pipeline/contract/errors.h"
 #include "tests/support/process.h"
 
 namespace glint {

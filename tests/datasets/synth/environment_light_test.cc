@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/errors/errors.h"
 #include "datasets/procedural/material.h"
 #include "fitting/reflectance/brdf.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
+#include "pipeline/images/image.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/process.h"
 

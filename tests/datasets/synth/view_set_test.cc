@@ -8,8 +8,8 @@
 #include "datasets/procedural/material.h"
 #include "fitting/render/renderer.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/photos/photo.h"
 #include "tests/support/process.h"
 
 namespace glint {

@@ -7,9 +7,9 @@
 #include "fitting/refine/sample_source.h"
 #include "fitting/render/render_room.h"
 #include "fitting/view_correction/corrections_json.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/images/image.h"
 #include "tests/fitting/refine/synthetic_scene.h"
 #include "tests/support/process.h"
 

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/errors/errors.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/errors.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
 

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
+#include "base/errors/errors.h"
 #include "pipeline/contract/capture.h"
-#include "pipeline/contract/errors.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
 

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/hash.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/manifest.h"
+#include "pipeline/files/hash.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
 

@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/options.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/stage.h"
+#include "pipeline/files/files.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
 

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "tests/support/process.h"
 
 namespace glint {

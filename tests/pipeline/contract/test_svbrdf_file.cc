@@ -3,9 +3,10 @@
 
 #include <cmath>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/image.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/contract/svbrdf_rows.h"
+#include "pipeline/images/image.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
 
@@ -60,6 +61,29 @@ TEST(ResampleSvbrdf, KeepsALinearRampAndUnitNormalsBothWays) {
       const float nx = resampled.at(kNormalX, 0, x), nz = resampled.at(kNormalZ, 0, x);
       EXPECT_NEAR(nx * nx + nz * nz, 1, 1e-5);
     }
+  }
+}
+
+TEST(SvbrdfRows, AreThoseOfTheResampledMaps) {
+  const test::TemporaryFolder folder;
+  SvbrdfMaps maps(12, 700);
+  for (size_t i = 0; i < maps.planes.size(); ++i) {
+    maps.planes[i] = 0.5f + 0.4f * std::sin(0.1f * static_cast<float>(i));
+  }
+  const ReflectanceConvention convention;
+  WriteSvbrdf(folder / "a.exr", maps, convention);
+  for (const auto& [width, height] :
+       {std::pair{12, 700}, std::pair{5, 300}, std::pair{24, 1400}, std::pair{12, 7}}) {
+    const SvbrdfMaps whole = ResampleSvbrdf(ReadSvbrdf(folder / "a.exr"), width, height);
+    ResampledSvbrdf reader(folder / "a.exr", width, height);
+    const int first = height / 3, rows = height / 2;
+    const SvbrdfMaps part = reader.Read(first, rows);
+    ASSERT_EQ(part.height, rows);
+    for (int p = 0; p < kSvbrdfPlanes; ++p) {
+      const auto from = whole.plane(p).begin() + static_cast<std::ptrdiff_t>(first) * width;
+      EXPECT_TRUE(std::equal(part.plane(p).begin(), part.plane(p).end(), from)) << height << p;
+    }
+    EXPECT_EQ(reader.Read(0, height).planes, whole.planes) << height;
   }
 }
 

@@ -11,11 +11,11 @@
 #include <cstdio>
 #include <fstream>
 
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/hash.h"
+#include "base/errors/errors.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/contract/options.h"
+#include "pipeline/files/files.h"
+#include "pipeline/files/hash.h"
 
 namespace fs = std::filesystem;
 

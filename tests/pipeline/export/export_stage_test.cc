@@ -8,6 +8,7 @@
 #include "fitting/reflectance/border.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/export/material_rows.h"
+#include "pipeline/photos/photo.h"
 #include "tests/support/process.h"
 
 namespace glint {

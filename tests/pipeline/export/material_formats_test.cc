@@ -5,7 +5,7 @@
 
 #include <regex>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "tests/pipeline/export/exported_material.h"
 
 namespace glint {

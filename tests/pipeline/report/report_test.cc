@@ -7,13 +7,13 @@
 #include <cmath>
 #include <fstream>
 
+#include "base/errors/errors.h"
 #include "fitting/render/renderer.h"
 #include "fitting/view_correction/corrections_json.h"
-#include "pipeline/contract/errors.h"
-#include "pipeline/contract/files.h"
-#include "pipeline/contract/image.h"
 #include "pipeline/contract/stage.h"
 #include "pipeline/contract/svbrdf_file.h"
+#include "pipeline/files/files.h"
+#include "pipeline/images/image.h"
 #include "pipeline/report/chart.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/metrics_html.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "rectify/linearize/encoding.h"
 #include "rectify/linearize/light_guess.h"
 #include "rectify/linearize/linear_photo.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "pipeline/contract/errors.h"
+#include "base/errors/errors.h"
 #include "tests/rectify/plane_photo.h"
 
 namespace glint {

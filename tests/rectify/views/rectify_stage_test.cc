@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "pipeline/contract/calibration.h"
-#include "pipeline/contract/files.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/stage.h"
+#include "pipeline/files/files.h"
 #include "rectify/linearize/encoding.h"
 #include "tests/rectify/plane_photo.h"
 
