@@ -117,7 +117,8 @@ void AddOptions(OptionSet* set, BoardOptions* options) {
            "reflectances of grey patches above the board, such as 0.85,0.6,0.36,0.18,0.09,0.04");
   set->AddRange("paper-reflectance", &sheet.paper_reflectance, 0.05, 1,
                 "reflectance of the white paper");
-  set->Add("from", &options->from, "print (or correct) this board.json instead of a new board");
+  set->Add("from", &options->from,
+           "make (or correct) the board that this board.json describes instead of a new one");
   set->AddRange(
       "measured", &options->measured, 0, 1e5,
       "length of the printed ruler in mm: corrects DIR/board.json; no new sheet is written");

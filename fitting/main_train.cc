@@ -28,7 +28,8 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
   app->add_option("--log", files->log_csv, "loss log, CSV (default: OUT.csv)");
   app->add_flag("--resume", files->resume, "continue from the checkpoint if there is one");
   app->add_option("--steps", o->steps, "number of optimiser steps");
-  app->add_option("--minutes", o->minutes, "training time in minutes, counted over all resumes");
+  app->add_option("--minutes", o->minutes,
+                  "training time in minutes, in total, over all resumed runs");
   app->add_option("--batch", o->batch, "number of crops per step")->capture_default_str();
   app->add_option("--crop", o->crop, "crop size in texels, a multiple of 32")
       ->capture_default_str();
@@ -47,7 +48,8 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
   app->add_option("--map-weight", o->map_weight, "weight of the map term")->capture_default_str();
   app->add_option("--render-weight", o->render_weight, "weight of the rendering term")
       ->capture_default_str();
-  app->add_option("--render-views", o->render_views, "number of renderings per crop (DIR: 9)")
+  app->add_option("--render-views", o->render_views,
+                  "number of renderings per crop (Gao et al. 2019: 9)")
       ->capture_default_str();
   app->add_option("--normal-weight", o->normal_weight, "weight of normals in the map loss")
       ->capture_default_str();
@@ -76,7 +78,8 @@ void AddAutoencoderOptions(CLI::App* app, AutoencoderTrainOptions* o) {
                   "channels at each of the five levels (the last is the latent code)")
       ->delimiter(',')
       ->capture_default_str();
-  app->add_option("--smoothness", o->smoothness, "weight of the smoothness term (DIR: 2)")
+  app->add_option("--smoothness", o->smoothness,
+                  "weight of the smoothness term (Gao et al. 2019: 2)")
       ->capture_default_str();
   app->add_option("--smoothness-share", o->smoothness_share,
                   "fraction of the batch to which the smoothness term is applied")
@@ -98,10 +101,12 @@ void AddEstimatorOptions(CLI::App* app, EstimatorTrainOptions* o) {
          "channels at each of the five levels, then at full resolution, then of the global track")
       ->delimiter(',')
       ->capture_default_str();
-  app->add_option("--spread-weight", o->spread_weight, "weight of the predicted errors' likelihood")
+  app->add_option("--spread-weight", o->spread_weight,
+                  "weight of the likelihood of the errors under their predicted variances")
       ->capture_default_str();
   app->add_option("--batch-photographs", o->batch_photographs,
-                  "maximum number of photographs per step; samples with many make smaller batches")
+                  "maximum number of photographs per step; batches hold fewer samples when the "
+                  "samples have many photographs")
       ->capture_default_str();
 }
 

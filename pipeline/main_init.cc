@@ -13,15 +13,15 @@ void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
   options->Add("squares", &o->squares, "COLUMNS,ROWS of squares");
   options->AddRange("square-mm", &o->square_mm, 0.1, 1000, "side of a square");
   options->AddRange("marker-mm", &o->marker_mm, 0.1, 1000, "side of a ChArUco marker");
-  options->Add("dictionary", &o->dictionary, "OpenCV's name of the ArUco dictionary");
+  options->Add("dictionary", &o->dictionary, "OpenCV's name for the ArUco dictionary");
   options->Add("window", &o->window,
                "FIRST_COLUMN,FIRST_ROW,COLUMNS,ROWS of squares left out for the sample");
   options->Add("full-board", &o->full_board, "no window");
   options->Add("sample-mm", &o->sample_mm, "WIDTH,HEIGHT of the sample");
   options->AddRange("resolution", &o->resolution_px, 8, 16384, "width of the maps in texels");
   options->Add("encoding", &o->encoding,
-               "how the photographs store radiance: auto, srgb, gamma2.2, linear, or the file of a "
-               "response curve (glint-response writes one)");
+               "how the photographs store radiance: auto, srgb, gamma2.2, linear, or the path of "
+               "a response-curve file (as written by glint-response)");
   options->AddRange("every", &o->every, 1, 1000000, "use every Nth frame of a video");
   options->Add("single", &o->single,
                "one photograph from straight above, without a board; with --width-mm or "

@@ -1,4 +1,4 @@
-// glint-report: one HTML page of the whole result.
+// glint-report: one HTML page showing the whole result.
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/cost_model.h"
 #include "pipeline/contract/program.h"

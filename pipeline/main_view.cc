@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
   options.Add("print", &print, "only say where the page is");
   return glint::RunProgram(
       argc, argv,
-      {"glint-view", "Opens the page of a capture's result, where its material can be relit.",
+      {"glint-view", "Opens a capture's result page, on which the material can be relit.",
        GLINT_VERSION, "Example: glint view wood", false},
       &options, [&](const glint::CommonOptions&) { return View(folder, print); });
 }

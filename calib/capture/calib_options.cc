@@ -69,7 +69,7 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
            Invalidates::kNo);  // its content is an input, and the place of the file tells nothing
   set->Add(
       "library", &options->library,
-      "folder of calib manifests: a camera whose EXIF matches one of them takes its intrinsics",
+      "folder of calib manifests: a camera whose EXIF matches one of them is given its intrinsics",
       Invalidates::kNo);  // likewise
   set->AddChoice("board-shape", &options->board_shape, {"flat", "bent"},
                  "bent: also estimate how far the board bulges in the middle");
@@ -79,9 +79,10 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
                 "corners off by less than this are never rejected");
   set->AddRange("min-corners", &options->min_corners, 4, 10000,
                 "photos with fewer corners are rejected");
-  set->AddRange("detect-px", &options->detect_px, 200, 20000,
-                "boards are detected in a copy downscaled to this longer side; corners are then "
-                "located in the full-resolution photo");
+  set->AddRange(
+      "detect-px", &options->detect_px, 200, 20000,
+      "boards are detected in a copy whose longer side has this many pixels; corners are then "
+      "located in the full-resolution photo");
   set->AddChoice(
       "light", &options->light, {"board", "camera"},
       "board: flash position, lens fall-off, exposures and ambient illumination from the board's "
@@ -90,8 +91,9 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   set->AddRange("plane-tolerance", &options->plane_tolerance, 1e-5, 0.2,
                 "--poses colmap: points farther from the sample's plane than this fraction of the "
                 "cameras' distance are not part of it");
-  set->AddRange("feature-px", &options->feature_px, 200, 20000,
-                "--poses colmap: features are detected in a copy downscaled to this longer side");
+  set->AddRange(
+      "feature-px", &options->feature_px, 200, 20000,
+      "--poses colmap: features are detected in a copy whose longer side has this many pixels");
   set->AddChoice(
       "triage", &options->triage, {"warn", "drop", "off"},
       "blurred, dark, overexposed and duplicate photographs; warn: name them; drop: leave "

@@ -353,7 +353,7 @@ const std::vector<PaperExperiment>& PaperExperiments() {
        {},
        {}},
       {"topview",
-       "Errors without a view from the top (fig. 17).",
+       "Errors without a view from above (fig. 17).",
        "glint-eval topview procedural:1000000000 --counts 5 --work /tmp/topview",
        {1, 5},
        with_start,

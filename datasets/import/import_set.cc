@@ -126,7 +126,7 @@ void AddImportOptions(OptionSet* set, ImportOptions* options) {
                  "encoding of the images; if omitted, the source's");
   set->AddRange(
       "saturation-level", &options->saturation_level, 0.5, 1.01,
-      "stored value (full scale is 1) from which a pixel of an 8- or 16-bit image counts as "
+      "stored value (full scale is 1) at or above which a pixel of an 8- or 16-bit image counts as "
       "clipped; above 1: never");
   set->AddRange("float-saturation-level", &options->float_saturation_level, 0, 1e9,
                 "the same for float images; 0: they never clip");

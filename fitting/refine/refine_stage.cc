@@ -235,7 +235,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "estimation-size", &refine->estimation_size, 16, 1 << 20,
       "longer side, in texels, of the grid from which texels are drawn for the estimation; "
       "larger maps are thinned evenly to this size");
-  set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the priors' weight; 0: none");
+  set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the weight of the priors; 0: none");
   set->AddRange(
       "robust-scale", &refine->robust_scale, 1e-3, 100,
       "log-radiance residuals larger than this are penalised linearly instead of quadratically");
@@ -258,8 +258,9 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "to the light's direction, relative to its distance, if the light was not "
                 "calibrated; 0: keep the stated positions");
   set->AddRange("flash-beam", &options->flash_beam, 0, 10,
-                "expected standard deviation of the slope of the flash's log intensity against "
-                "the tangent of its direction, if the light was not calibrated; one slope is "
+                "expected standard deviation of the slope of the flash's log intensity across its "
+                "beam (by the tangent of the angle from the beam's axis), if the light was not "
+                "calibrated; one slope is "
                 "estimated for all photographs; 0: none");
   set->AddRange("distance-power", &options->distance_power, 0, 10,
                 "if the light was not calibrated, its intensity may vary as distance^p (automatic "
@@ -271,7 +272,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");
   set->Add("views", &options->views,
-           "views to use, by view name or photograph name (default: those of fit)");
+           "views to use, by view name or photograph name (default: those that glint-fit used)");
   set->Add("exclude", &options->exclude, "views to hold out, by view name or photograph name");
   set->Add("from", &options->from, "initial maps, an svbrdf.exr (default: the fit's)");
 }

@@ -13,7 +13,7 @@ namespace glint {
 
 struct TrainOptions {
   std::int64_t steps = 0;  // 0: until `minutes` are over
-  double minutes = 0;      // training time, counted over all resumes
+  double minutes = 0;      // training time, in total, over all resumed runs
   int batch = 16;
   int crop = 128;               // texels; a multiple of 32
   double learning_rate = 5e-4;  // the highest; it rises over `warmup_steps`, then falls as a cosine

@@ -16,7 +16,7 @@ constexpr StageKind kStages[] = {
      "seamlessly tiling maps ([tile] section in capture.toml)",
      {0.2, 0, 0, 3.2, 0, 140, 0, 300, 0, 0}},
     {"export", "maps and materials for other programs", {0.8, 0, 0, 8, 0, 136, 0, 170, 0, 3000}},
-    {"report", "one HTML page of the whole result", {1.6, 0, 0, 7, 0.25, 280, 0, 130, 3, 450}},
+    {"report", "one HTML page showing the whole result", {1.6, 0, 0, 7, 0.25, 280, 0, 130, 3, 450}},
 };
 
 }  // namespace

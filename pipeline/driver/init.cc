@@ -301,8 +301,9 @@ void CheckEncoding(const std::string& encoding) {
   constexpr std::array kNames = {"auto", "srgb", "gamma2.2", "linear"};
   if (std::find(kNames.begin(), kNames.end(), encoding) != kNames.end()) return;
   if (fs::path(encoding).extension() == ".json") return;
-  throw UserError("--encoding: found '" + encoding +
-                  "'; use auto, srgb, gamma2.2, linear or the file of a response curve (.json)");
+  throw UserError(
+      "--encoding: found '" + encoding +
+      "'; use auto, srgb, gamma2.2, linear or the path of a response-curve file (.json)");
 }
 
 std::string PhotoText(const InitOptions& options, size_t* files) {

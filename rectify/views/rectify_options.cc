@@ -18,7 +18,7 @@ void AddRectifyOptions(OptionSet* set, RectifyOptions* options) {
       "resampling kernel: sharp, soft (least ringing) or lanczos (best low-pass, slower)");
   set->AddRange(
       "saturation-level", &options->saturation_level, 0.5, 1.01,
-      "stored value (full scale is 1) from which a pixel of an 8- or 16-bit photo counts as "
+      "stored value (full scale is 1) at or above which a pixel of an 8- or 16-bit photo counts as "
       "clipped; above 1: never");
   set->AddRange("float-saturation-level", &options->float_saturation_level, 0, 1e9,
                 "the same for float photos; 0: they never clip");
