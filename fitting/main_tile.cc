@@ -46,8 +46,8 @@ int main(int argc, char** argv) {
   const glint::ProgramInfo info{
       "glint-tile",
       "Makes maps that tile seamlessly: removes low-frequency variation, selects the region whose "
-      "opposite edges match best, and blends it with its copies. With a [tile] section in "
-      "capture.toml, glint run does it before export.",
+      "opposite edges match best, and blends it with its copies. If there is a [tile] section in "
+      "capture.toml, glint run does this before export.",
       GLINT_VERSION,
       "Examples:\n  glint tile wood && glint export wood --from tile\n"
       "  glint tile wood --least-share 0.8 --flatten 0"};

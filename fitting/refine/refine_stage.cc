@@ -242,8 +242,8 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
   set->AddChoice(
       "correct-views", &options->correction.when, {"auto", "always", "never"},
       "estimate errors in lights, registration and ambient illumination from the photographs; "
-      "auto: with five or more distinct views, and applied only where it lowers the cost "
-      "by 2 %");
+      "auto: with five or more distinct views; a correction is applied only where it lowers the "
+      "cost by at least 2 %");
   set->AddRange("flash-offset", &options->flash_offset, 0, 1,
                 "expected standard deviation of the flash's offset from its stated position, "
                 "relative to its distance, if the light was not calibrated; one offset is "
@@ -257,11 +257,12 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "expected standard deviation of each photograph's light position, perpendicular "
                 "to the light's direction, relative to its distance, if the light was not "
                 "calibrated; 0: keep the stated positions");
-  set->AddRange("flash-beam", &options->flash_beam, 0, 10,
-                "expected standard deviation of the slope of the flash's log intensity across its "
-                "beam (by the tangent of the angle from the beam's axis), if the light was not "
-                "calibrated; one slope is "
-                "estimated for all photographs; 0: none");
+  set->AddRange(
+      "flash-beam", &options->flash_beam, 0, 10,
+      "expected standard deviation of the slope of the flash's log intensity across its "
+      "beam (with respect to the tangent of the angle from its axis), if the light was not "
+      "calibrated; one slope is "
+      "estimated for all photographs; 0: none");
   set->AddRange("distance-power", &options->distance_power, 0, 10,
                 "if the light was not calibrated, its intensity may vary as distance^p (automatic "
                 "exposure, uncertain distances): expected standard deviation of p; 0: none");

@@ -1,22 +1,27 @@
 #include "pipeline/images/oiio.h"
 
 #include <OpenEXR/ImfHeader.h>
+#include <OpenImageIO/filesystem.h>
 
 #include <algorithm>
 #include <array>
 #include <fstream>
 #include <mutex>
+#include <optional>
 #include <set>
 
+#include "pipeline/files/files.h"
 #include "pipeline/files/memory_limit.h"
 #include "pipeline/images/image.h"
 #include "pipeline/images/image_format.h"
+#include "pipeline/images/jpeg_segments.h"
 #include "pipeline/photos/photo_name.h"
 
 namespace glint {
 namespace {
 
 constexpr int kMostExrSide = 1 << 17;
+constexpr std::size_t kMaxJpegBytes = 512u << 20;
 
 // The brand of an ISO media file: "heic", "mif1"…; "" for other files.
 std::string MediaBrand(const std::filesystem::path& file) {
@@ -166,9 +171,22 @@ void RequireSize(const std::filesystem::path& file, const OIIO::ImageSpec& spec,
   if (how == HowRead::kWhole) RequireMemoryForRows(file, spec, spec.height);
 }
 
+// A reader and the bytes it reads, where those are not the file's own.
+struct OpenedImage {
+  std::string bytes;
+  std::optional<OIIO::Filesystem::IOMemReader> memory;
+  std::unique_ptr<OIIO::ImageInput> input;  // ends before what it reads
+};
+
+void ReadFromMemory(std::string bytes, OpenedImage* image) {
+  image->bytes = std::move(bytes);
+  image->memory.emplace(image->bytes.data(), image->bytes.size());
+  image->input->set_ioproxy(&*image->memory);
+}
+
 }  // namespace
 
-std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
+std::shared_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
                                             const OIIO::ImageSpec* configuration) {
   SetUpOiio();
   RequireFile(file);
@@ -176,14 +194,18 @@ std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
   const std::string formats = OIIO::get_string_attribute("input_format_list");
   const std::string reader = ReaderOf(file);
   if (reader.empty()) RejectUnreadable(file, "it begins as no such file does", formats);
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(reader);
+  const auto opened = std::make_shared<OpenedImage>();
+  std::unique_ptr<OIIO::ImageInput>& input = opened->input;
+  input = OIIO::ImageInput::create(reader);
   OIIO::ImageSpec spec;
   if (!input) RejectUnreadable(file, OIIO::geterror(), formats);
+  if (reader == "jpeg")
+    ReadFromMemory(WithPictureSegmentsAlone(ReadTextFile(file, kMaxJpegBytes)), opened.get());
   if (!input->open(file.string(), spec, configuration ? *configuration : OIIO::ImageSpec())) {
     RejectUnreadable(file, input->geterror(), formats);
   }
   RequireSize(file, input->spec());
-  return input;
+  return {opened, input.get()};
 }
 
 std::unique_ptr<OIIO::ImageInput> OpenExr(const std::filesystem::path& file, HowRead how) {

@@ -14,9 +14,10 @@ namespace glint {
 // Limits on size and channels, one thread inside the library (ours run outside); done once.
 void SetUpOiio();
 
-// Opens an image and checks its header. Throws UserError: missing, empty, not an image, too large;
-// EnvironmentError: a HEIC file where no decoder is installed.
-std::unique_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
+// Opens an image and checks its header. What is returned keeps all that its reader needs. Throws
+// UserError: missing, empty, not an image, too large; EnvironmentError: a HEIC file where no
+// decoder is installed.
+std::shared_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
                                             const OIIO::ImageSpec* configuration = nullptr);
 
 // The same for OpenEXR alone: no other format's reader looks at the file, which some allocate

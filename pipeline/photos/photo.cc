@@ -99,7 +99,7 @@ void RequireSize(const std::filesystem::path& file, int width, int height) {
                       " pixels a side is expected");
 }
 
-std::unique_ptr<OIIO::ImageInput> OpenPhoto(const std::filesystem::path& file) {
+std::shared_ptr<OIIO::ImageInput> OpenPhoto(const std::filesystem::path& file) {
   if (IsVideoFileName(file)) {
     throw UserError(
         file, "", "a video where a photograph is expected",

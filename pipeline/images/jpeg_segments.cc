@@ -1,0 +1,42 @@
+#include "pipeline/images/jpeg_segments.h"
+
+#include <cstddef>
+
+namespace glint {
+namespace {
+
+constexpr unsigned kJfif = 0xE0, kExif = 0xE1, kAdobe = 0xEE, kLastApp = 0xEF, kComment = 0xFE;
+constexpr unsigned kStartOfScan = 0xDA;
+
+unsigned Byte(std::string_view bytes, std::size_t i) {
+  return static_cast<unsigned char>(bytes[i]);
+}
+
+// `content`: what follows the segment's length.
+bool IsNeeded(unsigned marker, std::string_view content) {
+  using namespace std::string_view_literals;
+  if (marker == kComment) return false;
+  if (marker < kJfif || marker > kLastApp) return true;
+  if (marker == kExif) return content.starts_with("Exif\0"sv);
+  return marker == kJfif || marker == kAdobe;
+}
+
+}  // namespace
+
+std::string WithPictureSegmentsAlone(std::string_view jpeg) {
+  constexpr std::size_t kStartOfImage = 2, kMarkerAndLength = 4;
+  std::string kept(jpeg.substr(0, kStartOfImage));
+  std::size_t at = kStartOfImage;
+  while (at + kMarkerAndLength <= jpeg.size() && Byte(jpeg, at) == 0xFF) {
+    const unsigned marker = Byte(jpeg, at + 1);
+    const std::size_t length = Byte(jpeg, at + 2) << 8 | Byte(jpeg, at + 3);
+    const std::size_t size = 2 + length;
+    if (marker == kStartOfScan || marker == 0xFF || length < 2 || at + size > jpeg.size()) break;
+    const std::string_view segment = jpeg.substr(at, size);
+    if (IsNeeded(marker, segment.substr(kMarkerAndLength))) kept += segment;
+    at += size;
+  }
+  return kept.append(jpeg.substr(at));
+}
+
+}  // namespace glint
