@@ -60,7 +60,7 @@ void AddFew(const Verdict& v, List* list) {
   list->push_back(
       {"few", very_few ? Importance::kUseful : Importance::kHint,
        fmt::format("{} more ({} in all) would lower the error of renderings by about {} % and that "
-                   "of the maps by {} % (docs/results.md, table 1; rough)",
+                   "of the maps by {} % (docs/results/table1.md; rough)",
                    Counted(then - now), then, Percent(1 - b.render / a.render),
                    Percent(1 - b.maps / a.maps))});
 }

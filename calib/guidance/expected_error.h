@@ -3,7 +3,7 @@
 
 namespace glint {
 
-// Mean squared errors of finished maps against the number of photographs: docs/results.md, table 1
+// Mean squared errors of finished maps against the number of photographs: docs/results/table1.md
 // on procedural materials, rows "refined" (1, 2, 5, 20 views from random places up to 38° off
 // the top), logarithms interpolated over the logarithm of N. Real materials differ by factors; the
 // ratio of two numbers of photographs is what can be relied on.

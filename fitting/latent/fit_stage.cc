@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // From one photograph roughness and specular drift along ambiguities while the loss falls: stopping
-// early halves the damage (docs/experiments.md, "How long to fit one photograph").
+// early halves the damage (docs/experiments, "How long to fit one photograph").
 constexpr int kSinglePhotoIterations = 8;
 
 bool IsLatent(const FitStageOptions& options) { return options.method == "latent"; }

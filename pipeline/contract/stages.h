@@ -10,7 +10,7 @@ namespace glint {
 
 // A stage's work and memory are sums of parts (cost_model.h). Fitted to five captures of 5 to 12
 // photographs of 2 and 12 megapixels at 256² to 2048², on two cores of a Xeon with AVX-512 and
-// without bfloat16 (docs/experiments.md, "How long a run takes"); one with bfloat16 took about 0.6
+// without bfloat16 (docs/experiments/run-time.md); one with bfloat16 took about 0.6
 // of the time.
 struct StageCost {
   double start_s;              // programs, weights, files

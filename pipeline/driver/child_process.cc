@@ -33,7 +33,7 @@ EnvironmentError CannotStart(const std::string& program, int error) {
 }
 
 // OpenMP's threads spin while they wait, unless told otherwise before the program starts; beside
-// any other load on the machine that made fitting six times slower (docs/experiments.md).
+// any other load on the machine that made fitting six times slower (docs/experiments/run-time.md).
 void LetOpenMpWaitPassively() { ::setenv("OMP_WAIT_POLICY", "passive", 0); }
 
 // setenv allocates, which is safe between fork and exec in a program without other threads, and in

@@ -27,16 +27,20 @@ std::string WithPictureSegmentsAlone(std::string_view jpeg) {
   constexpr std::size_t kStartOfImage = 2, kMarkerAndLength = 4;
   std::string kept(jpeg.substr(0, kStartOfImage));
   std::size_t at = kStartOfImage;
-  while (at + kMarkerAndLength <= jpeg.size() && Byte(jpeg, at) == 0xFF) {
+  while (at + kMarkerAndLength <= jpeg.size()) {
     const unsigned marker = Byte(jpeg, at + 1);
+    if (Byte(jpeg, at) != 0xFF || marker == 0 || marker == 0xFF) {
+      ++at;  // decoders skip what stands between segments
+      continue;
+    }
+    if (marker == kStartOfScan) return kept.append(jpeg.substr(at));
     const std::size_t length = Byte(jpeg, at + 2) << 8 | Byte(jpeg, at + 3);
-    const std::size_t size = 2 + length;
-    if (marker == kStartOfScan || marker == 0xFF || length < 2 || at + size > jpeg.size()) break;
-    const std::string_view segment = jpeg.substr(at, size);
+    if (length < 2 || at + 2 + length > jpeg.size()) return kept;
+    const std::string_view segment = jpeg.substr(at, 2 + length);
     if (IsNeeded(marker, segment.substr(kMarkerAndLength))) kept += segment;
-    at += size;
+    at += segment.size();
   }
-  return kept.append(jpeg.substr(at));
+  return kept;
 }
 
 }  // namespace glint

@@ -7,9 +7,10 @@
 namespace glint {
 
 // The file without the segments that neither its picture nor its EXIF needs: comments, XMP, IPTC,
-// colour profiles, makers' own. OpenImageIO reads some of them beyond their end where their lengths
-// are wrong. Kept are JFIF (APP0), EXIF (APP1) and Adobe's colour transform (APP14). What follows
-// the first damaged length is kept as it is: the decoder says what is wrong with it.
+// colour profiles, makers' own, and bytes between segments. OpenImageIO reads some of them beyond
+// their end where their lengths are wrong. Kept are JFIF (APP0), EXIF (APP1) and Adobe's colour
+// transform (APP14), tables, and all from the picture's data on. A segment that does not fit into
+// the file ends it.
 std::string WithPictureSegmentsAlone(std::string_view jpeg);
 
 }  // namespace glint

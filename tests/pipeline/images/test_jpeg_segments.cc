@@ -43,9 +43,17 @@ TEST(JpegSegments, NothingIsLeftOutOfThePicture) {
   EXPECT_EQ(WithPictureSegmentsAlone(whole), whole);
 }
 
-TEST(JpegSegments, TheRestIsKeptFromADamagedLengthOn) {
+TEST(JpegSegments, BytesBetweenThemHideNone) {
+  const std::string iptc = Segment('\xed', "Photoshop 3.0\0"s);
+  for (const std::string& between : {"\xff"s, "\xff\xff\xff"s, "\0\0"s, "gap"s, "\xff\0"s}) {
+    EXPECT_EQ(WithPictureSegmentsAlone(kStart + between + iptc + between + kTables + kScan),
+              kStart + kTables + kScan);
+  }
+}
+
+TEST(JpegSegments, ASegmentThatDoesNotFitEndsTheFile) {
   for (const std::string& rest : {"\xff\xfe\xff\xff..."s, "\xff\xfe\0\1..."s, "\xff\xfe"s, ""s}) {
-    EXPECT_EQ(WithPictureSegmentsAlone(kStart + kJfif + rest), kStart + kJfif + rest);
+    EXPECT_EQ(WithPictureSegmentsAlone(kStart + kJfif + rest), kStart + kJfif);
   }
 }
 
