@@ -51,7 +51,7 @@ ProgramResult Print(const BoardOptions& options, const CommonOptions& common) {
   const fs::path description = options.folder / "board.json";
   if (fs::exists(description) && !common.force &&
       !(fs::exists(options.from) && fs::equivalent(description, options.from))) {
-    throw UserError(description, "", "a board.json that is there already",
+    throw UserError(description, "", "an existing board.json",
                     "give another folder, or --force to replace it");
   }
   BoardFile board;

@@ -47,7 +47,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOpti
   set->LoadToml(capture.file, "calib");
   if (*check != asked) {
     throw UserError(capture.file, "calib.check", *check ? "true" : "false",
-                    "take it out: a check is asked for when it is wanted, by glint-calib --check");
+                    "take it out: request a check when you want one, with glint-calib --check");
   }
   const PoseSource source = PoseSourceOf(*options);
   CheckTogether(source, *options);

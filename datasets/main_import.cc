@@ -18,7 +18,7 @@ void RequireReplaceable(const fs::path& file, const std::string& text, bool forc
   std::error_code error;
   if (force || !fs::exists(file, error) || ReadTextFile(file) == text) return;
   throw UserError(file, "", "another capture",
-                  "import into a new folder, or use --force to write it anew");
+                  "import into a new folder, or use --force to overwrite it");
 }
 
 ProgramResult Summarise(const fs::path& folder, const ForeignSet& foreign,

@@ -32,6 +32,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, FitStageO
   set->LoadToml(capture.file, "fit");
   const auto rectify_manifest = capture.work() / "rectify" / "manifest.json";
   VerifyOutputs(rectify_manifest, ReadManifest(rectify_manifest, "rectify"));
+  ResolveFitOptions(rectify_manifest, options);
   std::vector<std::filesystem::path> inputs = {rectify_manifest};
   for (const auto& input : FitInputs(*options)) inputs.push_back(input);
   Stage stage(capture.work() / "fit", {"fit", kFitVersion}, *set, common, inputs);

@@ -17,7 +17,8 @@ std::array<double, 2> SizeOf(const Capture& capture, const Manifest& manifest,
   if (manifest.stage != "tile") return capture.sample_size_mm;
   const auto size = manifest.data.value("size_mm", std::vector<double>());
   if (size.size() != 2 || !(size[0] > 0) || !(size[1] > 0)) {
-    throw UserError(file, "data.size_mm", "not two lengths", "run glint tile again");
+    throw UserError(file, "data.size_mm", "something other than two lengths",
+                    "run glint tile again");
   }
   return {size[0], size[1]};
 }

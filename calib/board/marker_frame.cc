@@ -34,12 +34,12 @@ std::string CheckCorners(const ListedMarker& marker, const std::string& field) {
     (Cross(b - a, c - b) < 0 ? clockwise : counter) += 1;
   }
   if (counter == 4) {
-    return WrongField(field, "corners listed counterclockwise",
+    return WrongField(field, "corners listed anticlockwise",
                       "list them clockwise as seen from the front, from the marker's own top left "
                       "(y points up; AprilTag's own program lists them the other way round)");
   }
   if (clockwise != 4 || !(shortest > 0.05 * longest)) {
-    return WrongField(field, "corners that are no square's",
+    return WrongField(field, "corners that do not form a square",
                       "list the four corners in turn, clockwise from the marker's own top left");
   }
   return "";

@@ -174,7 +174,7 @@ void Solve(const BundleProblem& problem, const BundleOptions& options, Refine re
   ceres::Solve(SolverOptions(options), &solver, &summary);
   if (!summary.IsSolutionUsable()) {
     throw ComputationError("the bundle adjustment failed: " + summary.message +
-                           "; look at the corners of the photographs");
+                           "; check the board corners found in the photographs");
   }
 }
 

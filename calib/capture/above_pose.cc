@@ -31,10 +31,10 @@ void RequireInPicture(const Capture& capture, double width_mm, double height_mm)
 
 void PoseFromAbove(const Capture& capture, const CalibOptions& options, CalibSummary* summary) {
   if (summary->photos.size() != 1) {
-    throw UserError(capture.file, "photos.files",
-                    fmt::format("{} photographs", summary->photos.size()),
-                    "poses = \"above\" is for one photograph: name the one, or for several lay a "
-                    "board round the sample (docs/capture.md) or use poses = \"colmap\"");
+    throw UserError(
+        capture.file, "photos.files", fmt::format("{} photographs", summary->photos.size()),
+        "poses = \"above\" is for one photograph: name only that one, or for several lay a "
+        "board round the sample (docs/capture.md) or use poses = \"colmap\"");
   }
   const DetectedPhoto& photo = summary->photos[0];
   summary->groups = GroupCameras(capture.file, options.cameras, summary->photos);

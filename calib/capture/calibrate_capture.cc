@@ -101,7 +101,7 @@ void Adjust(const Capture& capture, const CalibOptions& options, BundleProblem p
 void TellOfPrintScale(const Board& board) {
   constexpr double kWorthAWord = 0.002;  // a ruler is read to some tenths of a millimetre
   if (std::abs(board.print_scale - 1) < kWorthAWord) return;
-  spdlog::warn("the board was printed at {}; all its lengths are taken times {:.4f}",
+  spdlog::warn("the board was printed at {}; all its lengths are multiplied by {:.4f}",
                PrintScaleInWords(board), board.print_scale);
 }
 
@@ -128,8 +128,8 @@ void WarnOfToldFocal(const BundleProblem& problem, const BundleResult& bundle) {
     const double found_px = bundle.cameras[c].camera.focal_length_x();
     if (std::abs(found_px / told_px - 1) < kTolerance) continue;
     spdlog::warn(
-        "EXIF's 35 mm equivalent makes a focal length of {:.0f} px, the board {:.0f} px; were the "
-        "photographs cropped, or is the board another than described?",
+        "EXIF's 35 mm equivalent gives a focal length of {:.0f} px, the board {:.0f} px; were the "
+        "photographs cropped, or does the board differ from its description?",
         told_px, found_px);
   }
 }

@@ -140,7 +140,7 @@ void FillSimpleLight(const Capture& capture, const CalibOptions& options, CalibS
     calibration.light_power_known = false;
     summary->power_source = "guess";
     spdlog::warn(
-        "no paper of the board is seen unclipped and large enough; the light's power is a "
+        "no large enough unclipped area of the board's paper is visible; the light's power is a "
         "guess, which later stages refine");
   }
 }
@@ -157,7 +157,7 @@ void FillLight(const Capture& capture, const CalibOptions& options, CalibSummary
       for (const std::string& word : summary->light.held) spdlog::warn("light: {}", word);
       return;
     }
-    spdlog::warn("{}; the light is taken to stand at the lens, or where capture.toml puts it",
+    spdlog::warn("{}; the light is assumed to be at the lens, or where capture.toml puts it",
                  summary->light.problem);
   }
   FillSimpleLight(capture, options, summary);

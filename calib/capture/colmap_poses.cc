@@ -114,10 +114,11 @@ class PoseTaker {
     if (turns % 2 == 1) std::swap(width, height);
     if (camera.width_px == width && camera.height_px == height) return 0;
     if (fits_upright) return turns;
-    throw UserError(source_, fmt::format("camera {}", camera.id),
-                    fmt::format("{}x{} pixels, while {} has {}x{}", camera.width_px,
-                                camera.height_px, detected.name, width, height),
-                    "it is a model of other or resized photographs; give the model of these");
+    throw UserError(
+        source_, fmt::format("camera {}", camera.id),
+        fmt::format("{}x{} pixels, while {} has {}x{}", camera.width_px, camera.height_px,
+                    detected.name, width, height),
+        "the model was made from other or resized photographs; give the one made from these");
   }
 
   void AddCamera(const ColmapCamera& camera, int turns_seen) {
@@ -254,7 +255,7 @@ class PoseTaker {
                       {"converted_cameras", conversions_}};
     if (unmatched > 0) {
       spdlog::info(
-          "{} of the model's {} images are no photographs of the capture; they are not "
+          "{} of the model's {} images are not photographs of the capture; they are not "
           "used",
           unmatched, model_.images.size());
     }

@@ -148,7 +148,7 @@ void RequireBoard(const Capture& capture, const CalibOptions& options,
   }
   if (placed.empty()) {
     throw UserError(capture.file, "photos.files",
-                    "the board in photographs of [board] alone, in none of the sample",
+                    "the board only in the photographs listed in [board], in none of the sample",
                     "photograph the sample with the board round it:" + Listed(failed));
   }
 }

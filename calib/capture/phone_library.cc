@@ -47,7 +47,7 @@ std::optional<KnownPhone> ReadPhone(const std::filesystem::path& file, const Jso
 std::vector<std::filesystem::path> LibraryFiles(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder)) {
     throw UserError(folder, "library", "no such folder",
-                    "make it, and copy manifest.json of a good calibration into it");
+                    "make it, and copy the manifest.json of a good calibration into it");
   }
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -40,16 +40,17 @@ void CheckPoses(const Capture& capture, const CalibOptions& options) {
   if (PoseSourceOf(options) == PoseSource::kAbove) {
     if (poses.picture_width_mm > 0 || poses.height_mm > 0) return;
     throw UserError(capture.file, "poses", "no length",
-                    "a photograph without a board knows no millimetres: give picture_width_mm (how "
+                    "a photograph without a board has no scale: give picture_width_mm (how "
                     "much of the sample its width shows) or height_mm (of the lens) in [poses]");
   }
   const bool scale = !poses.corners_px.empty() || poses.points_mm > 0 || poses.cameras_mm > 0 ||
                      poses.height_mm > 0;
   if (!scale && !capture.has_board) {
-    throw UserError(capture.file, "poses", "no length",
-                    "a COLMAP model knows no millimetres: give corners_px, points_mm, cameras_mm "
-                    "or height_mm in [poses] (docs/capture.md), or describe a [board] that some "
-                    "photographs show");
+    throw UserError(
+        capture.file, "poses", "no length",
+        "a COLMAP model has no scale in millimetres: give corners_px, points_mm, cameras_mm "
+        "or height_mm in [poses] (docs/capture.md), or describe a [board] that some "
+        "photographs show");
   }
   if (PoseSourceOf(options) == PoseSource::kColmapProgram) FindColmap();
 }

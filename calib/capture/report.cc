@@ -127,7 +127,7 @@ std::string PosesText(const Json& poses) {
   }
   return fmt::format(
       "poses from COLMAP: {} of {} images; plane through {} of {} points ({:.0f} % by weight), "
-      "{:.3f} mm RMS; scale from {}, {:.5g} mm a unit\n",
+      "{:.3f} mm RMS; scale from {}, {:.5g} mm per unit\n",
       poses["images_used"].get<size_t>(), poses["images"].get<size_t>(),
       poses["plane_inliers"].get<size_t>(), poses["plane_points"].get<size_t>(),
       100 * poses["plane_share"].get<double>(), poses["plane_rms_mm"].get<double>(),

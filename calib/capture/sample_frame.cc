@@ -81,8 +81,8 @@ class FrameFinder {
     const auto point = Meet(RayOf(PhotoNamed(capture_.poses.photo), point_px));
     if (point) return *point;
     throw UserError(capture_.file, std::string("poses.") + key,
-                    fmt::format("[{}, {}], which does not look at the sample's plane", point_px.x(),
-                                point_px.y()),
+                    fmt::format("[{}, {}], a pixel whose line of sight misses the sample's plane",
+                                point_px.x(), point_px.y()),
                     "give pixels of " + capture_.poses.photo);
   }
 
@@ -247,14 +247,14 @@ class FrameFinder {
     throw UserError(
         model_.source, "images",
         fmt::format("the board's corners {:.2f} mm off their places", frame_.fit_rms_mm),
-        "the board moved between the photographs, is another than [board] says, or "
-        "the model is bad; give [poses] corners_px to do without it");
+        "the board moved between the photographs, is not the one that [board] describes, or "
+        "the model is bad; give [poses] corners_px to do without the board");
   }
 
   [[noreturn]] void RefuseWithoutScale() const {
     throw UserError(
         capture_.file, "poses", capture_.has_board ? "too little of the board" : "no length",
-        "a COLMAP model knows no millimetres; give one of these in [poses]:\n"
+        "a COLMAP model has no scale in millimetres; give one of these in [poses]:\n"
         "  photo = \"" +
             model_.photos[0].name +
             "\" and corners_px = [[x, y], …]  the sample's corners in it, from the top left "

@@ -105,7 +105,7 @@ class PlaneFinder {
     plane_points_ = candidates.size();
     if (!plane_.problem.empty()) {
       throw UserError(model_.source, "points3D", plane_.problem,
-                      "the sample's plane is not to be seen in them: photograph it so that it and "
+                      "the sample's plane cannot be made out in them: photograph it so that it and "
                       "the flat ground round it fill the pictures, say with [poses] corners_px "
                       "where it lies, or widen --plane-tolerance for a rough sample");
     }

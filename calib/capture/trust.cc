@@ -133,7 +133,7 @@ std::string SampleText(const BundleResult& result, const Trust& trust) {
   if (!(trust.sample_sigma_mm > 0)) return "";
   const size_t worst = trust.WorstPhoto();
   std::string text =
-      fmt::format("at the sample: places are known to ± {:.4f} mm", trust.sample_sigma_mm);
+      fmt::format("at the sample: positions are known to ± {:.4f} mm", trust.sample_sigma_mm);
   if (trust.texel_mm > 0) {
     text += fmt::format(" ({:.2f} texel)", trust.sample_sigma_mm / trust.texel_mm);
   }

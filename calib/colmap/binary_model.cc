@@ -56,7 +56,7 @@ class Reader {
   void RequireEnd() const {
     if (at_ == bytes_.size()) return;
     throw UserError(file_, "", fmt::format("{} bytes after the last record", bytes_.size() - at_),
-                    "the file is damaged, or of another version than COLMAP 3.8's; export the "
+                    "the file is damaged, or was not written by COLMAP 3.8; export the "
                     "model again as text");
   }
 
@@ -65,7 +65,7 @@ class Reader {
  private:
   [[noreturn]] void CutOff() const {
     throw UserError(file_, field_, fmt::format("the file's end at byte {}", bytes_.size()),
-                    "the file is cut off, or no COLMAP model; copy or export it again");
+                    "the file is cut off, or is not a COLMAP model; copy or export it again");
   }
 
   fs::path file_;

@@ -36,10 +36,11 @@ void RejectCameraModel(const fs::path& file, std::uint32_t camera, const std::st
   for (const ColmapModelInfo& info : ColmapModels()) {
     known += (known.empty() ? "" : ", ") + std::string(info.name);
   }
-  throw UserError(file, fmt::format("camera {}", camera), "camera model " + found,
-                  "it is none of COLMAP 3.8's (" + known +
-                      "): the file is damaged or by another version; let that version calibrate "
-                      "with one of these, or undistort the photographs with it");
+  throw UserError(
+      file, fmt::format("camera {}", camera), "camera model " + found,
+      "it is not one of COLMAP 3.8's (" + known +
+          "): the file is damaged or was written by another version; use that version to calibrate "
+          "with one of these models, or to undistort the photographs");
 }
 
 void CheckCamera(const fs::path& file, const ColmapCamera& camera) {
@@ -51,7 +52,7 @@ void CheckCamera(const fs::path& file, const ColmapCamera& camera) {
   }
   for (const double value : camera.parameters) {
     if (!std::isfinite(value)) {
-      throw UserError(file, field, "a parameter that is no number", kExportAgain);
+      throw UserError(file, field, "a parameter that is not a number", kExportAgain);
     }
   }
   const size_t focal_lengths = ColmapModels()[camera.model].focal_lengths;
@@ -67,7 +68,7 @@ void CheckImage(const fs::path& file, const ColmapImage& image) {
   double norm = 0;
   for (const double q : image.quaternion_wxyz) norm += q * q;
   if (!(norm > 1e-12) || !std::isfinite(norm) || !image.translation.allFinite()) {
-    throw UserError(file, field, "a pose that is none", kExportAgain);
+    throw UserError(file, field, "an invalid pose", kExportAgain);
   }
   if (image.name.empty() || image.name.size() > kLongestName) {
     throw UserError(file, field, "a name of " + std::to_string(image.name.size()) + " letters",
@@ -75,14 +76,14 @@ void CheckImage(const fs::path& file, const ColmapImage& image) {
   }
   for (const ColmapObservation& observation : image.observations) {
     if (observation.point_px.allFinite()) continue;
-    throw UserError(file, field, "a feature that lies nowhere", kExportAgain);
+    throw UserError(file, field, "a feature with invalid coordinates", kExportAgain);
   }
 }
 
 void CheckPoint(const fs::path& file, const ColmapPoint& point) {
   if (point.position.allFinite() && std::isfinite(point.error_px)) return;
-  throw UserError(file, fmt::format("point {}", point.id), "a position or error that is no number",
-                  kExportAgain);
+  throw UserError(file, fmt::format("point {}", point.id),
+                  "a position or error that is not a number", kExportAgain);
 }
 
 void CheckModel(const std::vector<fs::path>& files, const ColmapModel& model) {

@@ -104,9 +104,10 @@ std::string ReadModelFile(const fs::path& file) {
   const std::uint64_t bytes = fs::file_size(file, error);
   if (error) throw UserError(file, "", "a file that cannot be read", "check its permissions");
   if (bytes > kLargestFile_bytes) {
-    throw UserError(file, "", std::to_string(bytes) + " bytes",
-                    "models of up to 2 GiB a file are read; make one of the capture's photographs "
-                    "alone");
+    throw UserError(
+        file, "", std::to_string(bytes) + " bytes",
+        "only models with files of up to 2 GiB are read; make one from the capture's photographs "
+        "alone");
   }
   std::string text(bytes, '\0');
   std::ifstream stream(file, std::ios::binary);

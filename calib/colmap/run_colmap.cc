@@ -82,8 +82,8 @@ std::string LargestModel(const fs::path& work) {
     largest = std::to_string(i);
   }
   if (most == 0) {
-    throw ComputationError("colmap found no model; see " + (work / "log.txt").string() +
-                           "; photographs need texture, sharpness and much overlap");
+    throw ComputationError("colmap produced no model; see " + (work / "log.txt").string() +
+                           "; photographs need texture, sharpness and plenty of overlap");
   }
   return largest;
 }
@@ -190,8 +190,8 @@ class Runner {
       RunToLog(arguments, log, run);
     } catch (const ComputationError& error) {
       throw ComputationError(std::string(error.what()) +
-                             "\nphotographs need texture, sharpness and much overlap; give a "
-                             "[board] where the sample and what lies round it have none");
+                             "\nphotographs need texture, sharpness and plenty of overlap; use a "
+                             "[board] where the sample and its surroundings have no texture");
     }
     progress_.Set(++steps_ * photos, step);
   }
@@ -255,7 +255,7 @@ ColmapRun RunColmap(const std::vector<ColmapPhoto>& photos, const ColmapRunOptio
   ColmapRun run;
   run.reused = !options.force && Kept(work, key);
   if (run.reused) {
-    spdlog::info("colmap's model in {} is of these photographs; it is taken as it is",
+    spdlog::info("colmap's model in {} was made from these photographs; it is used as it is",
                  work.string());
   } else {
     Runner(photos, options, work).Run();

@@ -96,7 +96,7 @@ class Fields {
 
   [[noreturn]] void Reject(const char* what, const std::string& found) const {
     throw UserError(lines_.file(), lines_.place() + ": " + what, found,
-                    "the file is cut off, or no model of COLMAP 3.8's text format; export it "
+                    "the file is cut off, or is not a model in COLMAP 3.8's text format; export it "
                     "again");
   }
 

@@ -148,7 +148,7 @@ BoardDetection DetectCharuco(const GrayImage& image, const Board& board,
   if (scale > 0 && std::abs(scale - 1) > 0.12) {
     return Mismatch(
         detection,
-        fmt::format("the markers' sides are {:.2f} of a square, not {:.2f}; correct "
+        fmt::format("the markers' sides are {:.2f} times a square's side, not {:.2f}; correct "
                     "marker_mm or square_mm in [board]",
                     scale * board.marker_mm / board.square_mm, board.marker_mm / board.square_mm));
   }

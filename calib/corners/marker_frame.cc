@@ -52,7 +52,7 @@ std::string Contradiction(const Board& board, const std::vector<SeenMarker>& see
   if (matched >= 4 && agreeing * 10 < matched * 7) {
     return fmt::format(
         "{} markers of the board seen, but only {} of them lie where board.json has them; correct "
-        "their places there",
+        "their positions there",
         matched, agreeing);
   }
   return "";

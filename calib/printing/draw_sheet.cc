@@ -182,7 +182,7 @@ Drawing DrawSheet(const BoardFile& file, double paper_reflectance) {
   if (const auto opening = OpeningInSample(file.board)) {
     pen.Outline(*opening, 170);
     const Eigen::Vector2d at = pen.OnSheet({opening->left_mm + 3, opening->top_mm - 6});
-    const std::string text = "Cut out along this line: the sample lies in here.";
+    const std::string text = "Cut out along this line: the sample goes in here.";
     const double room = opening->right_mm - opening->left_mm - 6;
     pen.Text(at, std::clamp(room / TextWidth(text), 0.5, 3.0), text);
   }

@@ -71,7 +71,8 @@ BoardWindow PlanWindow(const SheetOptions& options, const Board& board) {
   int rows = std::min(columns, board.squares_y - 2 * kFrameSquares);
   if (!options.sample_mm.empty()) {
     if (options.sample_mm.size() != 2 || !(options.sample_mm[0] > 0 && options.sample_mm[1] > 0)) {
-      throw UserError("--sample-mm: found no two sizes greater than 0; give WIDTH,HEIGHT");
+      throw UserError(
+          "--sample-mm: found something other than two sizes greater than 0; give WIDTH,HEIGHT");
     }
     const auto needed = [&](double size_mm) {
       return static_cast<int>(
@@ -123,7 +124,7 @@ Board PlanMarkers(const SheetOptions& options, const Space& space) {
   std::vector<int> count = {5, 5};
   if (!options.squares.empty()) count = Whole(options.squares, 2, "squares", "ACROSS,DOWN");
   if (count[0] < 2 || count[1] < 2)
-    throw UserError("--squares: found a side without markers; give ACROSS,DOWN from 2");
+    throw UserError("--squares: found a side without markers; give ACROSS,DOWN, each at least 2");
   const double side = options.square_mm > 0
                           ? options.square_mm
                           : HalfMillimetres(std::min(space.width_mm / (2 * count[0] - 1),
@@ -238,10 +239,11 @@ void PlaceOnSheet(const SheetOptions& options, BoardFile* file) {
   const double width = outline.right_mm - outline.left_mm;
   const double height = outline.top_mm - outline.bottom_mm;
   if (width > space.width_mm + 1e-6 || height > space.height_mm + 1e-6) {
-    throw UserError(fmt::format(
-        "--paper: found {} with room for {:.1f} x {:.1f} mm, while the board has {:.1f} x {:.1f} "
-        "mm; use a larger paper, --landscape, or fewer or smaller squares",
-        options.paper, space.width_mm, space.height_mm, width, height));
+    throw UserError(
+        fmt::format("--paper: found {} with room for {:.1f} x {:.1f} mm, while the board measures "
+                    "{:.1f} x {:.1f} "
+                    "mm; use larger paper, --landscape, or fewer or smaller squares",
+                    options.paper, space.width_mm, space.height_mm, width, height));
   }
   const Eigen::Vector2d middle(0.5 * (outline.left_mm + outline.right_mm),
                                0.5 * (outline.bottom_mm + outline.top_mm));

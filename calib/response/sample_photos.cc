@@ -86,8 +86,9 @@ double ExposureOf(const fs::path& file, const Photo& photo) {
   if (photo.exposure() > 0) return photo.exposure();
   throw UserError(
       file, "EXIF",
-      fmt::format("exposure time {} s, ISO {}, f-number {}; 0 is what EXIF does not tell",
-                  photo.exposure_time_s, photo.iso, photo.f_number),
+      fmt::format(
+          "exposure time {} s, ISO {}, f-number {}; 0 means that EXIF does not give the value",
+          photo.exposure_time_s, photo.iso, photo.f_number),
       "give --exposures with one number for each photograph");
 }
 

@@ -32,7 +32,7 @@ std::vector<fs::path> FindPhotos(const fs::path& folder) {
     files.push_back(at->path());
     if (files.size() < kMost) continue;
     throw UserError(folder, "", "more than " + std::to_string(kMost) + " photographs",
-                    "give a smaller folder");
+                    "give a folder with fewer");
   }
   std::sort(files.begin(), files.end());
   if (files.empty()) {

@@ -88,7 +88,7 @@ std::string BendInWords(const Diagnosis& diagnosis, bool solved_for) {
       std::sqrt(bend.covariance(1, 1)));
   if (solved_for) return text + "; the result takes that into account";
   return text + fmt::format(
-                    " (the residual falls from {:.3f} to {:.3f} px with it); glue it on something "
+                    " (the residual falls from {:.3f} to {:.3f} px with it); glue it to something "
                     "flat, or give --board-shape bent",
                     diagnosis.rms_without_bend_px, diagnosis.rms_with_bend_px);
 }
@@ -142,13 +142,15 @@ std::string MotionInWords(const BundleResult& result, const std::vector<size_t>&
   if (many) {
     return fmt::format(
         "in {} of {} photographs residuals vary smoothly over the picture, up to {:.2f} px RMS: "
-        "the model of the lens has too few terms (--model auto), the board has another shape, or "
+        "the model of the lens has too few terms (--model auto), the board is not the shape "
+        "described, or "
         "all were taken in motion",
         moved.size(), accepted, largest_px);
   }
   return fmt::format(
-      "in {} of {} photographs ({}) residuals vary smoothly over the picture as of a phone or "
-      "board that moves while it is read (rolling shutter), up to {:.2f} px RMS; hold still, or "
+      "in {} of {} photographs ({}) residuals vary smoothly over the picture, as if the phone or "
+      "board had moved while the picture was read out (rolling shutter), up to {:.2f} px RMS; hold "
+      "still, or "
       "use more light",
       moved.size(), accepted, Listed(result, moved), largest_px);
 }

@@ -104,9 +104,10 @@ CalibrationErrors CompareCalibrations(const Calibration& truth, const Calibratio
     CompareCamera(truth.cameras[true_photo.camera], estimate.cameras[found->camera], &errors);
   }
   if (errors.photos.empty()) {
-    throw UserError("the calibration has no photograph of the truth's (the first of them is " +
-                    (truth.photos.empty() ? "missing" : truth.photos.front().photo) +
-                    "); give the manifests of one capture");
+    throw UserError(
+        "the calibration has none of the ground truth's photographs (the first of them is " +
+        (truth.photos.empty() ? "missing" : truth.photos.front().photo) +
+        "); give the manifests of one capture");
   }
   Summarise(&errors);
   if (truth.light_power_known && estimate.light_power_known) {
@@ -136,9 +137,10 @@ Calibration AlignCalibration(const Calibration& truth, const Calibration& estima
   }
   const auto similarity = AlignPoints(from_centres, to_centres);
   if (!similarity) {
-    throw UserError("the calibrations share " + std::to_string(from.size()) +
-                    " photographs; at least three, not taken from a line, are needed to align "
-                    "them");
+    throw UserError(
+        "the calibrations share " + std::to_string(from.size()) +
+        " photographs; at least three, not all taken from one straight line, are needed to align "
+        "them");
   }
   Calibration aligned = estimate;
   aligned.light_rgb *= similarity->scale * similarity->scale;

@@ -73,7 +73,7 @@ int RunVerb(const PaperExperiment& paper, int argc, char** argv, const ProgramIn
   AddOptions(paper, &given, &counts, &options);
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     if (given.work.empty()) throw UserError("work: found nothing; name a folder for the results");
-    if (common.check) throw UserError("status: an experiment is no stage; leave the option out");
+    if (common.check) throw UserError("status: an experiment is not a stage; leave the option out");
     given.counts = Whole(counts);
     Experiment experiment = paper.make(Completed(paper, given));
     experiment.materials = experiment.materials.empty() ? ReservedMaterials(kOwnMaterials)

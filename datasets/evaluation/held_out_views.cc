@@ -55,7 +55,7 @@ SplitViews Divide(const RectifiedSet& set, const HoldoutSplit& split) {
     if (index >= set.views.size()) {
       throw UserError(set.manifest_file, "views", std::to_string(set.views.size()) + " of them",
                       "photograph " + listed + " of \"" + split.name +
-                          "\" does not exist; numbers count from 0");
+                          "\" does not exist; numbering starts at 0");
     }
     names.push_back(set.views[index].name);
   }

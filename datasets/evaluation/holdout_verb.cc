@@ -65,7 +65,7 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
   options.Add("refine-args", &experiment.refine_arguments,
               "more arguments for glint-refine, comma-separated");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
-    if (common.check) throw UserError("check: an experiment is no stage; leave the option out");
+    if (common.check) throw UserError("check: an experiment is not a stage; leave the option out");
     experiment.sets.assign(sets.begin(), sets.end());
     experiment.splits = ParseSplits(pairs, false);
     for (const HoldoutSplit& split : ParseSplits(fitted, true)) experiment.splits.push_back(split);

@@ -97,7 +97,7 @@ LightErrors CompareLight(const Calibration& truth, const fs::path& manifest_file
   const Calibration estimate = ReadCalibration(manifest_file);
   const Json& light = RequireField(manifest_file, manifest.metrics, "metrics", "light");
   if (!light.contains("board")) {
-    throw UserError(manifest_file, "metrics.light", "no light told by the board",
+    throw UserError(manifest_file, "metrics.light", "no light measured from the board",
                     "run glint-calib with --light board on photographs with a board");
   }
   const Json& board = light["board"];

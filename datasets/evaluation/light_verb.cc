@@ -31,7 +31,7 @@ int RunLight(int argc, char** argv, const ProgramInfo& info) {
     if (experiment.work.empty()) {
       throw UserError("work: found nothing; name a folder for the results");
     }
-    if (common.check) throw UserError("check: an experiment is no stage; leave the option out");
+    if (common.check) throw UserError("check: an experiment is not a stage; leave the option out");
     experiment.again = common.force;
     const LightExperimentResult result = RunLightExperiment(experiment, common.threads);
     return ProgramResult{result.Text(), result.ToJson()};

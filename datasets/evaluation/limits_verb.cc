@@ -192,7 +192,7 @@ int RunLimits(int argc, char** argv, const ProgramInfo& info) {
       "maximum number of steps that fit a code to the maps; 0: only encode and decode");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     if (limits.work.empty()) throw UserError("work: found nothing; name a folder for the results");
-    if (common.check) throw UserError("status: a measurement is no stage; leave the option out");
+    if (common.check) throw UserError("status: a measurement is not a stage; leave the option out");
     return Measure(limits, common.threads);
   });
 }

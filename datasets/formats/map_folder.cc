@@ -31,7 +31,7 @@ Image ReadMap(const fs::path& folder, const std::map<std::string, fs::path>& fil
     throw UserError(found->second, "size",
                     std::to_string(image.width) + "x" + std::to_string(image.height),
                     "the colour map is " + std::to_string(color->width) + "x" +
-                        std::to_string(color->height) + "; give all maps one size");
+                        std::to_string(color->height) + "; give all maps the same size");
   }
   return image;
 }

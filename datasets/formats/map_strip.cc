@@ -42,7 +42,7 @@ SvbrdfMaps ReadMapStrip(const std::filesystem::path& file, MapLayout layout,
   const Image strip = ReadPhoto(file).image;
   if (strip.width != tiles * strip.height) {
     throw UserError(file, "size", std::to_string(strip.width) + "x" + std::to_string(strip.height),
-                    "this strip is " + std::to_string(tiles) + " square maps wide");
+                    "this strip must be " + std::to_string(tiles) + " square maps wide");
   }
   const int first = with_photo ? 1 : 0;
   const Tile normal(strip, first), diffuse(strip, first + 1), roughness(strip, first + 2),

@@ -18,7 +18,7 @@ constexpr char kRemedy[] =
 MapLayout DetectInFolder(const fs::path& folder) {
   if (fs::is_regular_file(folder / "svbrdf.exr")) return MapLayout::kSvbrdfExr;
   if (!FindMapFiles(folder).empty()) return MapLayout::kColorFolder;
-  throw UserError(folder, "", "a folder with no maps that are known", kRemedy);
+  throw UserError(folder, "", "a folder without any known maps", kRemedy);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ ForeignSet ReadDirSet(const fs::path& wlv_file) {
     if (!fs::is_regular_file(view.image)) {
       throw UserError(view.image, "", "no such file",
                       wlv_file.filename().string() + " has " + std::to_string(rows.size()) +
-                          " lines; give one image a line");
+                          " lines; give one image per line");
     }
     view.view.light_in_sample_mm = {n[0], n[1], n[2]};
     view.view.camera_in_sample_mm = {n[3], n[4], n[5]};

@@ -46,7 +46,7 @@ ForeignSet ReadFolder(const fs::path& folder) {
     throw UserError(folder, "", std::to_string(wlv.size()) + " sets in a folder *wlv",
                     "name one of them, for example " + wlv[0].string());
   }
-  throw UserError(folder, "", "a folder in no layout that is known", kRemedy);
+  throw UserError(folder, "", "a folder of unknown layout", kRemedy);
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ ForeignSet ReadForeignSet(const fs::path& source) {
   if (source.filename() == "parameters.json") return ReadMaterialGanJson(source.parent_path());
   if (source.extension() == ".json") return ReadViewsJson(source);
   if (EndsWithWlv(fs::absolute(source).parent_path())) return ReadDirSet(source);
-  throw UserError(source, "", "a file in no layout that is known", kRemedy);
+  throw UserError(source, "", "a file of unknown layout", kRemedy);
 }
 
 void RequireInFront(const fs::path& file, const std::string& field, const View& view) {

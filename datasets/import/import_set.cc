@@ -106,8 +106,8 @@ void RequireSize(const LinearPhoto& photo, const ForeignView& view, PixelSize wa
                  const fs::path& first) {
   if (photo.width() == wanted.width && photo.height() == wanted.height) return;
   throw UserError(view.image, "size", fmt::format("{}x{}", photo.width(), photo.height()),
-                  fmt::format("{} is {}x{}; give all images one size", first.filename().string(),
-                              wanted.width, wanted.height));
+                  fmt::format("{} is {}x{}; give all images the same size",
+                              first.filename().string(), wanted.width, wanted.height));
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ const Json& JsonFields::Require(const std::string& field, const std::string& rem
 std::string JsonFields::Text(const std::string& field, const std::string& fallback) {
   const Json* found = Find(field);
   if (found == nullptr) return fallback;
-  if (!found->is_string()) Reject(Path(field), *found, "a text is expected");
+  if (!found->is_string()) Reject(Path(field), *found, "text in quotes is expected");
   return found->get<std::string>();
 }
 

@@ -98,13 +98,13 @@ ForeignSet ReadMaterialGanText(const fs::path& folder) {
   const Vec3d power = Power(ReadNumberRows(power_file, 3)[0].numbers);
   if (cameras.size() != lights.size()) {
     throw UserError(lights_file, "", std::to_string(lights.size()) + " positions",
-                    "camera_pos.txt has " + std::to_string(cameras.size()) + "; give one a view");
+                    "camera_pos.txt has " + std::to_string(cameras.size()) + "; give one per view");
   }
   const auto images = NumberedImages(folder);
   if (images.size() != cameras.size()) {
     throw UserError(folder, "images", std::to_string(images.size()) + " images (00.png …)",
                     "camera_pos.txt has " + std::to_string(cameras.size()) +
-                        " positions; give one image a position");
+                        " positions; give one image per position");
   }
   for (size_t i = 0; i < cameras.size(); ++i) {
     ForeignView view;

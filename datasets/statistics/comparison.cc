@@ -79,7 +79,7 @@ double Comparison::MeanDistance(const std::string& group) const {
 std::string Comparison::BriefReport() const {
   std::string text = fmt::format(
       "{} real and {} generated materials; Kolmogorov-Smirnov distances: mean {:.3f} (histograms "
-      "{:.3f}, spectra {:.3f}, traits {:.3f}); alike populations of these sizes show {:.3f}\n",
+      "{:.3f}, spectra {:.3f}, traits {:.3f}); similar populations of these sizes show {:.3f}\n",
       real.materials.size(), generated.materials.size(), MeanDistance(""),
       MeanDistance("histogram"), MeanDistance("spectrum"), MeanDistance("trait"),
       ExpectedKolmogorovSmirnov(real.materials.size(), generated.materials.size()));

@@ -66,7 +66,7 @@ std::vector<std::string> FindMaterials(const std::vector<std::string>& paths) {
     const std::vector<std::string> inside = of_folders ? FoldersIn(path) : std::vector{path};
     if (inside.empty()) {
       throw UserError(path, "materials", "an empty folder",
-                      "name maps, or a folder of their folders");
+                      "name maps, or a folder whose subfolders hold maps");
     }
     found.insert(found.end(), inside.begin(), inside.end());
   }
@@ -76,7 +76,8 @@ std::vector<std::string> FindMaterials(const std::vector<std::string>& paths) {
 Population MeasureMaterials(const std::string& name, const std::vector<std::string>& materials,
                             int side, int threads) {
   if (side < 8 || !IsPowerOfTwo(side)) {
-    throw UserError("size: found " + std::to_string(side) + "; give a power of two from 8, as 256");
+    throw UserError("size: found " + std::to_string(side) +
+                    "; give a power of two, at least 8, such as 256");
   }
   Population population;
   population.name = name;

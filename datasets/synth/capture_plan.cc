@@ -254,7 +254,7 @@ void CheckBoardOf(const CapturePlanOptions& options) {
       2 * std::min({-opening->left_mm, opening->right_mm, -opening->bottom_mm, opening->top_mm});
   if (options.sample_mm <= room_mm) return;
   throw UserError("board: found a window that takes " + std::to_string(room_mm) +
-                  " mm at most round the board's centre, while the sample has " +
+                  " mm at most round the board's centre, while the sample measures " +
                   std::to_string(options.sample_mm) + "; give a smaller --sample-mm");
 }
 

@@ -240,7 +240,7 @@ class PhotoShoot {
 
 void PrepareFolder(const fs::path& folder, bool overwrite) {
   if (fs::exists(folder / "capture.toml") && !overwrite) {
-    throw UserError(folder, "", "a capture that is there already",
+    throw UserError(folder, "", "an existing capture",
                     "choose another folder, or give --force to replace it");
   }
   fs::create_directories(folder / "photos");

@@ -128,7 +128,7 @@ EnvironmentLight ReadEnvironment(const std::filesystem::path& file, int rings) {
   EnvironmentLight environment = FromImage(photo.image, rings);
   if (environment.lights.empty()) {
     throw UserError(file, "environment", "no light above the horizon",
-                    "give an equirectangular map whose upper half shines");
+                    "give an equirectangular map whose upper half is not black");
   }
   return environment;
 }

@@ -28,22 +28,19 @@ namespace fs = std::filesystem;
 // early halves the damage (docs/experiments, "How long to fit one photograph").
 constexpr int kSinglePhotoIterations = 8;
 
+constexpr int kFullSize = 1 << 20;  // more than any maps have along a side
+
 bool IsLatent(const FitStageOptions& options) { return options.method == "latent"; }
 
-FitOptions Resolved(const FitStageOptions& options, size_t photographs, int threads) {
-  FitOptions fit = IsLatent(options) ? options.latent : options.classic;
-  if (IsLatent(options) && photographs == 1) {
-    fit.coarse_iterations = fit.fine_iterations = kSinglePhotoIterations;
-  }
-  if (options.iterations > 0) fit.coarse_iterations = options.iterations;
-  if (options.fine_iterations > 0) fit.fine_iterations = options.fine_iterations;
-  if (options.tune_iterations >= 0) fit.tune_iterations = options.tune_iterations;
-  if (options.tune_rate > 0) fit.tune_rate = options.tune_rate;
-  if (IsLatent(options) && options.finest_size > 0) {
-    fit.finest_size = std::max(options.finest_size, fit.coarse_size);
-  }
-  if (options.learning_rate > 0) fit.learning_rate = options.learning_rate;
-  if (options.code_prior >= 0) fit.code_prior = options.code_prior;
+FitOptions FitOptionsOf(const FitStageOptions& options, int threads) {
+  FitOptions fit = IsLatent(options) ? FitOptions::Latent() : FitOptions::Classic();
+  fit.coarse_iterations = options.iterations;
+  fit.fine_iterations = options.fine_iterations;
+  if (IsLatent(options)) fit.finest_size = std::max(options.finest_size, fit.coarse_size);
+  fit.learning_rate = options.learning_rate;
+  fit.tune_iterations = options.tune_iterations;
+  fit.tune_rate = options.tune_rate;
+  fit.code_prior = options.code_prior;
   fit.threads = threads;
   return fit;
 }
@@ -179,25 +176,25 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
   set->AddChoice("metals", &options->metals, {"possible", "rare"},
                  "how the estimator interprets dark, glossy areas; possible: perhaps metal; rare: "
                  "glass, lacquer, print and the like (for samples without bare metal)");
-  set->AddRange("iterations", &options->iterations, 0, 1e6,
-                "maximum number of steps at the first, coarse level; 0: the method's default");
+  set->AddRange(
+      "iterations", &options->iterations, 0, 1e6,
+      "maximum number of steps at the first, coarse level; 0: the method's default, which "
+      "the manifest then has");
   set->AddRange("fine-iterations", &options->fine_iterations, 0, 1e6,
                 "maximum number of steps at each later level; 0: the method's default");
   set->AddRange(
-      "finest-size", &options->finest_size, 0, 1 << 20,
-      "latent: texels along the longer side of the finest level; finer detail is left to "
-      "refinement, which recovers it equally well from any initial maps; 0: the full resolution");
+      "finest-size", &options->finest_size, 1, kFullSize,
+      "latent: maximum number of texels along the longer side of the finest level; finer detail is "
+      "left to refinement, which recovers it equally well from any initial maps");
   set->AddRange("learning-rate", &options->learning_rate, 0, 1,
-                "Adam's rate at the start of a level; 0: the method's default");
-  set->AddRange("tune-iterations", &options->tune_iterations, -1, 1e6,
+                "Adam's rate at the start of a level");
+  set->AddRange("tune-iterations", &options->tune_iterations, 0, 1e6,
                 "latent: fine-tuning steps for the decoder on this sample, once the latent code "
-                "has been fitted; below 0: the method's default");
+                "has been fitted");
   set->AddRange("tune-rate", &options->tune_rate, 0, 1,
-                "latent: learning rate of the decoder's weights, relative to the latent code's; 0: "
-                "the method's default");
-  set->AddRange("code-prior", &options->code_prior, -1, 1e6,
-                "latent: weight of the penalty on the latent code's magnitude; below 0: the "
-                "method's default");
+                "latent: learning rate of the decoder's weights, relative to the latent code's");
+  set->AddRange("code-prior", &options->code_prior, 0, 1e6,
+                "latent: weight of the penalty on the latent code's magnitude");
   set->Add("start", &options->start,
            "initial maps, an svbrdf.exr (default: estimated from the photographs)");
   set->Add("weights", &options->weights, "the auto-encoder's weights (default: those shipped)");
@@ -205,6 +202,18 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
   set->Add("views", &options->views,
            "views to use, by view name or photograph name (default: all)");
   set->Add("exclude", &options->exclude, "views to hold out, by view name or photograph name");
+}
+
+void ResolveFitOptions(const fs::path& rectify_manifest, FitStageOptions* options) {
+  const RectifiedSet set = ReadRectifiedSet(rectify_manifest);
+  const size_t photographs = SelectViews(set, options->views, options->exclude).size();
+  const FitOptions own = IsLatent(*options) ? FitOptions::Latent() : FitOptions::Classic();
+  const bool single = IsLatent(*options) && photographs == 1;
+  const auto resolve = [&](int own_iterations, int* iterations) {
+    if (*iterations == 0) *iterations = single ? kSinglePhotoIterations : own_iterations;
+  };
+  resolve(own.coarse_iterations, &options->iterations);
+  resolve(own.fine_iterations, &options->fine_iterations);
 }
 
 std::vector<fs::path> FitInputs(const FitStageOptions& options) {
@@ -224,7 +233,7 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
                            int threads, Stage* stage) {
   const RectifiedSet set = ReadRectifiedSet(rectify_manifest);
   const std::vector<RectifiedView> views = SelectViews(set, options.views, options.exclude);
-  const FitOptions fit_options = Resolved(options, views.size(), threads);
+  const FitOptions fit_options = FitOptionsOf(options, threads);
   if (const std::string wrong = fit_options.Check(); !wrong.empty())
     throw UserError("fit: " + wrong);
   const PhotographSet photographs = Load(set, views, options, fit_options, threads);

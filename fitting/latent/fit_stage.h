@@ -21,15 +21,13 @@ struct FitStageOptions {
   // of metal from one of glass; its person does. Without effect where `estimator` or `start` is
   // given, and on heuristics.
   std::string metals = "possible";
-  FitOptions latent = FitOptions::Latent();
-  FitOptions classic = FitOptions::Classic();
-  int iterations = 0;                // at the first level; 0: the method's own (few from one photo)
-  int fine_iterations = 0;           // at each later level; 0: the method's own
-  int finest_size = 256;             // latent: of the last level, texels; 0: the photographs'
-  double learning_rate = 0;          // 0: the method's own
-  int tune_iterations = -1;          // below 0: the method's own
-  double tune_rate = 0;              // 0: the method's own
-  double code_prior = -1;            // below 0: the method's own
+  int iterations = 0;       // at the first level; 0: the method's own (few from one photo)
+  int fine_iterations = 0;  // at each later level; 0: the method's own
+  int finest_size = 256;    // latent: of the last level, texels, or the photographs'
+  double learning_rate = FitOptions().learning_rate;
+  int tune_iterations = FitOptions().tune_iterations;
+  double tune_rate = FitOptions().tune_rate;
+  double code_prior = FitOptions().code_prior;
   std::filesystem::path start;       // maps to start from (svbrdf.exr); empty: from the photographs
   std::filesystem::path weights;     // of the auto-encoder; empty: the shipped ones
   std::filesystem::path estimator;   // weights of the estimator; empty: the shipped ones
@@ -38,6 +36,11 @@ struct FitStageOptions {
 };
 
 void AddFitOptions(OptionSet* set, FitStageOptions* options);
+
+// Puts the method's own numbers of iterations where none are given, for as many photographs as are
+// fitted: the manifest then has what was done. Throws UserError where `rectify_manifest` or the
+// choice of views is wrong.
+void ResolveFitOptions(const std::filesystem::path& rectify_manifest, FitStageOptions* options);
 
 // The files the result depends on beside the rectified set's manifest: weights, start. Throws
 // UserError when one is missing.

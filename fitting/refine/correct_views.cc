@@ -42,7 +42,7 @@ bool CorrectionOptions::Wanted(double distinct_views_of_set) const {
 
 std::string CorrectionOptions::Check() const {
   if (when != "auto" && when != "always" && when != "never") {
-    return "views are corrected auto, always or never";
+    return "the correction of views must be auto, always or never";
   }
   if (!(least_gain >= 0 && least_gain < 1) || !(least_views_gain >= 0 && least_views_gain < 1)) {
     return "the least gain must be from 0 to 1";

@@ -254,7 +254,7 @@ std::string ViewCorrectionOptions::Check() const {
   if (!above_zero(expected.level)) return "the sample's expected slope must be above 0";
   if (!above_zero(expected.ambient)) return "the expected ambient light must be above 0";
   if (room_terms < 0 || !AreRoomTerms(static_cast<size_t>(room_terms))) {
-    return "the terms of a room's light must be all of some degrees";
+    return "the terms of a room's light must make up complete degrees";
   }
   if (!above_zero(expected.exposure)) return "the exposures' expected deviation must be above 0";
   if (!above_zero(expected.registration_texel)) {
@@ -262,7 +262,7 @@ std::string ViewCorrectionOptions::Check() const {
   }
   if (!above_zero(evidence) || !above_zero(noise_evidence)) return "the evidence must be above 0";
   if (!(registration_gain >= 0 && registration_gain < 1)) {
-    return "the gain asked of displacements must be from 0 to 1";
+    return "the gain required of displacements must be from 0 to 1";
   }
   if (!above_zero(robust_scale)) return "the robust scale must be above 0";
   if (texels < 16 || last_texels < 16) return "at least 16 texels are needed";

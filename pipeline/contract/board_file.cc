@@ -105,7 +105,7 @@ void ReadExtras(JsonObject* object, Board* board) {
     marks.from_in_board_mm = Point(ruler.Numbers("from_mm", 2, "give [x, y] in millimetres"));
     marks.to_in_board_mm = Point(ruler.Numbers("to_mm", 2, "give [x, y] in millimetres"));
     ruler.RejectUnknown();
-    if (!(marks.length_mm() >= 1)) object->Reject("ruler", "give two points apart");
+    if (!(marks.length_mm() >= 1)) object->Reject("ruler", "give two different points");
     board->ruler = marks;
   }
   if (object->Has("patches")) {

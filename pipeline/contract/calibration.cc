@@ -54,7 +54,7 @@ CalibratedPhoto ReadPhoto(const std::filesystem::path& file, const Json& json,
   photo.camera_from_sample.translation = Eigen::Map<const Eigen::Vector3d>(translation.data());
   const auto& r = photo.camera_from_sample.rotation;
   if (!(r * r.transpose()).isIdentity(1e-6) || r.determinant() < 0) {
-    throw UserError(file, name + ".camera_from_sample.rotation", "a matrix that is no rotation",
+    throw UserError(file, name + ".camera_from_sample.rotation", "a matrix that is not a rotation",
                     "run calib again");
   }
   const auto light = RequireNumbers(file, json, name, "light_in_camera_mm", 3);

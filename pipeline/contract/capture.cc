@@ -70,7 +70,7 @@ class TableReader {
     std::string list;
     for (const std::string& choice : choices) list += (list.empty() ? "" : ", ") + choice;
     if (!node->is_string())
-      Reject(*node, key, list.empty() ? "give a text" : "use one of: " + list);
+      Reject(*node, key, list.empty() ? "give text in quotes" : "use one of: " + list);
     const std::string text = node->as_string()->get();
     if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end()) {
       Reject(*node, key, "use one of: " + list);
@@ -174,9 +174,9 @@ class TableReader {
 // What a directory's entry is that is no file.
 std::string WhatElse(const fs::directory_entry& entry) {
   std::error_code error;
-  if (entry.is_symlink(error) && !entry.exists(error)) return "a link to nothing";
+  if (entry.is_symlink(error) && !entry.exists(error)) return "a broken link";
   if (entry.is_directory(error)) return "a folder";
-  return "no regular file (a pipe, a device)";
+  return "something other than a regular file (a pipe or a device, say)";
 }
 
 // Files of `folder` that match "some/folder/*.jpg", sorted by name, relative to `folder`. Patterns
@@ -232,7 +232,7 @@ void RequireUtf8(const fs::path& file, const std::string& field, const std::stri
   } catch (const nlohmann::json::exception&) {
     throw UserError(file, field,
                     "'" + Json(name).dump(-1, ' ', true, Json::error_handler_t::replace) +
-                        "', a name whose bytes are no UTF-8",
+                        "', a name whose bytes are not UTF-8",
                     "rename the file, or convert names with: convmv -f latin1 -t utf8 --notest");
   }
 }
@@ -430,13 +430,13 @@ void ReadPoses(const fs::path& file, const toml::table& document, Capture* captu
   for (const std::string& name : names) {
     if (std::find(capture->photos.begin(), capture->photos.end(), name) != capture->photos.end())
       continue;
-    throw UserError(file, "poses", "'" + name + "', which is no photograph of the capture",
+    throw UserError(file, "poses", "'" + name + "', which is not a photograph of the capture",
                     "give its path from the capture's folder, such as \"photos/IMG_0001.jpg\"");
   }
   const bool points = !poses.corners_px.empty() || !poses.points_px.empty() ||
                       !poses.origin_px.empty() || !poses.x_axis_px.empty();
   if (points && poses.photo.empty()) {
-    table.Missing("photo", "name the photograph that the points are of");
+    table.Missing("photo", "name the photograph in which the points lie");
   }
   if (!poses.cameras.empty() && poses.cameras.size() != 2) {
     throw UserError(file, "poses.cameras", std::to_string(poses.cameras.size()) + " names",

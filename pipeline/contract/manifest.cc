@@ -124,7 +124,8 @@ std::string RequireString(const std::filesystem::path& file, const Json& object,
                           const std::string& object_name, const std::string& field) {
   const Json& value = RequireField(file, object, object_name, field);
   if (!value.is_string()) {
-    throw UserError(file, FieldName(object_name, field), Describe(value), "a text is expected");
+    throw UserError(file, FieldName(object_name, field), Describe(value),
+                    "text in quotes is expected");
   }
   return value.get<std::string>();
 }
@@ -180,7 +181,8 @@ Manifest ReadManifest(const std::filesystem::path& file, const std::string& expe
       output.height = RequireCount(file, outputs[i], name, "height");
       for (const Json& channel : RequireField(file, outputs[i], name, "channels")) {
         if (!channel.is_string()) {
-          throw UserError(file, name + ".channels", Describe(channel), "channel names are texts");
+          throw UserError(file, name + ".channels", Describe(channel),
+                          "channel names must be text");
         }
         output.channels.push_back(channel.get<std::string>());
       }
@@ -205,7 +207,7 @@ void VerifyOutputs(const std::filesystem::path& manifest_file, const Manifest& m
     }
     if (HashFile(file) != output.hash) {
       throw UserError(manifest_file, field,
-                      "'" + output.path + "' with another content than the manifest says",
+                      "'" + output.path + "' with contents other than those the manifest records",
                       "run stage '" + manifest.stage + "' again");
     }
   }

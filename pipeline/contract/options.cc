@@ -89,7 +89,7 @@ void ReadInto(const toml::node& node, const TomlPlace& place, double* target) {
   *target = *value;
 }
 void ReadInto(const toml::node& node, const TomlPlace& place, std::string* target) {
-  if (!node.is_string()) Reject(node, place, "a text in quotes");
+  if (!node.is_string()) Reject(node, place, "text in quotes");
   *target = node.as_string()->get();
 }
 void ReadInto(const toml::node& node, const TomlPlace& place, std::filesystem::path* target) {

@@ -118,7 +118,7 @@ std::string OptionChange(const Json& before, const Json& now) {
     const auto found = before.find(name);
     if (found == before.end()) return "option " + name + " is new";
     if (*found != value) {
-      return "option " + name + " was " + found->dump() + " and is " + value.dump();
+      return "option " + name + " was " + found->dump() + " and is now " + value.dump();
     }
   }
   for (const auto& [name, value] : before.items()) {
@@ -183,8 +183,8 @@ std::string Stage::WhyStale() const {
   try {
     const Manifest manifest = ReadManifest(manifest_file(), info_.name);
     if (manifest.stage_version != info_.version) {
-      return "the result is of stage version " + std::to_string(manifest.stage_version) +
-             ", the program of " + std::to_string(info_.version);
+      return "the result is from stage version " + std::to_string(manifest.stage_version) +
+             ", the program has version " + std::to_string(info_.version);
     }
     if (const std::string why = OptionChange(manifest.options, options_); !why.empty()) return why;
     if (const std::string why = InputChange(manifest.inputs, inputs_); !why.empty()) return why;

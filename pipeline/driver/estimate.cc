@@ -31,7 +31,8 @@ std::string CaptureEstimate::ToText() const {
     text += line(stage.step.stage, stage.seconds, stage.memory_bytes);
   }
   return text + line("all", seconds(), memory_bytes()) +
-         "on two cores of a Xeon of 2.8 GHz; other machines differ by one factor\n";
+         "on two cores of a 2.8 GHz Xeon; on another machine all times change by about the same "
+         "factor\n";
 }
 
 Json CaptureEstimate::ToJson() const {

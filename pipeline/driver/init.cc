@@ -249,7 +249,7 @@ Surroundings WithoutBoard() {
       "# photo = \"photos/IMG_0001.jpg\"  # the pixels below are of this photograph\n"
       "# corners_px = [[441, 275], [732, 288], [720, 579], [429, 567]]  # the sample's: top "
       "left, top right, bottom right, bottom left\n"
-      "# height_mm = 300                # or the lens's height above the sample, as usual\n",
+      "# height_mm = 300                # or the lens's usual height above the sample\n",
       {100, 100},
       "where the photographs look, or [poses] says",
       {}};
@@ -365,7 +365,8 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
     if (size_mm[i] <= around.most_mm[i]) continue;
     throw UserError("--sample-mm: found " + List(size_mm) + ", which the board's window of " +
                     List(around.most_mm) +
-                    " does not show whole; give what lies in the window, or print a board with a "
+                    " is too small to show whole; give only the part that lies in the window, or "
+                    "print a board with a "
                     "larger one (glint board --sample-mm)");
   }
   std::string text = "# A capture for Glint; docs/capture.md explains every key.\n\n";
@@ -397,8 +398,7 @@ InitResult WriteCapture(const InitOptions& options) {
   InitResult result;
   result.file = options.folder / "capture.toml";
   if (fs::exists(fs::symlink_status(result.file))) {
-    throw UserError(result.file, "", "a capture.toml that is there already",
-                    "edit it, or move it away first");
+    throw UserError(result.file, "", "an existing capture.toml", "edit it, or move it away first");
   }
   std::error_code error;
   if (!options.create && !fs::is_directory(options.folder, error)) {

@@ -128,7 +128,8 @@ std::string OverviewPage(const std::vector<DescribedCommand>& commands,
         std::string(pages.empty() ? "" : " ,\n") + ".BR glint\\-" + Roff(command.words[0]) + " (1)";
   }
   return Head("glint", version) +
-         NameSection("glint", "flash photographs of a flat material sample to relightable maps") +
+         NameSection("glint",
+                     "turn flash photographs of a flat material sample into relightable maps") +
          Section("SYNOPSIS", "\\fBglint\\fR \\fIVERB\\fR [\\fIARGUMENTS\\fR]") +
          Section("VERBS", verbs) +
          Section("EXAMPLES",

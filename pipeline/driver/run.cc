@@ -243,13 +243,14 @@ ChildProcess NinjaProcess(const fs::path& ninja, const Capture& capture, const R
     if (signal == SIGKILL) {
       throw EnvironmentError(killed +
                              "perhaps memory ran out: lower sample.resolution_px; earlier results "
-                             "are kept, and glint run goes on from there");
+                             "are kept, and the next glint run continues from there");
     }
-    throw ComputationError(killed + "earlier results are kept, and glint run goes on from there");
+    throw ComputationError(killed +
+                           "earlier results are kept, and the next glint run continues from there");
   }
   if (ninja_code == kNinjaInterrupted || ninja_code == kSignalBase + SIGINT) {
     throw EnvironmentError(
-        "interrupted; earlier results are kept, and glint run goes on from there");
+        "interrupted; earlier results are kept, and the next glint run continues from there");
   }
   throw EnvironmentError("Ninja failed (exit code " + std::to_string(ninja_code) +
                          ") before a stage did; is the disk full, or " +

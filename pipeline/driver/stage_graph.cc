@@ -109,7 +109,7 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
     if (method == "start") steps.back().cost = "start";
     // Nothing comes after it that finds what is finer.
     if (method == "latent")
-      steps.back().arguments.insert(steps.back().arguments.end(), {"--finest-size", "0"});
+      steps.back().arguments.insert(steps.back().arguments.end(), {"--finest-size", "1048576"});
   }
   AddSelection(choices, &steps.back());
   if (choices.refines()) {

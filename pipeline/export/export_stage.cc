@@ -52,7 +52,7 @@ std::vector<float> TrustOf(const std::filesystem::path& maps_manifest, const Mat
   if (!std::filesystem::exists(file)) return {};
   const ImageHeader header = ReadImageHeader(file);
   if (header.width != source.width() || header.height != source.height()) {
-    throw UserError(file, "normal.X, normal.Y", "not the deviations of these maps",
+    throw UserError(file, "normal.X, normal.Y", "deviations that do not belong to these maps",
                     "run glint-refine again");
   }
   const Image confidence = ReadExrAveraged(file, {"normal.X", "normal.Y"}, maps.width, maps.height);

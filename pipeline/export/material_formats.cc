@@ -105,7 +105,7 @@ std::vector<MaterialFormat> ChosenFormats(const std::vector<std::string>& names)
     const auto found = std::find_if(all.begin(), all.end(),
                                     [&](const MaterialFormat& f) { return f.name == name; });
     if (found == all.end()) {
-      throw UserError("--formats: '" + name + "' is no material file: give some of " +
+      throw UserError("--formats: '" + name + "' is not a material format: give one or more of " +
                       MaterialFormatNames());
     }
     chosen.push_back(*found);

@@ -193,7 +193,8 @@ std::shared_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
   RequireLengthsWithinFile(file);
   const std::string formats = OIIO::get_string_attribute("input_format_list");
   const std::string reader = ReaderOf(file);
-  if (reader.empty()) RejectUnreadable(file, "it begins as no such file does", formats);
+  if (reader.empty())
+    RejectUnreadable(file, "its first bytes are not those of such a file", formats);
   const auto opened = std::make_shared<OpenedImage>();
   std::unique_ptr<OIIO::ImageInput>& input = opened->input;
   input = OIIO::ImageInput::create(reader);

@@ -49,7 +49,7 @@ void RequireFinite(const std::filesystem::path& file, const Image& image) {
     throw UserError(file,
                     "pixel (" + std::to_string(at % image.width) + ", " +
                         std::to_string(at / image.width) + ")",
-                    "a value that is not a number", "write the photograph again, or take it out");
+                    "a value that is not a number", "export the photograph again, or take it out");
   }
 }
 
@@ -113,7 +113,7 @@ std::shared_ptr<OIIO::ImageInput> OpenPhoto(const std::filesystem::path& file) {
     throw UserError(file, "",
                     "no RAW picture that LibRaw can read, but a " + std::string(format) +
                         " file or the preview of an unknown camera",
-                    "convert it to DNG or to 16-bit TIFF, or rename it if it is no RAW file");
+                    "convert it to DNG or to 16-bit TIFF, or rename it if it is not a RAW file");
   }
   return input;
 }

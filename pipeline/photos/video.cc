@@ -152,10 +152,11 @@ std::vector<std::int64_t> FrameTimes(const Video& video, size_t* packets = nullp
 std::unique_ptr<AVCodecContext, FreeCodec> OpenDecoder(const Video& video) {
   const AVCodec* decoder = avcodec_find_decoder(video.codec().codec_id);
   if (decoder == nullptr) {
-    throw EnvironmentError(video.file().string() + ": found a video of the codec '" +
-                           avcodec_get_name(video.codec().codec_id) +
-                           "', for which no decoder is installed; install libavcodec59 with it, or "
-                           "convert the video to H.264");
+    throw EnvironmentError(
+        video.file().string() + ": found a video of the codec '" +
+        avcodec_get_name(video.codec().codec_id) +
+        "', for which no decoder is installed; install a libavcodec59 that includes it, or "
+        "convert the video to H.264");
   }
   std::unique_ptr<AVCodecContext, FreeCodec> context(avcodec_alloc_context3(decoder));
   avcodec_parameters_to_context(context.get(), &video.codec());
@@ -229,7 +230,7 @@ std::vector<std::uint8_t> RgbOf(const Video& video, const AVFrame& frame) {
       frame.height, AV_PIX_FMT_RGB24, SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT, nullptr,
       nullptr, nullptr));
   if (!scaler) {
-    throw UserError(video.file(), "", "a video of pixels that cannot be converted",
+    throw UserError(video.file(), "", "a video whose pixel format cannot be converted",
                     "convert it to H.264");
   }
   sws_setColorspaceDetails(scaler.get(), sws_getCoefficients(MatrixOf(frame)), IsFullRange(frame),

@@ -205,7 +205,7 @@ std::string TileSection(const ReportInput& input, const ReportOptions& options) 
                  "<p>A piece of " +
                      FigureHtml(manifest.data["size_mm"][0], data.Field("size_mm[0]")) + " × " +
                      FigureHtml(manifest.data["size_mm"][1], data.Field("size_mm[1]")) +
-                     " mm repeats without visible borders; across its seams maps change " +
+                     " mm repeats without visible borders; across its seams the maps change " +
                      FigureHtml(manifest.metrics["seam"]["worst"], metrics.Field("seam.worst")) +
                      " times as much as elsewhere. The material files hold this piece.</p>\n" +
                      Figure(JpegUri(Shrunk(preview, options.picture_px), 90),

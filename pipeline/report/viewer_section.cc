@@ -114,7 +114,7 @@ constexpr char kElements[] = R"(<div id="viewer" class="viewer">
 std::string ViewerSection(const ReportInput& input, const ReportOptions& options) {
   if (ViewerBundle().empty()) {
     return "<p>This build of Glint has no viewer (npm could not be reached when it was built): the "
-           "pictures below are what it shows.</p>\n";
+           "pictures below show what it would show.</p>\n";
   }
   const SvbrdfMaps maps = ShownMaps(input.fit.maps, options.viewer_px);
   const Json material = {

@@ -58,8 +58,9 @@ void SetExposures(const Calibration& calibration, const std::vector<double>& by_
 
 void Warn(const fs::path& file, const ViewCounts& counts) {
   if (counts.outside > kWorthAWarning) {
-    spdlog::warn("{}: {:.0f} % of the sample lies outside of the photograph; show it whole",
-                 file.string(), 100 * counts.outside);
+    spdlog::warn(
+        "{}: {:.0f} % of the sample lies outside of the photograph; get all of it into the picture",
+        file.string(), 100 * counts.outside);
   }
   if (counts.saturated > 0.5) {
     spdlog::warn("{}: {:.0f} % of the sample is saturated; expose less", file.string(),
@@ -86,7 +87,7 @@ void CheckPhotos(const Capture& capture, const Calibration& calibration,
       if (fs::path(input.path).lexically_normal() != relative || input.hash == HashFile(file)) {
         continue;
       }
-      throw UserError(file, "", "another content than calib saw", "run calib again");
+      throw UserError(file, "", "contents other than those calib read", "run calib again");
     }
   }
 }

@@ -66,7 +66,8 @@ void RequireUsable(const ViewCounts& counts, const std::filesystem::path& file) 
   }
   if (counts.outside > 0) {
     throw UserError(file, "sample", "a sample that lies outside of the photograph",
-                    "show the sample whole, check [sample] size_mm and centre_mm, or leave this "
+                    "get the whole sample into the picture, check [sample] size_mm and centre_mm, "
+                    "or leave this "
                     "photograph out");
   }
   throw UserError(file, "sample", "a sample that lies under the board's frame",

@@ -4,7 +4,9 @@
 
 #include "fitting/estimator/estimator.h"
 #include "fitting/weights/find_model.h"
+#include "pipeline/contract/rectified_set.h"
 #include "tests/fitting/bootstrap/synthetic_set.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -52,6 +54,63 @@ TEST(RareMetals, TakesABlackMirrorForGlass) {
   const double rare = EstimatedSpecular(kRareMetalsEstimatorModel, glass);
   EXPECT_LT(rare, 0.12);
   EXPECT_LT(rare, EstimatedSpecular(kEstimatorModel, glass));
+}
+
+// A rectified set of three views, and the manifest's path.
+fs::path WriteRectifiedViews(const fs::path& folder) {
+  RectifiedSet set;
+  set.plane = {8, 8, 2.0, 2.0, TexelSampling::kPixelCentres};
+  CommonOptions common;
+  common.threads = 1;
+  Stage stage(folder, {"rectify", 1}, OptionSet(), common, {});
+  for (const std::string name : {"view_000", "view_001", "view_002"}) {
+    RectifiedView view;
+    view.name = name;
+    view.file = name + ".exr";
+    view.photo = name + ".png";
+    view.view.camera_in_sample_mm = view.view.light_in_sample_mm = {0, 0, 5};
+    view.view.light_rgb = {1, 1, 1};
+    set.views.push_back(view);
+    RectifiedImage image;
+    image.width = image.height = 8;
+    image.rgb.assign(3 * 64, 0.5f);
+    image.mask.assign(64, 1.0f);
+    WriteRectifiedImage(stage.Output(view.file), image, set);
+  }
+  stage.Commit(ToJson(set), Json::object());
+  return folder / "manifest.json";
+}
+
+TEST(ResolveFitOptions, PutsTheMethodsOwnNumbersWhereNoneAreGiven) {
+  const test::TemporaryFolder folder;
+  const fs::path manifest = WriteRectifiedViews(folder / "rectify");
+  const auto resolved = [&](FitStageOptions options) {
+    ResolveFitOptions(manifest, &options);
+    return std::pair(options.iterations, options.fine_iterations);
+  };
+  FitStageOptions latent, classic, single, given;
+  classic.method = "classic";
+  single.exclude = {"view_001", "view_002"};
+  given.iterations = 17;
+  EXPECT_EQ(resolved(latent), std::pair(300, 80));
+  EXPECT_EQ(resolved(classic), std::pair(3000, 200));
+  EXPECT_EQ(resolved(single), std::pair(8, 8));
+  EXPECT_EQ(resolved(given), std::pair(17, 80));
+}
+
+// So that whoever reads a manifest knows what was done.
+TEST(ResolveFitOptions, TheManifestHasNoNumberThatStandsForAnother) {
+  const test::TemporaryFolder folder;
+  FitStageOptions options;
+  OptionSet set;
+  AddFitOptions(&set, &options);
+  ResolveFitOptions(WriteRectifiedViews(folder / "rectify"), &options);
+  const Json echo = set.ManifestEcho();
+  for (const char* name : {"iterations", "fine-iterations", "finest-size", "learning-rate"}) {
+    EXPECT_GT(echo.at(name).get<double>(), 0) << name;
+  }
+  EXPECT_EQ(echo.at("tune-iterations"), 0);  // none are done
+  EXPECT_EQ(echo.at("code-prior"), 0);
 }
 
 }  // namespace
