@@ -105,8 +105,8 @@ int main(int argc, char** argv) {
   glint::AddCalibOptions(&set, &options);
   bool check = false;
   set.Add("check", &check,
-          "quickly check, before you put the sample away, what the capture still lacks; writes "
-          "nothing",
+          "quick check of what the capture still lacks, for use before you put the sample away; "
+          "writes nothing",
           glint::Invalidates::kNo);
   const glint::ProgramInfo info{
       "glint-calib",

@@ -52,7 +52,7 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   // which is in the task; the place of the folder tells nothing.
   set->Add("poses", &options->poses,
            "where poses and intrinsics come from: board; colmap (runs the program); colmap:DIR (a "
-           "COLMAP model); above (one photograph, straight from above, no board)",
+           "COLMAP model); above (one photograph, taken from directly above, no board)",
            Invalidates::kNo);
   set->AddChoice("export", &options->write, {"none", "colmap"},
                  "also write the calibration for another program: colmap, to glint/colmap",
