@@ -45,7 +45,7 @@ std::vector<double> NumbersIn(const std::vector<std::string>& words) {
       double number = 0;
       const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
       if (error != std::errc() || end != part.data() + part.size()) {
-        throw CLI::ConversionError("'" + word + "' is no number");
+        throw CLI::ConversionError("'" + word + "' is not a number");
       }
       numbers.push_back(number);
     }

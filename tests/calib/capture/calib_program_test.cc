@@ -149,7 +149,7 @@ TEST_F(CalibProgram, SaysHowFarTheResultCanBeTrusted) {
       Calibrate(capture, "--model auto --board-shape bent --library " + library.string());
   ASSERT_EQ(result.code, 0) << result.output;
   for (const char* words :
-       {"does not know the camera", "model: ", "at the sample: places are known",
+       {"does not know the camera", "model: ", "at the sample: positions are known",
         "odd/even photographs, camera 0", "board: rises by"}) {
     EXPECT_THAT(result.output, HasSubstr(words));
   }

@@ -111,7 +111,7 @@ TEST(BoardProgram, SaysWhatIsWrong) {
   ASSERT_EQ(RunGlint("board", where).code, 0);
   const Result again = RunGlint("board", where + " --paper A3");
   EXPECT_EQ(again.code, 2);
-  EXPECT_THAT(again.output, AllOf(HasSubstr("there already"), HasSubstr("--force")));
+  EXPECT_THAT(again.output, AllOf(HasSubstr("an existing board.json"), HasSubstr("--force")));
   EXPECT_EQ(RunGlint("board", where + " --paper A3 --force").code, 0);
   EXPECT_EQ(ReadBoardFile(folder / "board.json").sheet->width_mm, 297);
 }

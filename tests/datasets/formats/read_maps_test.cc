@@ -154,7 +154,7 @@ TEST(ReadMaps, WhatIsNoMaterialIsRejected) {
     return test::MessageOf<UserError>([&] { ReadMaps(path); });
   };
   EXPECT_THAT(message(folder.path() / "absent"), HasSubstr("no such file"));
-  EXPECT_THAT(message(folder.path()), HasSubstr("no maps that are known"));
+  EXPECT_THAT(message(folder.path()), HasSubstr("without any known maps"));
   WritePng(folder.path() / "square.png", Image(64, 64, {"R", "G", "B"}), 8);
   EXPECT_THAT(message(folder.path() / "square.png"), AllOf(HasSubstr("64x64"), HasSubstr("strip")));
   test::WriteAll(folder.path() / "text.png", "hello");

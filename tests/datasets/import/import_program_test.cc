@@ -326,7 +326,7 @@ TEST_F(ImportProgram, ASecondImportDoesNothing) {
 }
 
 TEST_F(ImportProgram, AFolderInNoKnownLayoutIsRejected) {
-  ExpectRejected(AllOf(HasSubstr("no layout that is known"), HasSubstr("views.json")));
+  ExpectRejected(AllOf(HasSubstr("of unknown layout"), HasSubstr("views.json")));
   fs::remove_all(source());
   ExpectRejected(HasSubstr("no such file or folder"));
 }

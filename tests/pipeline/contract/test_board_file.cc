@@ -81,10 +81,10 @@ TEST_F(BoardFileTest, SaysWhatIsWrong) {
   EXPECT_THAT(Complaint(kMarkerFrame, "tag36h11", "tag37h11"), HasSubstr("\"tag37h11\""));
   EXPECT_THAT(Complaint(kMarkerFrame, "[[-10, -50], [10, -50], [10, -70], [-10, -70]]",
                         "[[-10, -70], [10, -70], [10, -50], [-10, -50]]"),
-              AllOf(HasSubstr("markers[2]"), HasSubstr("counterclockwise")));
+              AllOf(HasSubstr("markers[2]"), HasSubstr("anticlockwise")));
   EXPECT_THAT(Complaint(kMarkerFrame, "[[-10, -50], [10, -50], [10, -70]",
                         "[[-10, -50], [10, -70], [10, -50]"),
-              HasSubstr("no square's"));
+              HasSubstr("do not form a square"));
   EXPECT_THAT(Complaint(kMarkerFrame, "[-25, -25, 25, 25]", "[-25, -25, 45, 25]"),
               AllOf(HasSubstr("opening_mm"), HasSubstr("marker 7")));
   EXPECT_THAT(test::MessageOf<UserError>([&] { ReadBoardFile(folder_ / "none.json"); }),

@@ -104,8 +104,8 @@ TEST_F(CaptureTest, WhatMatchesAndIsNoFileIsLeftOutWithAWarning) {
   const Capture capture = Read(kGood);
   const std::string log = testing::internal::GetCapturedStdout();
   EXPECT_THAT(capture.photos, ElementsAre("photos/a.jpg", "photos/b.JPG"));
-  EXPECT_THAT(log, HasSubstr("c.jpg: left out: it matches 'photos/*.jpg', but is a link to "
-                             "nothing"));
+  EXPECT_THAT(log, HasSubstr("c.jpg: left out: it matches 'photos/*.jpg', but is a "
+                             "broken link"));
   EXPECT_THAT(log, HasSubstr("d.jpg: left out: it matches 'photos/*.jpg', but is a folder"));
   EXPECT_THAT(log, HasSubstr("e.jpg: left out"));
 }

@@ -106,11 +106,11 @@ TEST_F(RunTest, InitRefusesASampleLargerThanTheWindow) {
   const Outcome outcome = Glint({"init", folder.string(), "--sample-mm", "100x140"});
   EXPECT_EQ(outcome.code, 2);  // seven squares of 15 mm are left out
   EXPECT_THAT(outcome.err, HasSubstr("--sample-mm: found [100, 140], which the board's window of "
-                                     "[105, 105] does not show whole"));
+                                     "[105, 105] is too small to show whole"));
   EXPECT_FALSE(fs::exists(folder / "capture.toml"));
   const Outcome wrong = Glint({"init", folder.string(), "--sample-mm", "100xabc"});
   EXPECT_EQ(wrong.code, 2);
-  EXPECT_THAT(wrong.err, HasSubstr("'100xabc' is no number"));
+  EXPECT_THAT(wrong.err, HasSubstr("'100xabc' is not a number"));
 }
 
 TEST_F(RunTest, InitRefusesABoardThatCannotBe) {

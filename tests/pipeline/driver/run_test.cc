@@ -52,7 +52,7 @@ TEST_F(RunTest, ANameThatIsNoUtf8IsRefusedAtOnce) {
   const Outcome outcome = Glint({"run", capture().string()});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, testing::HasSubstr("photos.files"));
-  EXPECT_THAT(outcome.err, testing::HasSubstr("no UTF-8"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("not UTF-8"));
   EXPECT_FALSE(fs::exists(manifest("calib")));
 }
 
