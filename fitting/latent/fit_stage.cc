@@ -205,6 +205,7 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
 }
 
 void ResolveFitOptions(const fs::path& rectify_manifest, FitStageOptions* options) {
+  if (options->method == "start") return;  // none are done
   const RectifiedSet set = ReadRectifiedSet(rectify_manifest);
   const size_t photographs = SelectViews(set, options->views, options->exclude).size();
   const FitOptions own = IsLatent(*options) ? FitOptions::Latent() : FitOptions::Classic();

@@ -40,7 +40,8 @@ const std::vector<ImageFormat>& ImageFormats() {
       {"heif",
        {".heic", ".heif"},
        [](Head head) {
-         return BeginsIsoMedia(head, {"heic", "heix", "heim", "heis", "hevc", "mif1", "msf1"});
+         return BeginsIsoMedia(head, {"heic", "heix", "heim", "heis", "hevc", "hevx", "hevm",
+                                      "hevs", "mif1", "msf1", "avif", "avis"});
        }},
       {"hdr",
        {},
