@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // From one photograph roughness and specular drift along ambiguities while the loss falls: stopping
-// early halves the damage (docs/experiments, "How long to fit one photograph").
+// early halves the damage (docs/experiments/pictures.md, "How long to fit one photograph").
 constexpr int kSinglePhotoIterations = 8;
 
 constexpr int kFullSize = 1 << 20;  // more than any maps have along a side
@@ -186,12 +186,12 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
       "finest-size", &options->finest_size, 1, kFullSize,
       "latent: maximum number of texels along the longer side of the finest level; finer detail is "
       "left to refinement, which recovers it equally well from any initial maps");
-  set->AddRange("learning-rate", &options->learning_rate, 0, 1,
+  set->AddRange("learning-rate", &options->learning_rate, 1e-6, 1,
                 "Adam's rate at the start of a level");
   set->AddRange("tune-iterations", &options->tune_iterations, 0, 1e6,
                 "latent: fine-tuning steps for the decoder on this sample, once the latent code "
                 "has been fitted");
-  set->AddRange("tune-rate", &options->tune_rate, 0, 1,
+  set->AddRange("tune-rate", &options->tune_rate, 1e-6, 1,
                 "latent: learning rate of the decoder's weights, relative to the latent code's");
   set->AddRange("code-prior", &options->code_prior, 0, 1e6,
                 "latent: weight of the penalty on the latent code's magnitude");

@@ -53,7 +53,8 @@ struct FitStageResult {
   double seconds = 0;  // for a person only
 };
 
-// Reads, fits, writes the stage's outputs and commits them. Throws UserError, ComputationError.
+// `options` as ResolveFitOptions leaves them. Reads, fits, writes the stage's outputs and commits
+// them. Throws UserError, ComputationError.
 FitStageResult RunFitStage(const std::filesystem::path& rectify_manifest,
                            const FitStageOptions& options, int threads, Stage* stage);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -10,7 +9,6 @@
 #include "base/resampling/resampling.h"
 #include "fitting/encoding/encoding.h"
 #include "fitting/relief/torus_poisson.h"
-#include "fitting/tiling/match_distribution.h"
 #include "fitting/tiling/seam.h"
 
 namespace glint {
@@ -157,37 +155,28 @@ std::vector<double> BlendPlane(const Sample& sample, const Layout& layout, int p
   return SolveTorusPoisson(layout.width, layout.height, across, down, data, screening);
 }
 
-void WriteWithinRange(const std::vector<double>& values, float* out) {
-  for (size_t i = 0; i < values.size(); ++i) {
-    out[i] = static_cast<float>(std::clamp(values[i], -1.0, 1.0));
-  }
+struct Moments {
+  double mean = 0, spread = 0;
+};
+
+Moments MomentsOf(const float* values, size_t count) {
+  Moments moments;
+  for (size_t i = 0; i < count; ++i) moments.mean += values[i];
+  moments.mean /= static_cast<double>(count);
+  for (size_t i = 0; i < count; ++i) moments.spread += std::pow(values[i] - moments.mean, 2);
+  moments.spread = std::sqrt(moments.spread / static_cast<double>(count));
+  return moments;
 }
 
-// The tile's maps with the distributions that they have in the whole sample.
-EncodedMaps BlendedTile(const EncodedMaps& whole, const Layout& layout, double screening,
-                        int threads) {
-  const Sample sample(whole);
-  EncodedMaps tile(layout.width, layout.height);
-  const size_t texels = layout.rows.size(),
-               whole_texels = static_cast<size_t>(whole.width) * whole.height;
-  const auto wanted = [&](int p) {
-    return std::span<const float>(whole.planes.data() + p * whole_texels, whole_texels);
-  };
-  const auto out = [&](int p) { return tile.planes.data() + p * texels; };
-  // One piece of work for each plane, but both of normals together.
-  ForEachPiece(kEncodedNormal + 1, threads, [&](int p) {
-    std::vector<double> blended = BlendPlane(sample, layout, p, screening);
-    if (p < kEncodedNormal) {
-      MatchDistribution(wanted(p), &blended);
-      WriteWithinRange(blended, out(p));
-      return;
-    }
-    PlaneValues slopes{std::move(blended), BlendPlane(sample, layout, p + 1, screening)};
-    MatchDistribution(wanted(p), wanted(p + 1), &slopes);
-    WriteWithinRange(slopes.x, out(p));
-    WriteWithinRange(slopes.y, out(p + 1));
-  });
-  return tile;
+// Writes `blended` with the moments of `wanted`, within the encoding's range.
+void MatchMoments(const std::vector<double>& blended, const Moments& wanted, float* out) {
+  const std::vector<float> values(blended.begin(), blended.end());
+  const Moments found = MomentsOf(values.data(), values.size());
+  const double scale = found.spread > 0 ? wanted.spread / found.spread : 1;
+  for (size_t i = 0; i < values.size(); ++i) {
+    const double value = wanted.mean + scale * (values[i] - found.mean);
+    out[i] = static_cast<float>(std::clamp(value, -1.0, 1.0));
+  }
 }
 
 // Over the planes [first, last): differences across seams over the others.
@@ -244,7 +233,12 @@ TileResult TileMaps(const SvbrdfMaps& maps, const TileOptions& options, int thre
                                  result.across, result.down, overlap_y);
   // What is left of a jump fades over half the overlap.
   const double screening = std::pow(2.0 / std::min(overlap_x, overlap_y), 2);
-  const EncodedMaps tile = BlendedTile(flat, layout, screening, threads);
+  EncodedMaps tile(layout.width, layout.height);
+  const size_t texels = layout.rows.size(), sample_texels = maps.texels();
+  ForEachPiece(kEncodedChannels, threads, [&](int p) {
+    const Moments wanted = MomentsOf(flat.planes.data() + p * sample_texels, sample_texels);
+    MatchMoments(BlendPlane(sample, layout, p, screening), wanted, tile.planes.data() + p * texels);
+  });
   result.maps = DecodeMaps(tile);
   result.seam = {ScoreOf(tile, layout, kEncodedDiffuse, kEncodedSpecular),
                  ScoreOf(tile, layout, kEncodedSpecular, kEncodedRoughness),

@@ -7,7 +7,7 @@
 //   4. Differences that are left along the paths are spread over their surroundings: the maps whose
 //      gradients are nearest to those of the copies (gradient-domain blending, Perez et al. 2003),
 //      on a torus, so that the repetition is exact.
-//   5. Every map gets the distribution back that it has in the whole sample (match_distribution.h).
+//   5. Every map gets the mean and the spread back that it has in the whole sample.
 //
 // All in the encoding of the learned space (encoding.h): albedos by their roots, normals as slopes.
 // The same bits for any number of threads.

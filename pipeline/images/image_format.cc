@@ -43,17 +43,19 @@ const std::vector<ImageFormat>& ImageFormats() {
          return BeginsIsoMedia(head, {"heic", "heix", "heim", "heis", "hevc", "hevx", "hevm",
                                       "hevs", "mif1", "msf1", "avif", "avis"});
        }},
-      {"hdr",
-       {},
-       [](Head head) { return head.starts_with("#?RADIANCE"sv) || head.starts_with("#?RGBE"sv); }},
+      {"hdr", {}, [](Head head) { return head.starts_with("#?"sv); }},
       {"pnm", {}, [](Head head) { return head.starts_with("P5"sv) || head.starts_with("P6"sv); }},
   };
   return formats;
 }
 
-constexpr std::array kRawEndings = {".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dng",
-                                    ".erf", ".iiq", ".kdc", ".mrw", ".nef", ".nrw",
-                                    ".orf", ".pef", ".raf", ".raw", ".rw2", ".srw"};
+// All that LibRaw may read: a RAW file that is taken for the TIFF file it begins as would give its
+// preview.
+constexpr std::array kRawEndings = {
+    ".3fr", ".ari", ".arw", ".bay", ".cap", ".cine", ".cr2", ".cr3", ".crw", ".cs1", ".dc2",
+    ".dcr", ".dng", ".drf", ".dsc", ".erf", ".fff",  ".ia",  ".iiq", ".k25", ".kc2", ".kdc",
+    ".mdc", ".mef", ".mos", ".mrw", ".nef", ".nrw",  ".orf", ".pef", ".ptx", ".pxn", ".qtk",
+    ".raf", ".raw", ".rdc", ".rw2", ".rwl", ".rwz",  ".sr2", ".srf", ".srw", ".sti", ".x3f"};
 
 }  // namespace
 

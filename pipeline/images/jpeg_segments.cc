@@ -6,7 +6,12 @@ namespace glint {
 namespace {
 
 constexpr unsigned kJfif = 0xE0, kExif = 0xE1, kAdobe = 0xEE, kLastApp = 0xEF, kComment = 0xFE;
-constexpr unsigned kStartOfScan = 0xDA;
+constexpr unsigned kStartOfScan = 0xDA, kEndOfImage = 0xD9;
+
+// Markers that nothing follows: TEM, and RST0 … SOI.
+bool StandsAlone(unsigned marker) {
+  return marker == 0x01 || (marker >= 0xD0 && marker < kEndOfImage);
+}
 
 unsigned Byte(std::string_view bytes, std::size_t i) {
   return static_cast<unsigned char>(bytes[i]);
@@ -33,6 +38,11 @@ std::string WithPictureSegmentsAlone(std::string_view jpeg) {
       ++at;  // decoders skip what stands between segments
       continue;
     }
+    if (StandsAlone(marker)) {
+      at += 2;
+      continue;
+    }
+    if (marker == kEndOfImage) return kept;
     if (marker == kStartOfScan) return kept.append(jpeg.substr(at));
     const std::size_t length = Byte(jpeg, at + 2) << 8 | Byte(jpeg, at + 3);
     if (length < 2 || at + 2 + length > jpeg.size()) return kept;

@@ -15,28 +15,12 @@
 #include "pipeline/images/image.h"
 #include "pipeline/images/image_format.h"
 #include "pipeline/images/jpeg_segments.h"
-#include "pipeline/photos/photo_name.h"
 
 namespace glint {
 namespace {
 
 constexpr int kMostExrSide = 1 << 17;
 constexpr std::size_t kMaxJpegBytes = 512u << 20;
-
-// The brand of an ISO media file: "heic", "mif1"…; "" for other files.
-std::string MediaBrand(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string head(12, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  if (stream.gcount() < 12 || head.substr(4, 4) != "ftyp") return "";
-  return head.substr(8, 4);
-}
-
-bool IsHeic(const std::filesystem::path& file) {
-  static const std::set<std::string> brands = {"heic", "heix", "heim", "heis",
-                                               "hevc", "mif1", "msf1"};
-  return brands.count(MediaBrand(file)) > 0;
-}
 
 // libheif's words where the file is whole and a plug-in is missing.
 bool LacksDecoder(const std::string& reason) {
@@ -64,9 +48,10 @@ void RejectUnreadable(const std::filesystem::path& file, std::string reason,
                       const std::string& formats) {
   if (reason.size() > 200) reason.resize(200);
   while (!reason.empty() && reason.back() == '\n') reason.pop_back();
-  if (IsHeic(file) &&
+  if (ReaderOf(file) == "heif" &&
       (LacksDecoder(reason) || ("," + formats + ",").find(",heif,") == std::string::npos)) {
-    throw EnvironmentError(file.string() + ": found a HEIC photograph, for which no decoder is " +
+    throw EnvironmentError(file.string() +
+                           ": found a HEIC or AVIF photograph, for which no decoder is " +
                            "installed (" + reason + "); install libheif1 with libde265-0 and an " +
                            "OpenImageIO built with it, or convert the photographs to JPEG");
   }
@@ -194,7 +179,7 @@ std::shared_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
   const std::string formats = OIIO::get_string_attribute("input_format_list");
   const std::string reader = ReaderOf(file);
   if (reader.empty())
-    RejectUnreadable(file, "its first bytes are not those of such a file", formats);
+    RejectUnreadable(file, "its first bytes are those of no such format", formats);
   const auto opened = std::make_shared<OpenedImage>();
   std::unique_ptr<OIIO::ImageInput>& input = opened->input;
   input = OIIO::ImageInput::create(reader);

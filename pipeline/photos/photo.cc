@@ -1,4 +1,4 @@
-// Photographs as cameras write them: see ReadPhoto in image.h.
+// Photographs as cameras write them: see ReadPhoto in photo.h.
 #include <OpenImageIO/imageio.h>
 
 #include <cmath>

@@ -11,7 +11,6 @@
 #include "datasets/procedural/material.h"
 #include "fitting/relief/height_field.h"
 #include "fitting/relief/torus_poisson.h"
-#include "fitting/tiling/match_distribution.h"
 #include "fitting/tiling/seam.h"
 
 namespace glint {
@@ -106,60 +105,6 @@ TEST(TileMaps, SeamsCannotBeToldFromTheTexture) {
     const TileResult result = TileMaps(Material(family, 160), {}, 2);
     EXPECT_LT(result.seam.worst(), 1.1) << family;
     EXPECT_GE(result.maps.width, 64) << family;
-  }
-}
-
-TEST(MatchDistribution, GivesThatOfOthersAndKeepsTheOrder) {
-  std::mt19937 random(4);
-  std::normal_distribution<float> normal;
-  std::vector<float> wanted(5000);
-  for (float& value : wanted) value = std::exp(normal(random));
-  std::vector<double> values(3000), before;
-  for (double& value : values) value = 2 + 0.1 * normal(random);
-  before = values;
-  MatchDistribution(wanted, &values);
-  std::vector<float> sorted(wanted);
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<double> result(values);
-  std::sort(result.begin(), result.end());
-  for (const double share : {0.02, 0.25, 0.5, 0.75, 0.98}) {
-    const double expected = sorted[static_cast<size_t>(share * 5000)];
-    EXPECT_NEAR(result[static_cast<size_t>(share * 3000)], expected, 0.02 * expected) << share;
-  }
-  for (size_t i = 1; i < values.size(); ++i) {
-    EXPECT_EQ(before[i] < before[i - 1], values[i] < values[i - 1]) << i;
-  }
-}
-
-TEST(MatchDistribution, EqualValuesStayEqual) {
-  std::vector<double> values = {0, 0, 0, 0, 0, 0, 1, 1};
-  MatchDistribution(std::vector<float>{0, 0, 0, 0, 1, 1, 1, 1}, &values);
-  for (size_t i = 1; i < 6; ++i) EXPECT_EQ(values[i], values[0]);
-  EXPECT_EQ(values[6], values[7]);
-  EXPECT_GT(values[6], values[0]);
-}
-
-// Slopes along a diagonal, which axes alone cannot tell from those along the other one.
-TEST(MatchDistribution, OfThePlaneHoldsAlongDiagonalsToo) {
-  std::mt19937 random(5);
-  std::normal_distribution<float> normal;
-  std::vector<float> x(4000), y(4000);
-  PlaneValues values;
-  for (size_t i = 0; i < x.size(); ++i) {
-    x[i] = normal(random);
-    y[i] = 0.8f * x[i] + 0.6f * normal(random);
-    values.x.push_back(normal(random));
-    values.y.push_back(normal(random));
-  }
-  MatchDistribution(x, y, &values);
-  const auto variance_along = [](const auto& a, const auto& b, double sign) {
-    double sum = 0;
-    for (size_t i = 0; i < a.size(); ++i) sum += 0.5 * std::pow(a[i] + sign * b[i], 2);
-    return sum / static_cast<double>(a.size());
-  };
-  for (const double sign : {1.0, -1.0}) {
-    const double wanted = variance_along(x, y, sign);
-    EXPECT_NEAR(variance_along(values.x, values.y, sign), wanted, 0.1 * wanted) << sign;
   }
 }
 

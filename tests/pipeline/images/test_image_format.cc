@@ -32,7 +32,10 @@ TEST(ImageFormat, TheFirstBytesChooseTheReaderWhateverTheFileIsCalled) {
 }
 
 TEST(ImageFormat, RawFilesThatBeginAsTiffFilesDoAreToldByTheirNames) {
-  EXPECT_EQ(ReaderOfBytes("a.NEF", "MM\0*--------"s), "raw");
+  for (const char* name :
+       {"a.NEF", "a.sr2", "a.rwl", "a.mef", "a.fff", "a.dcr", "a.mos", "a.ptx"}) {
+    EXPECT_EQ(ReaderOfBytes(name, "MM\0*--------"s), "raw") << name;
+  }
   EXPECT_EQ(ReaderOfBytes("a.raf", "FUJIFILMCCD-RAW "), "raw");
   EXPECT_EQ(ReaderOfBytes("a.nef", "\xff\xd8\xff\xe0----------"), "jpeg");
 }

@@ -45,7 +45,8 @@ TEST(JpegSegments, NothingIsLeftOutOfThePicture) {
 
 TEST(JpegSegments, BytesBetweenThemHideNone) {
   const std::string iptc = Segment('\xed', "Photoshop 3.0\0"s);
-  for (const std::string& between : {"\xff"s, "\xff\xff\xff"s, "\0\0"s, "gap"s, "\xff\0"s}) {
+  for (const std::string& between : {"\xff"s, "\xff\xff\xff"s, "\0\0"s, "gap"s, "\xff\0"s,
+                                     "\xff\x01"s, "\xff\xd0"s, "\xff\xd7\xff\xd8"s}) {
     EXPECT_EQ(WithPictureSegmentsAlone(kStart + between + iptc + between + kTables + kScan),
               kStart + kTables + kScan);
   }

@@ -170,7 +170,8 @@ TEST_F(RectifyStage, BadInputIsNamedAndTheOldResultStays) {
   // Changed since calib.
   poses_[1] = LookAtSample(101, 0, 0);
   TakePhoto(1);
-  expect(AllOf(HasSubstr("photos/p1.png"), HasSubstr("contents other than those"), HasSubstr("calib")));
+  expect(AllOf(HasSubstr("photos/p1.png"), HasSubstr("contents other than those"),
+               HasSubstr("calib")));
   // Another size.
   WritePng(PhotoFile(1), Image(64, 48, {"R", "G", "B"}), 8);
   expect(AllOf(HasSubstr("photos/p1.png"), HasSubstr("64x48"), HasSubstr("200x200")));
