@@ -64,6 +64,7 @@ TEST(ResampleSvbrdf, KeepsALinearRampAndUnitNormalsBothWays) {
   }
 }
 
+// Every part of resampled maps is that part of the whole, larger or smaller.
 TEST(SvbrdfRows, AreThoseOfTheResampledMaps) {
   const test::TemporaryFolder folder;
   SvbrdfMaps maps(12, 700);

@@ -52,6 +52,7 @@ TEST(Exr, IdenticalImagesGiveIdenticalBytes) {
   EXPECT_EQ(ReadTextFile(folder / "a.exr"), ReadTextFile(folder / "b.exr"));
 }
 
+// A disk that fills up in the middle of a picture, as a limit on file sizes plays it.
 TEST(Image, APngThatDoesNotFitIsAnErrorAndNotAPartOfAFile) {
   const test::TemporaryFolder folder;
   Image image(256, 256, {"R", "G", "B"});

@@ -109,6 +109,5 @@ TEST(PngRows, HaveTheSameBytesHoweverTheyAreCut) {
   }
 }
 
-// Every part of resampled maps is that part of the whole, larger or smaller.
 }  // namespace
 }  // namespace glint

@@ -38,7 +38,6 @@ TEST(Photo, EightBitPngKeepsItsValues) {
   }
 }
 
-// A disk that fills up in the middle of a picture, as a limit on file sizes plays it.
 TEST(Photo, BadFilesAreNamed) {
   const test::TemporaryFolder folder;
   const auto complaint = [&](const std::string& name) {
@@ -57,8 +56,6 @@ TEST(Photo, BadFilesAreNamed) {
   EXPECT_THAT(complaint("nan.exr"), HasSubstr("(8, 1)"));
 }
 
-// Segments as in ITU-T T.81: a table that holds an end marker, a scan with a stuffed byte and a
-// restart marker, the end, and what a phone appends.
 // A small file may hold a large picture: it is refused by its header.
 TEST(Photo, APictureThatNeedsMoreMemoryThanAllowedIsRefusedBeforeItIsRead) {
   const test::TemporaryFolder folder;
@@ -73,6 +70,8 @@ TEST(Photo, APictureThatNeedsMoreMemoryThanAllowedIsRefusedBeforeItIsRead) {
   EXPECT_EQ(ReadPhoto(file).image.width, 3000);
 }
 
+// Segments as in ITU-T T.81: a table that holds an end marker, a scan with a stuffed byte and a
+// restart marker, the end, and what a phone appends.
 TEST(Photo, JpegIsCompleteUpToItsOwnEndMarker) {
   const std::string table("\xff\xdb\x00\x04\xff\xd9", 6), scan("\xff\xda\x00\x03\x01", 5);
   const std::string data("\x12\xff\x00\x34\xff\xd0\x56", 7), end = "\xff\xd9";
