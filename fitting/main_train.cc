@@ -124,7 +124,7 @@ void Report(const TrainProgress& p) {
 struct MaterialOptions {
   std::string pack;
   double pack_share = 0.5;
-  double glazed_share = 0;
+  double glossy_dielectric_share = 0;
   double one_substance_share = 0;
 
   void AddTo(CLI::App* app) {
@@ -132,10 +132,12 @@ struct MaterialOptions {
     app->add_option("--materials-share", pack_share, "fraction of materials drawn from the pack")
         ->capture_default_str();
     app->add_option(
-           "--glazed-share", glazed_share,
+           "--glossy-dielectric-share", glossy_dielectric_share,
            "fraction of materials turned, wholly or partly, into dark, mostly glossy dielectrics")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
+    CLI::deprecate_option(app->add_option("--glazed-share", glossy_dielectric_share),
+                          "--glossy-dielectric-share");
     app->add_option("--one-substance-share", one_substance_share,
                     "fraction of materials with nearly constant roughness and specular albedo")
         ->check(CLI::Range(0.0, 1.0))
@@ -155,12 +157,17 @@ struct Sources {
       name += ", " + std::to_string(pack.size()) + " packed materials in " +
               std::to_string(options.pack_share);
     }
-    if (options.glazed_share > 0) name += ", " + std::to_string(options.glazed_share) + " glazed";
+    if (options.glossy_dielectric_share > 0)
+      name += ", " + std::to_string(options.glossy_dielectric_share) + " glossy dielectrics";
     if (options.one_substance_share > 0) {
       name += ", " + std::to_string(options.one_substance_share) + " of one substance";
     }
-    const glint::TrainingMaterialOptions chosen{
-        seed, size, options.pack_share, 0.3, options.glazed_share, options.one_substance_share};
+    const glint::TrainingMaterialOptions chosen{seed,
+                                                size,
+                                                options.pack_share,
+                                                0.3,
+                                                options.glossy_dielectric_share,
+                                                options.one_substance_share};
     training = [this, chosen](std::uint64_t k) { return TrainingMaterial(chosen, &pack, k); };
     validation = [size](std::uint64_t k) {
       return glint::MakeMaterial(glint::kReservedSeedBase + kValidationOffset + k, size, size);

@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::uint64_t kChoiceStream = 0x5EED0003;
 constexpr float kDielectricF0 = 0.04f;
-constexpr double kMatteShare = 0.35;  // of glazed ones: felt, rubber, asphalt are dark and rough
-constexpr float kMetalF0 = 0.12f;     // above it, specular is a metal's colour and stays
+// Of dark dielectrics, that are rough: felt, rubber, asphalt.
+constexpr double kMatteShare = 0.35;
+constexpr float kMetalF0 = 0.12f;  // above it, specular is a metal's colour and stays
 
 // Each training draws its materials from a stretch of its own below the reserved seeds.
 std::uint64_t ProceduralSeed(std::uint64_t seed, std::uint64_t k) {
@@ -66,7 +67,7 @@ void FlattenNormal(float share_left, size_t texel, SvbrdfMaps* maps) {
 // A dark finish of the same pattern, mostly smooth and glossy: glass, lacquer, ink, polish. The
 // generator's dark and glossy texels are metals by 70 %, and a photograph does not tell a black
 // mirror of F0 = .04 from one of .8; things that people photograph are mostly not metal.
-SvbrdfMaps Glazed(SvbrdfMaps maps, Stream* random) {
+SvbrdfMaps GlossyDielectric(SvbrdfMaps maps, Stream* random) {
   const auto f0 = static_cast<float>(DrawF0(random));
   const auto dark = static_cast<float>(std::exp(random->Uniform(std::log(0.01), std::log(0.7))));
   const bool matte = random->Uniform() < kMatteShare;
@@ -85,13 +86,14 @@ SvbrdfMaps Glazed(SvbrdfMaps maps, Stream* random) {
   return maps;
 }
 
-// Now and then glazed, as a whole or in places.
-SvbrdfMaps GlazedAtTimes(SvbrdfMaps maps, double share, std::uint64_t seed, Stream* random) {
+// Now and then a glossy dielectric, as a whole or in places.
+SvbrdfMaps WithGlossyDielectrics(SvbrdfMaps maps, double share, std::uint64_t seed,
+                                 Stream* random) {
   if (random->Uniform() >= share) return maps;
-  SvbrdfMaps glazed = Glazed(maps, random);
-  if (random->Uniform() < 0.4) return glazed;
+  SvbrdfMaps glossy = GlossyDielectric(maps, random);
+  if (random->Uniform() < 0.4) return glossy;
   const procedural::Plane mask = procedural::DrawBlendMask(seed, maps);
-  return procedural::BlendMaterials(std::move(maps), glazed, mask);
+  return procedural::BlendMaterials(std::move(maps), glossy, mask);
 }
 
 // The plane's values drawn toward their mean.
@@ -143,7 +145,7 @@ SvbrdfMaps TrainingMaterial(const TrainingMaterialOptions& options, const Materi
   Stream random(StreamSeed(options.seed ^ kChoiceStream, k));
   const std::uint64_t seed = ProceduralSeed(options.seed, k);
   SvbrdfMaps maps = PlainMaterial(options, pack, seed, &random);
-  maps = GlazedAtTimes(std::move(maps), options.glazed_share, seed, &random);
+  maps = WithGlossyDielectrics(std::move(maps), options.glossy_dielectric_share, seed, &random);
   // Drawn only when asked for, so that trainings of before repeat.
   if (options.one_substance_share <= 0) return maps;
   return OneSubstanceAtTimes(std::move(maps), options.one_substance_share, &random);

@@ -14,7 +14,7 @@ struct TrainingMaterialOptions {
   int size = 256;              // texels along a material's side
   double pack_share = 0.5;     // of the materials that come from the pack, wholly or in part
   double mixture_share = 0.3;  // of those, that are mixed with a procedural material
-  double glazed_share = 0;     // of all, that are made dark dielectrics, wholly or in part
+  double glossy_dielectric_share = 0;  // of all, that are made dark dielectrics, wholly or in part
   // Of all, whose roughness and specular albedo hardly vary: most samples that people photograph
   // are one substance, printed or dyed.
   double one_substance_share = 0;

@@ -91,20 +91,20 @@ TEST(TrainingMaterials, GlazedOnesAreDarkDielectricsAndMostlyGlossy) {
   int changed = 0, smoother = 0;
   double brighter = 0;
   for (std::uint64_t k = 0; k < 30; ++k) {
-    options.glazed_share = 0;
+    options.glossy_dielectric_share = 0;
     const SvbrdfMaps plain = TrainingMaterial(options, nullptr, k);
-    options.glazed_share = 1;
-    const SvbrdfMaps glazed = TrainingMaterial(options, nullptr, k);
-    changed += glazed.planes != plain.planes;
-    brighter = std::max(brighter, mean(glazed, kDiffuseG) - mean(plain, kDiffuseG));
-    smoother += mean(glazed, kRoughness) < 0.9 * mean(plain, kRoughness);
-    EXPECT_LE(mean(glazed, kRoughness), 1.5 * mean(plain, kRoughness) + 1e-4);
-    EXPECT_LE(mean(glazed, kSpecularG), std::max(0.23, mean(plain, kSpecularG)));
-    for (size_t i = 0; i < glazed.texels(); ++i) {
-      const float x = glazed.plane(kNormalX)[i], y = glazed.plane(kNormalY)[i],
-                  z = glazed.plane(kNormalZ)[i];
+    options.glossy_dielectric_share = 1;
+    const SvbrdfMaps glossy = TrainingMaterial(options, nullptr, k);
+    changed += glossy.planes != plain.planes;
+    brighter = std::max(brighter, mean(glossy, kDiffuseG) - mean(plain, kDiffuseG));
+    smoother += mean(glossy, kRoughness) < 0.9 * mean(plain, kRoughness);
+    EXPECT_LE(mean(glossy, kRoughness), 1.5 * mean(plain, kRoughness) + 1e-4);
+    EXPECT_LE(mean(glossy, kSpecularG), std::max(0.23, mean(plain, kSpecularG)));
+    for (size_t i = 0; i < glossy.texels(); ++i) {
+      const float x = glossy.plane(kNormalX)[i], y = glossy.plane(kNormalY)[i],
+                  z = glossy.plane(kNormalZ)[i];
       ASSERT_NEAR(x * x + y * y + z * z, 1, 1e-4);
-      ASSERT_GE(glazed.plane(kRoughness)[i], 0.0499f);
+      ASSERT_GE(glossy.plane(kRoughness)[i], 0.0499f);
     }
   }
   EXPECT_GT(changed, 25);

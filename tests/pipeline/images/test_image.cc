@@ -1,30 +1,20 @@
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
-#include <cmath>
 #include <csignal>
 #include <filesystem>
-#include <limits>
 
 #include "base/errors/errors.h"
 #include "pipeline/files/files.h"
 #include "pipeline/images/image.h"
-#include "tests/support/message_of.h"
+#include "tests/pipeline/images/gradient_image.h"
 #include "tests/support/process.h"
 
 namespace glint {
 namespace {
 
-using ::testing::HasSubstr;
-
-Image Gradient(int width, int height, std::vector<std::string> channels) {
-  Image image(width, height, std::move(channels));
-  for (size_t i = 0; i < image.samples.size(); ++i) {
-    image.samples[i] = static_cast<float>(i) / static_cast<float>(image.samples.size());
-  }
-  return image;
-}
+using test::Gradient;
 
 TEST(Exr, RoundTripKeepsEverySampleAndAttribute) {
   const test::TemporaryFolder folder;

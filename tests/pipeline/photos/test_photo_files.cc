@@ -11,21 +11,15 @@
 #include "pipeline/images/image.h"
 #include "pipeline/photos/jpeg_end.h"
 #include "pipeline/photos/photo.h"
+#include "tests/pipeline/images/gradient_image.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
 
 namespace glint {
 namespace {
 
+using test::Gradient;
 using ::testing::HasSubstr;
-
-Image Gradient(int width, int height, std::vector<std::string> channels) {
-  Image image(width, height, std::move(channels));
-  for (size_t i = 0; i < image.samples.size(); ++i) {
-    image.samples[i] = static_cast<float>(i) / static_cast<float>(image.samples.size());
-  }
-  return image;
-}
 
 TEST(Photo, EightBitPngKeepsItsValues) {
   const test::TemporaryFolder folder;
