@@ -101,6 +101,7 @@ std::optional<Eigen::MatrixXd> InverseNormal(const Eigen::MatrixXd& j) {
 // The upper triangle R of a QR decomposition: as many rows as columns, same RᵀR.
 Eigen::MatrixXd Triangle(const Eigen::MatrixXd& j) {
   const long n = j.cols();
+  if (n == 0) return Eigen::MatrixXd(0, 0);
   if (j.rows() <= n) return j;
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(j);
   return qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
@@ -122,7 +123,9 @@ Eigen::MatrixXd Reduce(const BundleProblem& problem, const State& state, const S
     for (size_t i = 0; i < problem.photos.size(); ++i) {
       if (problem.photos[i].camera != part.camera || !state.photos[i].accepted) continue;
       const Jacobian j = PhotoJacobian(problem.photos[i], state, state.photos[i], system, part);
-      const Eigen::MatrixXd link = j.pose.householderQr().solve(j.shared);
+      // Without shared unknowns there is nothing to solve for (Eigen would touch what is not there).
+      Eigen::MatrixXd link(j.pose.cols(), system.columns);
+      if (system.columns > 0) link = j.pose.householderQr().solve(j.shared);
       // What of the shared unknowns' effect no change of the pose can imitate.
       const Eigen::MatrixXd own = j.shared - j.pose * link;
       Eigen::MatrixXd stacked(reduced.rows() + own.rows(), system.columns);
