@@ -123,7 +123,8 @@ Eigen::MatrixXd Reduce(const BundleProblem& problem, const State& state, const S
     for (size_t i = 0; i < problem.photos.size(); ++i) {
       if (problem.photos[i].camera != part.camera || !state.photos[i].accepted) continue;
       const Jacobian j = PhotoJacobian(problem.photos[i], state, state.photos[i], system, part);
-      // Without shared unknowns there is nothing to solve for (Eigen would touch what is not there).
+      // Without shared unknowns there is nothing to solve for (Eigen would touch what is not
+      // there).
       Eigen::MatrixXd link(j.pose.cols(), system.columns);
       if (system.columns > 0) link = j.pose.householderQr().solve(j.shared);
       // What of the shared unknowns' effect no change of the pose can imitate.
