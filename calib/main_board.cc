@@ -93,7 +93,8 @@ void AddOptions(OptionSet* set, BoardOptions* options) {
   SheetOptions& sheet = options->sheet;
   set->AddPositional("DIR", &options->folder, "folder for board.pdf, board.svg, board.json", false);
   set->AddChoice("kind", &sheet.kind, {"charuco", "checkerboard", "markers"},
-                 "charuco: a frame with a window for the sample; markers: single AprilTags");
+                 "charuco: a frame with a window for the sample; checkerboard: no window for the "
+                 "sample; markers: individual AprilTags around the sample");
   set->Add("paper", &sheet.paper,
            "A0 to A6, Letter, Legal, Tabloid, or WIDTHxHEIGHT in millimetres");
   set->Add("landscape", &sheet.landscape, "the paper's longer side is horizontal");

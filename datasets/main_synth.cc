@@ -38,7 +38,7 @@ struct MaterialChoice {
     options->Add("maps", &maps,
                  "svbrdf.exr, strip or folder of maps to use instead of generating them");
     options->Add("family", &family,
-                 "family of the procedural material; if omitted: drawn from the seed");
+                 "family of the procedural material; if omitted: chosen at random by the seed");
   }
   MaterialSource Load(std::uint64_t seed, int size) const {
     if (!maps.empty()) return LoadMaterial(maps.string(), size);
@@ -177,11 +177,11 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
                    "JPEG quality of .jpg photographs");
   options.Add("tell-flash", &capture.tell_flash, "write the flash's offset into capture.toml");
   options.AddRange("paper-level", &plan.paper_level, 1e-3, 4,
-                   "radiance of the brightest paper; the sensor clips at 1");
+                   "radiance of the paper at its brightest point; the sensor clips at 1");
   options.AddRange("noise", &capture.noise.scale, 0, 100, "sensor noise; 0: none, 1: a phone's");
   options.AddRange(
       "lens-blur-px", &capture.lens_blur_px, 0, kMostBlur_px,
-      "standard deviation of the lens's point spread; 0: only the pixel's own box filter");
+      "standard deviation of the lens's point-spread function; 0: only the pixel's own box filter");
   options.AddChoice("format", &capture.format, {"jpg", "png", "exr"},
                     "file format of the photographs; exr: linear float, not clipped");
   options.AddChoice("encoding", &capture.encoding, {"gamma2.2", "srgb", "linear"},
@@ -242,7 +242,8 @@ int RunStatistics(int argc, char** argv, const ProgramInfo& info) {
   options.AddPositional("materials", &materials,
                         "real maps, or folders of folders of maps, to compare with", true);
   options.Add("out", &out, "folder for statistics.json, .csv and .png");
-  options.Add("family", &family, "compare one procedural family; if omitted: drawn from the seed");
+  options.Add("family", &family,
+              "compare one procedural family; if omitted: families chosen at random");
   options.AddRange("seeds", &seeds, 1, 100000, "number of procedural materials");
   options.AddRange("first-seed", &first, 0, 2e9, "seed of the first one");
   options.AddRange("size", &size, 8, 2048, "texels per side, a power of two");

@@ -33,7 +33,7 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
   app->add_option("--batch", o->batch, "number of crops per step")->capture_default_str();
   app->add_option("--crop", o->crop, "crop size in texels, a multiple of 32")
       ->capture_default_str();
-  app->add_option("--lr", o->learning_rate, "highest learning rate")->capture_default_str();
+  app->add_option("--lr", o->learning_rate, "peak learning rate")->capture_default_str();
   app->add_option("--warmup", o->warmup_steps, "steps over which the learning rate rises")
       ->capture_default_str();
   app->add_option("--warmup-from", o->warmup_from,
@@ -55,7 +55,8 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
       ->capture_default_str();
   app->add_option("--average-decay", o->average_decay, "decay of the weights' moving average")
       ->capture_default_str();
-  app->add_option("--bf16", o->bf16, "multiply in bf16 where the CPU can")->capture_default_str();
+  app->add_option("--bf16", o->bf16, "multiply in bf16 where the CPU supports it")
+      ->capture_default_str();
   app->add_option("--pool-window", o->pool.window, "number of materials that a step chooses from")
       ->capture_default_str();
   app->add_option("--pool-first", o->pool.first,
@@ -101,8 +102,9 @@ void AddEstimatorOptions(CLI::App* app, EstimatorTrainOptions* o) {
          "channels at each of the five levels, then at full resolution, then of the global track")
       ->delimiter(',')
       ->capture_default_str();
-  app->add_option("--spread-weight", o->spread_weight,
-                  "weight of the likelihood of the errors under their predicted variances")
+  app->add_option(
+         "--spread-weight", o->spread_weight,
+         "weight of the negative log-likelihood of the errors under the predicted variances")
       ->capture_default_str();
   app->add_option("--batch-photographs", o->batch_photographs,
                   "maximum number of photographs per step; batches hold fewer samples when the "

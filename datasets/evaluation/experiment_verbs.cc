@@ -34,7 +34,8 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
                "more arguments for glint-refine, comma-separated");
   if (paper.name == "table1") {
     options->Add("disturb", &experiment->disturb,
-                 "also with views disturbed: registration .5 texel, light 5°, environment 5 %");
+                 "also with disturbed views: registration off by 0.5 texel, light by 5°, "
+                 "ambient illumination of 5 %");
   }
   if (paper.name == "table1" || paper.name == "table2") {
     options->Add("environment", &views->disturbance.environment,

@@ -189,7 +189,7 @@ int RunLimits(int argc, char** argv, const ProgramInfo& info) {
   options.AddRange("size", &limits.size, 8, 4096, "texels per side");
   options.AddRange(
       "iterations", &limits.iterations, 0, 1e6,
-      "maximum number of steps that fit a code to the maps; 0: only encode and decode");
+      "maximum number of steps when fitting a code to the maps; 0: only encode and decode");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     if (limits.work.empty()) throw UserError("work: found nothing; name a folder for the results");
     if (common.check) throw UserError("status: a measurement is not a stage; leave the option out");

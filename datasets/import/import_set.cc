@@ -115,8 +115,9 @@ void RequireSize(const LinearPhoto& photo, const ForeignView& view, PixelSize wa
 void AddImportOptions(OptionSet* set, ImportOptions* options) {
   set->AddRange("size", &options->size, 0, kLargest_px,
                 "resample to this width in texels; 0: keep the images' width");
-  set->AddRange("crop", &options->crop, 0, kLargest_px,
-                "the sample is the central square of this many pixels; 0: use the layout's");
+  set->AddRange(
+      "crop", &options->crop, 0, kLargest_px,
+      "the sample is the central square with sides of this many pixels; 0: use the layout's");
   set->Add("convention", &options->convention,
            "reflectance convention: photograph, dir2019, materialgan, or keywords as in "
            "docs/views.md; if omitted, the source's");

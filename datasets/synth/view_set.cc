@@ -195,18 +195,20 @@ void AddViewSetOptions(ViewSetOptions* options, OptionSet* set) {
   set->AddChoice("encoding", &options->encoding, {"gamma2.2", "srgb", "linear"},
                  "tone curve of the 8-bit views (DIR 2019, i.e. Gao et al. 2019, uses linear)");
   set->AddRange("exposure-stops", &options->exposure_stops, -20, 20,
-                "all photographs exposed longer by 2^stops, recorded in the manifest");
+                "multiply the exposure of all photographs by 2^stops; recorded in the manifest");
   set->AddRange("least-tilt-deg", &options->least_tilt_deg, 0, 65,
-                "no top view: every camera is tilted between this angle and 10° more (--rule dir "
-                "only); 0: off");
+                "no top view: every camera is tilted by at least this angle and at most 10° more "
+                "(--rule dir only); 0: off");
   Disturbance* disturbance = &options->disturbance;
   set->AddRange("light-off-deg", &disturbance->light_off_deg, 0, 60,
-                "turn every light by this angle; not recorded in the manifest");
-  set->Add("light-together", &disturbance->light_together,
-           "turn all lights in the same direction, as if the flash sat at a different place beside "
-           "the lens");
+                "rotate every light direction by this angle; not recorded in the manifest");
+  set->Add(
+      "light-together", &disturbance->light_together,
+      "rotate all lights in the same direction, as if the flash sat at a different place beside "
+      "the lens");
   set->AddRange("registration-texel", &disturbance->registration_texel, 0, 100,
-                "move the corners of every view by this (RMS); not recorded in the manifest");
+                "shift the corners of every view by this many texels (RMS); not recorded in the "
+                "manifest");
   set->AddRange(
       "environment-percent", &disturbance->environment_percent, 0, 1000,
       "ambient illumination on a white plane relative to the flash; not recorded in the manifest");

@@ -179,7 +179,7 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
   set->AddRange(
       "iterations", &options->iterations, 0, 1e6,
       "maximum number of steps at the first, coarse level; 0: the method's default, which "
-      "the manifest then has");
+      "is then recorded in the manifest");
   set->AddRange("fine-iterations", &options->fine_iterations, 0, 1e6,
                 "maximum number of steps at each later level; 0: the method's default");
   set->AddRange(

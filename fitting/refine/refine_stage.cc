@@ -226,15 +226,15 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "roughness values");
   set->AddRange("neighbour-passes", &refine->neighbour_passes, 0, 16,
                 "how many times a texel tries its neighbours' solutions");
-  set->AddRange(
-      "substances", &refine->substances, 1, kMostSubstances,
-      "maximum number of substances; texels of one substance share roughness and specular albedo");
+  set->AddRange("substances", &refine->substances, 1, kMostSubstances,
+                "maximum number of substances (clusters of texels of one material); the texels of "
+                "a substance share roughness and specular albedo");
   set->AddRange("estimation-rounds", &refine->estimation_rounds, 0, 100,
                 "steps that estimate variances and substances, on sampled texels");
   set->AddRange(
       "estimation-size", &refine->estimation_size, 16, 1 << 20,
       "longer side, in texels, of the grid from which texels are drawn for the estimation; "
-      "larger maps are thinned evenly to this size");
+      "larger maps are uniformly subsampled to this size");
   set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the weight of the priors; 0: none");
   set->AddRange(
       "robust-scale", &refine->robust_scale, 1e-3, 100,
@@ -245,27 +245,26 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "auto: with five or more distinct views; a correction is applied only where it lowers the "
       "cost by at least 2 %");
   set->AddRange("flash-offset", &options->flash_offset, 0, 1,
-                "expected standard deviation of the flash's offset from its stated position, "
+                "prior standard deviation of the flash's offset from its stated position, "
                 "relative to its distance, if the light was not calibrated; one offset is "
                 "estimated for all photographs; 0: none");
-  set->AddRange(
-      "exposure-spread", &options->exposure_spread, 0, 1,
-      "expected standard deviation of individual photographs' log exposures, if the light "
-      "was not calibrated; both spread and exposures are estimated from the "
-      "photographs; 0: keep the stated exposures");
+  set->AddRange("exposure-spread", &options->exposure_spread, 0, 1,
+                "prior standard deviation of individual photographs' log exposures, if the light "
+                "was not calibrated; both spread and exposures are estimated from the "
+                "photographs; 0: keep the stated exposures");
   set->AddRange("light-spread", &options->light_spread, 0, 1,
-                "expected standard deviation of each photograph's light position, perpendicular "
+                "prior standard deviation of each photograph's light position, perpendicular "
                 "to the light's direction, relative to its distance, if the light was not "
                 "calibrated; 0: keep the stated positions");
   set->AddRange(
       "flash-beam", &options->flash_beam, 0, 10,
-      "expected standard deviation of the slope of the flash's log intensity across its "
+      "prior standard deviation of the slope of the flash's log intensity across its "
       "beam (with respect to the tangent of the angle from its axis), if the light was not "
       "calibrated; one slope is "
       "estimated for all photographs; 0: none");
   set->AddRange("distance-power", &options->distance_power, 0, 10,
                 "if the light was not calibrated, its intensity may vary as distance^p (automatic "
-                "exposure, uncertain distances): expected standard deviation of p; 0: none");
+                "exposure, uncertain distances): prior standard deviation of p; 0: none");
   set->AddRange("rows-at-once", &options->rows_at_once, 0, 1 << 20,
                 "rows of texels held in memory at once; the result does not depend on it; 0: as "
                 "memory allows",

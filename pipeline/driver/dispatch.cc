@@ -32,8 +32,7 @@ int UnknownVerb(const std::string& verb) {
   const std::string closest = ClosestVerb(verb, ListVerbs());
   const std::string remedy =
       closest.empty() ? "see glint --help" : "did you mean: glint " + closest;
-  std::fprintf(stderr, "glint: error: found the unknown verb '%s'; %s\n", verb.c_str(),
-               remedy.c_str());
+  std::fprintf(stderr, "glint: error: unknown verb '%s'; %s\n", verb.c_str(), remedy.c_str());
   return kExitUser;
 }
 

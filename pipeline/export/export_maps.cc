@@ -95,14 +95,15 @@ void AddExportOptions(OptionSet* set, ExportOptions* options) {
   set->AddRange("occlusion-reach", &options->occlusion_reach, 0.001, 1,
                 "search radius of ambient occlusion, as a fraction of the sample's shorter side");
   set->AddRange("material-size", &options->material_size, 16, 16384,
-                "largest side, in texels, of the maps from which height, ambient occlusion and the "
-                "pictures in the .glb are made; larger ones are reduced by averaging");
-  set->AddRange("metal-radius", &options->metal.radius, 0, 64,
-                "neighbourhood radius, in texels, within which texels of similar colour share one "
-                "metalness decision");
+                "maximum side length, in texels, of the maps from which height, ambient occlusion "
+                "and the textures in the .glb are made; larger ones are reduced by averaging");
+  set->AddRange(
+      "metal-radius", &options->metal.radius, 0, 64,
+      "radius, in texels, within which texels of similar colour are classified jointly as "
+      "metal or non-metal");
   set->AddRange("metal-colour-width", &options->metal.colour_width, 0.001, 10,
-                "largest colour difference (square root of albedo) between texels that share a "
-                "metalness decision");
+                "largest colour difference (square root of albedo) between texels that are "
+                "classified jointly");
   set->AddRange("metal-blend-cost", &options->metal.blend_cost, 0, 1,
                 "penalty on intermediate metalness, largest at 1/2, in units of log radiance");
   set->Add("formats", &options->formats,

@@ -48,8 +48,9 @@ std::vector<std::string> UsedViews(const Manifest& manifest, const RectifiedSet&
 
 void AddReportOptions(OptionSet* set, ReportOptions* options) {
   set->AddChoice("from", &options->from, {"refine", "fit"}, "stage whose maps are shown");
-  set->AddRange("picture-px", &options->picture_px, 64, 4096,
-                "longest side of a map's picture; photographs are shown at half that size");
+  set->AddRange(
+      "picture-px", &options->picture_px, 64, 4096,
+      "longest side of the map images, in pixels; photographs are shown at half that size");
   set->AddRange("viewer-px", &options->viewer_px, 16, 4096,
                 "longest side of the maps that the page's viewer relights");
 }

@@ -219,7 +219,7 @@ TEST_F(RunTest, GlintListsAndSuggestsVerbs) {
   EXPECT_THAT(help.out, HasSubstr("  run       run every stage that is out of date\n"));
   const Outcome typo = Glint({"ran"});
   EXPECT_EQ(typo.code, 2);
-  EXPECT_THAT(typo.err, HasSubstr("found the unknown verb 'ran'; did you mean: glint run"));
+  EXPECT_THAT(typo.err, HasSubstr("unknown verb 'ran'; did you mean: glint run"));
   EXPECT_EQ(Glint({"help", "run"}).code, 0);
 }
 
