@@ -75,7 +75,7 @@ std::optional<StatedDeviations> ReadStatedDeviations(const fs::path& manifest) {
     stated.planes.insert(stated.planes.end(), values.begin(), values.end());
   }
   const Manifest refined = ReadManifest(manifest);
-  stated.residual_sigma = refined.metrics.value("residual_sigma", 0.0);
+  stated.residual_deviation = refined.metrics.value("residual_deviation", 0.0);
   stated.exposure_spread = refined.metrics.value("exposure_spread", 0.0);
   stated.light_spread = refined.metrics.value("light_spread", 0.0);
   return stated;
@@ -89,7 +89,7 @@ std::vector<float> PredictedDeviation(const FittedMaps& fit, const StatedDeviati
     throw std::invalid_argument("maps, deviations and views must have one size");
   }
   std::vector<double> variance(3 * fit.maps.texels(),
-                               stated.residual_sigma * stated.residual_sigma);
+                               stated.residual_deviation * stated.residual_deviation);
   const auto add = [&](const FittedMaps& more, const RectifiedView& view_of_more,
                        const FittedMaps& less, const RectifiedView& view_of_less) {
     const std::vector<float> above = RenderFit(more, set, view_of_more, threads);

@@ -13,8 +13,8 @@ namespace glint {
 // Standard deviations of maps, and of the residuals that they leave.
 struct StatedDeviations {
   int width = 0, height = 0;
-  std::vector<float> planes;  // normal x, y; diffuse; specular rgb; roughness: 9·H·W
-  double residual_sigma = 0;  // of log(I + 0.01)
+  std::vector<float> planes;      // normal x, y; diffuse; specular rgb; roughness: 9·H·W
+  double residual_deviation = 0;  // of log(I + 0.01)
   // By how much views deviate whose deviations are not known (view_deviations.h).
   double exposure_spread = 0, light_spread = 0;
 };

@@ -60,6 +60,7 @@ Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& vie
           {"from_other_start", summary.other_start},
           {"from_neighbour", summary.neighbour},
           {"residual_sigma", summary.residual_sigma},
+          {"residual_deviation", summary.residual_deviation},
           {"model_discrepancy", summary.discrepancy},
           {"effective_views", summary.effective_views},
           {"substances", summary.substances},

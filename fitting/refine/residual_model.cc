@@ -14,6 +14,9 @@ constexpr double kGamma = 2.2;
 constexpr double kSensorNoise = 0.003;
 constexpr size_t kSamples = 4096;
 
+// ζ = δ²/σ² from which the hyperbolic distribution is taken for Gauss's: mean squares differ by
+// less than 3/2ζ, and Bessel's functions underflow from ζ = 700 on.
+constexpr double kGaussian = 300;
 constexpr double kRadiansPerDegree = 3.14159265358979 / 180;
 
 // exp(−θ²/2τ²) of the half vectors at the sample's centre, by pairs of views.
@@ -58,14 +61,21 @@ double HyperbolicVariance(double mean_square, double robust_scale) {
   const double delta2 = robust_scale * robust_scale;
   const double wanted = mean_square / (2 * delta2);
   // K₀/K₁ + 1/ζ − 1 falls from ∞ to 0 as ζ rises; beyond the range it is 1/2ζ, Gauss's.
-  double low = std::log(1e-3), high = std::log(300.0);
-  if (wanted <= 0.5 / 300.0) return mean_square;
+  double low = std::log(1e-3), high = std::log(kGaussian);
+  if (wanted <= 0.5 / kGaussian) return mean_square;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high), zeta = std::exp(middle);
     const double here = std::cyl_bessel_k(0.0, zeta) / std::cyl_bessel_k(1.0, zeta) + 1 / zeta - 1;
     (here > wanted ? low : high) = middle;
   }
   return delta2 / std::exp(low);
+}
+
+double HyperbolicMeanSquare(double variance, double robust_scale) {
+  const double delta2 = robust_scale * robust_scale;
+  if (!(variance > 0) || delta2 / variance > kGaussian) return variance;
+  const double zeta = delta2 / variance;
+  return variance * std::cyl_bessel_k(2.0, zeta) / std::cyl_bessel_k(1.0, zeta);
 }
 
 ResidualModel::ResidualModel(const RefineProblem& problem, const ResidualModelOptions& options)

@@ -65,6 +65,10 @@ double MeasurementVariance(const RefineProblem& problem);
 // K₀(ζ)/K₁(ζ) + 1/ζ − 1 = mean g² / 2δ²: the likelihood's maximum.
 double HyperbolicVariance(double mean_square, double robust_scale);
 
+// The mean square of such residuals themselves (not of g): σ² where their tails are short, above it
+// where they are long. With ζ = δ²/σ² it is δ²·K₂(ζ)/(ζ·K₁(ζ)).
+double HyperbolicMeanSquare(double variance, double robust_scale);
+
 // Effective views where all of a residual is discrepancy that is smooth in the half vector:
 // n² / Σ_ij exp(−θ_ij²/2τ²), θ_ij the angle between half vectors at the sample's centre, τ = 8°.
 double DistinctViews(const RefineProblem& problem);

@@ -399,6 +399,8 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
 
 void SampleModel::Describe(RefineSummary* summary) const {
   summary->residual_sigma = std::sqrt(residuals_.variance());
+  summary->residual_deviation =
+      std::sqrt(HyperbolicMeanSquare(residuals_.variance(), options_.robust_scale));
   summary->discrepancy = residuals_.discrepancy();
   summary->effective_views = residuals_.effective_views();
   summary->substances = part_->substances().count();

@@ -78,24 +78,30 @@ TEST(MeasurementVariance, IsThatOfRoundedRadiance) {
 }
 
 // Draws of density ∝ exp(−g²(x)/2σ²) by rejection: the estimate is σ².
-TEST(HyperbolicVariance, IsTheLikelihoodsMaximum) {
+TEST(HyperbolicVariance, IsTheLikelihoodsMaximumAndTellsMeanSquares) {
   std::mt19937 random(4);
   const double delta = 0.1;
   for (const double sigma : {0.02, 0.1, 0.2}) {
     std::uniform_real_distribution<double> place(-20 * sigma * std::max(1.0, sigma / delta),
                                                  20 * sigma * std::max(1.0, sigma / delta)),
         height(0, 1);
-    double sum = 0;
+    double sum = 0, squares = 0;
     int n = 0;
     while (n < 20000) {
       const double x = place(random);
       const double g2 = 2 * delta * delta * (std::sqrt(1 + x * x / delta / delta) - 1);
       if (height(random) > std::exp(-0.5 * g2 / (sigma * sigma))) continue;
       sum += g2;
+      squares += x * x;
       ++n;
     }
     EXPECT_NEAR(HyperbolicVariance(sum / n, delta), sigma * sigma, 0.05 * sigma * sigma) << sigma;
+    EXPECT_NEAR(HyperbolicMeanSquare(sigma * sigma, delta), squares / n, 0.05 * squares / n)
+        << sigma;
   }
+  // Short tails: Gauss's.
+  EXPECT_NEAR(HyperbolicMeanSquare(1e-6, delta), 1e-6, 1e-9);
+  EXPECT_EQ(HyperbolicMeanSquare(0, delta), 0);
 }
 
 }  // namespace
