@@ -124,7 +124,8 @@ int main(int argc, char** argv) {
   glint::Settings settings;
   glint::OptionSet set;
   set.AddPositional("out", &settings.out,
-                    "file to write the curve to; capture.toml then names it: [radiometry] encoding",
+                    "file to write the curve to; to use it, set encoding under [radiometry] in "
+                    "capture.toml to this path",
                     true);
   set.Add("photos", &settings.photos, "photographs of one static scene at several exposures");
   set.Add("exposures", &settings.exposures,

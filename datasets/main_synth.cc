@@ -38,7 +38,8 @@ struct MaterialChoice {
     options->Add("maps", &maps,
                  "svbrdf.exr, strip or folder of maps to use instead of generating them");
     options->Add("family", &family,
-                 "family of the procedural material; if omitted: chosen at random by the seed");
+                 "family of the procedural material; if omitted: chosen at random, as determined "
+                 "by the seed");
   }
   MaterialSource Load(std::uint64_t seed, int size) const {
     if (!maps.empty()) return LoadMaterial(maps.string(), size);
@@ -277,7 +278,7 @@ int main(int argc, char** argv) {
        "Example: glint-synth views procedural:7 set --count 5 && glint-fit set", RunViews},
       {"statistics",
        "Compares the statistics of procedural materials with those of real ones: histograms, power "
-       "spectra, correlations and spreads, each with a distance.",
+       "spectra, correlations and spreads across materials, each with a distance.",
        "Example: glint-synth statistics data/materials/train --out statistics", RunStatistics}};
   return RunVerb(
       argc, argv,

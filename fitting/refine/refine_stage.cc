@@ -231,7 +231,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "maximum number of substances (clusters of texels of one material); the texels of "
                 "a substance share roughness and specular albedo");
   set->AddRange("estimation-rounds", &refine->estimation_rounds, 0, 100,
-                "steps that estimate variances and substances, on sampled texels");
+                "rounds of estimating variances and substances from sampled texels");
   set->AddRange(
       "estimation-size", &refine->estimation_size, 16, 1 << 20,
       "longer side, in texels, of the grid from which texels are drawn for the estimation; "
