@@ -63,6 +63,7 @@ inline pid_t Start(const std::vector<std::string>& arguments, const std::filesys
                    const std::filesystem::path& err,
                    const std::function<void()>& before_exec = {}) {
   std::vector<char*> vector;
+  vector.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) {
     vector.push_back(const_cast<char*>(argument.c_str()));
   }
