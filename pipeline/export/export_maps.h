@@ -50,11 +50,11 @@ void AddExportOptions(OptionSet* set, ExportOptions* options);
 
 // A picture of one map with values in [0, 1] as the file stores them.
 struct MapPicture {
-  std::string map;       // "basecolor"
-  std::string encoding;  // "sRGB", "linear", "normal +Y", "normal -Y"
-  Image image;           // one or three channels
-  std::string folder;    // "" or "exact/"
-  int bits = 0;          // 0: as the options say
+  std::string map;          // "basecolor"
+  std::string encoding;     // "sRGB", "linear", "normal +Y", "normal -Y"
+  Image image;              // one or three channels
+  std::string folder = {};  // or "exact/"
+  int bits = 0;             // 0: as the options say
 };
 
 // What other programs get of one material.
