@@ -58,21 +58,25 @@ Json IntervalJson(const Interval& interval) { return {interval.begin, interval.l
 
 }  // namespace
 
+void AddTilingOptions(OptionSet* set, TileOptions* options) {
+  set->AddRange("least-share", &options->least_share, 0.1, 0.95,
+                "minimum side of the tile, as a fraction of the sample's");
+  set->AddRange("overlap", &options->overlap, 0.02, 0.4,
+                "overlap of the copies at a seam, as a fraction of the sample's side");
+  set->AddRange("flatten", &options->flatten, 0, 1,
+                "share of low-frequency variation to remove; 0: none");
+  set->AddRange(
+      "flatten-scale", &options->flatten_scale, 0.05, 1,
+      "shortest wavelength that counts as low frequency, as a fraction of the sample's side");
+}
+
 void AddTileOptions(OptionSet* set, TileStageOptions* options) {
   set->AddChoice("from", &options->from, {"refine", "fit"}, "stage whose maps are tiled");
   set->AddRange(
       "border", &options->border, 0, kMostBorderRings,
       "outermost rings of texels, which may include the sample's surroundings, to replace with "
       "the nearest inner texels; 0: none");
-  set->AddRange("least-share", &options->tile.least_share, 0.1, 0.95,
-                "minimum side of the tile, as a fraction of the sample's");
-  set->AddRange("overlap", &options->tile.overlap, 0.02, 0.4,
-                "overlap of the copies at a seam, as a fraction of the sample's side");
-  set->AddRange("flatten", &options->tile.flatten, 0, 1,
-                "share of low-frequency variation to remove; 0: none");
-  set->AddRange(
-      "flatten-scale", &options->tile.flatten_scale, 0.05, 1,
-      "shortest wavelength that counts as low frequency, as a fraction of the sample's side");
+  AddTilingOptions(set, &options->tile);
 }
 
 TileStageResult RunTileStage(const Capture& capture, const TileStageOptions& options, int threads,

@@ -23,6 +23,8 @@ struct TileStageOptions {
 };
 
 void AddTileOptions(OptionSet* set, TileStageOptions* options);
+// Those of them that are about tiling itself.
+void AddTilingOptions(OptionSet* set, TileOptions* options);
 
 struct TileStageResult {
   TileResult tile;
