@@ -61,7 +61,7 @@ TEST(DetectMarkerFrame, HasNoBiasUnderPerspectiveBlurAndNoise) {
     Add(detection, kCamera, pose, &all);
     double growth = 0;
     for (const CornerObservation& corner : detection.corners) {
-      const auto& marker = BoardMarkers(board)[corner.id / 4];
+      const BoardMarker marker = BoardMarkers(board)[corner.id / 4];
       const Eigen::Vector2d centre =
           0.5 * (marker.corners_in_sample_mm[0] + marker.corners_in_sample_mm[2]);
       const Eigen::Vector2d truth = Project(kCamera, pose, corner.position_in_sample_mm);
