@@ -100,14 +100,15 @@ void AddOptions(OptionSet* set, BoardOptions* options) {
   set->Add("landscape", &sheet.landscape, "the paper's longer side is horizontal");
   set->AddRange("margin-mm", &sheet.margin_mm, 0, 200, "white margin at the paper's edges");
   set->Add("squares", &sheet.squares,
-           "COLUMNS,ROWS (markers: ACROSS,DOWN the frame); if omitted, as many as fit");
+           "COLUMNS,ROWS of squares (--kind markers: the number of markers along the frame's "
+           "horizontal and vertical sides); if omitted, as many as fit");
   set->AddRange("square-mm", &sheet.square_mm, 0, 1000,
                 "side of a square (--kind markers: of a marker); 0: chosen to fit the paper");
   set->AddRange("marker-mm", &sheet.marker_mm, 0, 1000,
                 "side of a ChArUco marker; 0: derived from the square");
   set->Add(
       "dictionary", &sheet.dictionary,
-      "marker dictionary, by OpenCV or AprilTag name; for --kind markers, tag36h11 unless given");
+      "marker dictionary, by OpenCV or AprilTag name; with --kind markers the default is tag36h11");
   set->Add("legacy-layout", &sheet.legacy_layout,
            "use the ChArUco layout of OpenCV versions before 4.6");
   set->Add("window", &sheet.window,
@@ -119,7 +120,8 @@ void AddOptions(OptionSet* set, BoardOptions* options) {
   set->AddRange("paper-reflectance", &sheet.paper_reflectance, 0.05, 1,
                 "reflectance of the white paper");
   set->Add("from", &options->from,
-           "make (or correct) the board that this board.json describes instead of a new one");
+           "use the board described in this board.json instead of designing a new one; with "
+           "--measured, correct its description");
   set->AddRange(
       "measured", &options->measured, 0, 1e5,
       "length of the printed ruler in mm: corrects DIR/board.json; no new sheet is written");

@@ -169,14 +169,16 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   options.Add("flash-offset-mm", &flash_mm, "flash in the camera frame: right,down,forward");
   options.Add("flash-tint", &tint, "colour of the flash: r,g,b in (0, 1]");
   options.AddRange("ambient", &plan.ambient, 0, 10, "ambient illumination relative to the flash");
-  options.AddRange("vignetting", &plan.vignetting, 0, 0.8, "light lost in the picture's corners");
+  options.AddRange("vignetting", &plan.vignetting, 0, 0.8,
+                   "fraction of the light lost in the picture's corners");
   options.AddRange("exposure-ev", &plan.exposure_ev, 0, 4,
-                   "exposures spread over plus and minus this many stops");
+                   "exposures spread over ± this many stops");
   options.AddRange("exif-error", &plan.exif_error, 0, 0.5,
                    "relative error (standard deviation) of the exposures recorded in EXIF");
   options.AddRange("jpeg-quality", &capture.jpeg_quality, 1, 100,
                    "JPEG quality of .jpg photographs");
-  options.Add("tell-flash", &capture.tell_flash, "write the flash's offset into capture.toml");
+  options.Add("tell-flash", &capture.tell_flash,
+              "write the flash's offset into capture.toml; --no-tell-flash: leave it out");
   options.AddRange("paper-level", &plan.paper_level, 1e-3, 4,
                    "radiance of the paper at its brightest point; the sensor clips at 1");
   options.AddRange("noise", &capture.noise.scale, 0, 100, "sensor noise; 0: none, 1: a phone's");
@@ -278,7 +280,8 @@ int main(int argc, char** argv) {
        "Example: glint-synth views procedural:7 set --count 5 && glint-fit set", RunViews},
       {"statistics",
        "Compares the statistics of procedural materials with those of real ones: histograms, power "
-       "spectra, correlations and spreads across materials, each with a distance.",
+       "spectra, correlations and variation across materials, and the distance between the two in "
+       "each.",
        "Example: glint-synth statistics data/materials/train --out statistics", RunStatistics}};
   return RunVerb(
       argc, argv,

@@ -97,9 +97,9 @@ void AddAutoencoderOptions(CLI::App* app, AutoencoderTrainOptions* o) {
 }
 
 void AddEstimatorOptions(CLI::App* app, EstimatorTrainOptions* o) {
-  app->add_option(
-         "--channels", o->channels,
-         "channels at each of the five levels, then at full resolution, then of the global track")
+  app->add_option("--channels", o->channels,
+                  "channels at each of the five levels, then at full resolution, then in the "
+                  "branch of global features")
       ->delimiter(',')
       ->capture_default_str();
   app->add_option(

@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   const int code = glint::RunProgram(
       argc, argv,
       {"glint-verify",
-       "Compares every file below CAPTURE/glint, and what it was made from, with the hashes "
+       "Compares every file under CAPTURE/glint, and the inputs it was made from, with the hashes "
        "recorded in the manifests. Exit code 1: something has changed.",
        GLINT_VERSION, "", false},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {

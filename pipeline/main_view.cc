@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   bool print = false;
   glint::OptionSet options;
   options.AddPositional("CAPTURE", &folder, "folder of the capture", false);
-  options.Add("print", &print, "only say where the page is");
+  options.Add("print", &print, "print the page's path instead of opening it");
   return glint::RunProgram(
       argc, argv,
       {"glint-view", "Opens a capture's result page, on which the material can be relit.",

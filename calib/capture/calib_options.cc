@@ -57,9 +57,11 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   set->AddChoice("export", &options->write, {"none", "colmap"},
                  "also write the calibration for another program: colmap, to glint/colmap",
                  Invalidates::kNo);
-  set->AddChoice("model", &options->model, ModelChoices(),
-                 "COLMAP's camera model; auto: the simplest model whose held-out error is not "
-                 "significantly above that of the best (boards only; with --poses colmap, OPENCV)");
+  set->AddChoice(
+      "model", &options->model, ModelChoices(),
+      "camera model, by its COLMAP name; auto: the simplest one whose held-out error is not "
+      "significantly above that of the best; with --poses colmap, which has no board to hold out, "
+      "auto is OPENCV");
   set->AddChoice("cameras", &options->cameras, {"auto", "one", "each"},
                  "auto: photos of the same size and EXIF focal length share their intrinsics; one: "
                  "all photos share one set; each: every photo has its own");
@@ -96,8 +98,8 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
       "--poses colmap: features are detected in a copy whose longer side has this many pixels");
   set->AddChoice(
       "triage", &options->triage, {"warn", "drop", "off"},
-      "blurred, dark, overexposed and duplicate photographs; warn: name them; drop: leave "
-      "them out too; off: do not check");
+      "what to do about blurred, dark, overexposed and duplicate photographs; warn: list them; "
+      "drop: list and exclude them; off: do not check");
   set->AddRange(
       "paper-reflectance", &options->paper_reflectance, 0.05, 1,
       "reflectance of the board's white paper, from which the light's power is estimated");

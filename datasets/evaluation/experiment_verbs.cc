@@ -17,7 +17,8 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
                          false);
   options->Add("counts", counts, "numbers of views");
   options->Add("methods", &experiment->methods,
-               "any of: start, classic, latent, refined, uncorrected");
+               "any of: start (no fitting), classic (texel by texel), latent, refined (latent, "
+               "then glint-refine), uncorrected (refined without correcting the views)");
   options->Add("work", &experiment->work, "folder in which views and results are kept (required)");
   options->AddRange("size", &experiment->size, 8, 4096, "texels per side");
   ViewSetOptions* views = &experiment->views;
@@ -29,12 +30,12 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
   options->AddChoice("encoding", &views->encoding, {"gamma2.2", "srgb", "linear"},
                      "as in glint-synth views");
   options->Add("fit-args", &experiment->fit_arguments,
-               "more arguments for glint-fit, comma-separated");
+               "additional arguments for glint-fit, comma-separated");
   options->Add("refine-args", &experiment->refine_arguments,
-               "more arguments for glint-refine, comma-separated");
+               "additional arguments for glint-refine, comma-separated");
   if (paper.name == "table1") {
     options->Add("disturb", &experiment->disturb,
-                 "also with disturbed views: registration off by 0.5 texel, light by 5°, "
+                 "also evaluate with disturbed views: registration off by 0.5 texel, light by 5°, "
                  "ambient illumination of 5 %");
   }
   if (paper.name == "table1" || paper.name == "table2") {
@@ -48,7 +49,9 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
     options->Add("tilts", &experiment->tilts, "minimum angles from the normal, in degrees");
   }
   if (paper.name == "start") {
-    options->Add("starts", &experiment->starts, "any of: random, heuristic, network, truth, rough");
+    options->Add("starts", &experiment->starts,
+                 "initial maps, any of: random (in blocks), heuristic (rules), network (the "
+                 "trained estimator), truth, rough (the truth, rougher and less specular)");
   }
   if (paper.name == "ablation") {
     options->Add("weights", &experiment->weights, "NAME=FILE of each auto-encoder (required)");

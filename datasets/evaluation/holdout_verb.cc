@@ -57,15 +57,15 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
   options.Add("methods", &experiment.methods,
               "any of: start (the initialisation), classic, latent, refined");
   options.Add("programs", &programs,
-              "NAME=FOLDER of other builds' programs to compare with, comma-separated");
+              "other builds to compare with, as NAME=FOLDER,…; FOLDER holds the build's programs");
   options.Add("import-args", &experiment.import_arguments,
-              "more arguments for glint-import, comma-separated");
+              "additional arguments for glint-import, comma-separated");
   options.Add("fit-args", &experiment.fit_arguments,
-              "more arguments for glint-fit, comma-separated");
+              "additional arguments for glint-fit, comma-separated");
   options.Add("refine-args", &experiment.refine_arguments,
-              "more arguments for glint-refine, comma-separated");
+              "additional arguments for glint-refine, comma-separated");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
-    if (common.check) throw UserError("check: an experiment is not a stage; leave the option out");
+    if (common.check) throw UserError("status: an experiment is not a stage; leave the option out");
     experiment.sets.assign(sets.begin(), sets.end());
     experiment.splits = ParseSplits(pairs, false);
     for (const HoldoutSplit& split : ParseSplits(fitted, true)) experiment.splits.push_back(split);

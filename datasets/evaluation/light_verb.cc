@@ -24,14 +24,14 @@ int RunLight(int argc, char** argv, const ProgramInfo& info) {
   options.AddRange("exposure-ev", &plan.exposure_ev, 0, 4, "spread of the exposures, in stops");
   options.AddRange("ambient", &plan.ambient, 0, 10, "ambient illumination relative to the flash");
   options.Add("fit-args", &experiment.fit_arguments,
-              "more arguments for glint-fit, comma-separated");
+              "additional arguments for glint-fit, comma-separated");
   options.Add("refine-args", &experiment.refine_arguments,
-              "more arguments for glint-refine, comma-separated");
+              "additional arguments for glint-refine, comma-separated");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     if (experiment.work.empty()) {
       throw UserError("work: found nothing; name a folder for the results");
     }
-    if (common.check) throw UserError("check: an experiment is not a stage; leave the option out");
+    if (common.check) throw UserError("status: an experiment is not a stage; leave the option out");
     experiment.again = common.force;
     const LightExperimentResult result = RunLightExperiment(experiment, common.threads);
     return ProgramResult{result.Text(), result.ToJson()};

@@ -249,23 +249,27 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "prior standard deviation of the flash's offset from its stated position, "
                 "relative to its distance, if the light was not calibrated; one offset is "
                 "estimated for all photographs; 0: none");
-  set->AddRange("exposure-spread", &options->exposure_spread, 0, 1,
-                "prior standard deviation of individual photographs' log exposures, if the light "
-                "was not calibrated; both spread and exposures are estimated from the "
-                "photographs; 0: keep the stated exposures");
-  set->AddRange("light-spread", &options->light_spread, 0, 1,
-                "prior standard deviation of each photograph's light position, perpendicular "
-                "to the light's direction, relative to its distance, if the light was not "
-                "calibrated; 0: keep the stated positions");
+  set->AddRange(
+      "exposure-spread", &options->exposure_spread, 0, 1,
+      "initial guess of the standard deviation of individual photographs' log exposures, if the "
+      "light was not calibrated; it and the exposures are then estimated from the "
+      "photographs; 0: keep the stated exposures");
+  set->AddRange(
+      "light-spread", &options->light_spread, 0, 1,
+      "initial guess of the standard deviation of each photograph's light position, "
+      "perpendicular to the light's direction, relative to its distance, if the light was "
+      "not calibrated; it and the positions are then estimated from the photographs; 0: keep "
+      "the stated positions");
   set->AddRange(
       "flash-beam", &options->flash_beam, 0, 10,
       "prior standard deviation of the slope of the flash's log intensity across its "
       "beam (with respect to the tangent of the angle from its axis), if the light was not "
       "calibrated; one slope is "
       "estimated for all photographs; 0: none");
-  set->AddRange("distance-power", &options->distance_power, 0, 10,
-                "if the light was not calibrated, its intensity may vary as distance^p (automatic "
-                "exposure, uncertain distances): prior standard deviation of p; 0: none");
+  set->AddRange(
+      "distance-power", &options->distance_power, 0, 10,
+      "prior standard deviation of p, where the light's intensity varies as distance^p "
+      "(automatic exposure, uncertain distances), if the light was not calibrated; 0: none");
   set->AddRange("rows-at-once", &options->rows_at_once, 0, 1 << 20,
                 "rows of texels held in memory at once; the result does not depend on it; 0: as "
                 "memory allows",

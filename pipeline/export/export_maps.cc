@@ -80,10 +80,10 @@ void AddExportOptions(OptionSet* set, ExportOptions* options) {
   set->Add("name", &options->name, "prefix of the file names");
   set->AddChoice("from", &options->from, {"refine", "fit", "tile"},
                  "stage whose maps are exported");
-  set->AddChoice(
-      "bits", &options->bits, {"8", "16", "both", "exr"},
-      "bits per channel of the PNG files (the height always has 16); both: 8 and 16; exr: 8, and "
-      "linear float32 EXR files in the folder exr/");
+  set->AddChoice("bits", &options->bits, {"8", "16", "both", "exr"},
+                 "bits per channel of the PNG files (the height map is always 16-bit); both: 8 and "
+                 "16; exr: 8, and "
+                 "linear float32 EXR files in the folder exr/");
   set->AddRange(
       "border", &options->border, 0, kMostBorderRings,
       "outermost rings of texels, which may include the sample's surroundings, to replace with "
@@ -93,7 +93,7 @@ void AddExportOptions(OptionSet* set, ExportOptions* options) {
       "longest wavelength kept in the height map, as a fraction of the sample's shorter side; "
       "longer ones are mostly spurious curvature from systematic errors in the normals; 0: all");
   set->AddRange("occlusion-reach", &options->occlusion_reach, 0.001, 1,
-                "search radius of ambient occlusion, as a fraction of the sample's shorter side");
+                "search radius for ambient occlusion, as a fraction of the sample's shorter side");
   set->AddRange("material-size", &options->material_size, 16, 16384,
                 "maximum side length, in texels, of the maps from which height, ambient occlusion "
                 "and the textures in the .glb are made; larger ones are reduced by averaging");
