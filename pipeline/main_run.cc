@@ -19,11 +19,12 @@ void AddOptions(glint::OptionSet* options, RunArguments* o) {
   options->AddPositional("CAPTURE", &o->run.capture, "folder of the capture", false);
   options->Add("from", &o->run.from, "start at this stage; keep earlier results");
   options->Add("until", &o->run.until, "stop after this stage");
-  options->Add("dry-run", &o->dry_run, "only say which stages would run and why");
+  options->Add("dry-run", &o->dry_run,
+               "list the stages that would run, and why, without running them");
   options->AddRange("jobs,-j", &o->jobs, 0, 1024, "same as --threads");
   options->AddChoice(
       "method", &o->run.choices.method, {"start", "classic", "latent", "refined"},
-      "start: maps as a network estimates them, nothing fitted; classic: maps "
+      "start: maps as estimated by a network, without fitting; classic: maps "
       "fitted texel by texel; latent: in the auto-encoder's latent space; refined (default): "
       "latent, then per texel");
   options->Add("quick", &o->quick,
@@ -78,7 +79,7 @@ int main(int argc, char** argv) {
         o.run.force = common.force;
         o.run.choices.seed = common.seed;
         ApplyQuick(&o);
-        if (o.dry_run) return DryRun(o);
+        if (o.dry_run || common.check) return DryRun(o);
         o.run.threads = ThreadsForStages(argc, argv, common, o.jobs);
         o.run.memory_gb = common.memory_gb;
         o.run.log_level = common.log_level;

@@ -149,6 +149,7 @@ TEST_F(RunTest, ADamagedOrRemovedOutputIsMadeAnew) {
 
 TEST_F(RunTest, DryRunAndStatusSayWhyAndWriteNothing) {
   const Outcome nothing_yet = Glint({"run", capture().string(), "--dry-run"});
+  EXPECT_EQ(Glint({"run", capture().string(), "--status"}).out, nothing_yet.out);
   EXPECT_EQ(nothing_yet.code, 0) << nothing_yet.err;
   EXPECT_THAT(nothing_yet.out, HasSubstr("calib    would run  there is no result yet"));
   EXPECT_FALSE(fs::exists(capture() / "glint"));
