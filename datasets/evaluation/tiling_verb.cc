@@ -62,17 +62,17 @@ Json ToJson(const std::vector<Figures>& rows) {
 int RunTiling(int argc, char** argv, const ProgramInfo& info) {
   std::vector<std::string> named;
   int size = 512;
-  TileStageOptions tile;
+  TileOptions tile;
   OptionSet options;
   options.AddPositional("materials", &named, "as in glint-eval table1", false);
   options.AddRange("size", &size, kLeastTileTexels, 4096, "texels per side");
-  AddTilingOptions(&options, &tile.tile);
+  AddTilingOptions(&options, &tile);
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     if (common.check) throw UserError("status: a measurement is not a stage; leave the option out");
     std::vector<Figures> rows;
     for (const std::string& text :
          named.empty() ? ReservedMaterials(kOwnMaterials) : ExpandMaterials(named)) {
-      rows.push_back(Measure(LoadMaterial(text, size), tile.tile, common.threads));
+      rows.push_back(Measure(LoadMaterial(text, size), tile, common.threads));
       spdlog::info("{}: seam {:.2f}, mean {:.1f} %, spread {:.1f} %", rows.back().material,
                    rows.back().seam, 100 * rows.back().errors.mean,
                    100 * rows.back().errors.spread);

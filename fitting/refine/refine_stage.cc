@@ -251,12 +251,12 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "estimated for all photographs; 0: none");
   set->AddRange(
       "exposure-spread", &options->exposure_spread, 0, 1,
-      "initial guess of the standard deviation of individual photographs' log exposures, if the "
+      "expected standard deviation (a weak prior) of individual photographs' log exposures, if the "
       "light was not calibrated; it and the exposures are then estimated from the "
       "photographs; 0: keep the stated exposures");
   set->AddRange(
       "light-spread", &options->light_spread, 0, 1,
-      "initial guess of the standard deviation of each photograph's light position, "
+      "expected standard deviation (a weak prior) of each photograph's light position, "
       "perpendicular to the light's direction, relative to its distance, if the light was "
       "not calibrated; it and the positions are then estimated from the photographs; 0: keep "
       "the stated positions");
