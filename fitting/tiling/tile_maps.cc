@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "base/parallel/parallel.h"
@@ -59,6 +61,11 @@ class Sample {
     }
     return sum;
   }
+  // From the texel above (dr = 1) or left (dc = 1); 0 at the border.
+  double SquaredStep(int row, int column, int dr, int dc) const {
+    if (row < dr || column < dc) return 0;
+    return SquaredDifference(row, column, row - dr, column - dc);
+  }
   int width() const { return maps_.width; }
   int height() const { return maps_.height; }
 
@@ -67,12 +74,17 @@ class Sample {
   size_t texels_;
 };
 
+// What a path costs is where two copies differ, and `smoothness` times by how much each of them
+// changes across the path by itself.
+
 // For every row of the sample, the columns of a strip that repeats across: left of the path the
 // continuation of the piece's end, right of it the piece's beginning.
-std::vector<int> JoinAcross(const Sample& sample, const Interval& across, int overlap) {
+std::vector<int> JoinAcross(const Sample& sample, const Interval& across, int overlap,
+                            double smoothness) {
   const auto cost = [&](int row, int x) {
     const int a = across.begin + x, b = a + across.length;
-    return sample.SquaredDifference(row, a, row, b);
+    const double steps = sample.SquaredStep(row, a, 0, 1) + sample.SquaredStep(row, b, 0, 1);
+    return sample.SquaredDifference(row, a, row, b) + smoothness * steps / 2;
   };
   const std::vector<int> path = CheapestPath(sample.height(), overlap, false, cost);
   std::vector<int> columns(static_cast<size_t>(sample.height()) * across.length);
@@ -87,13 +99,15 @@ std::vector<int> JoinAcross(const Sample& sample, const Interval& across, int ov
 }
 
 Layout JoinDown(const Sample& sample, const std::vector<int>& strip, const Interval& across,
-                const Interval& down, int overlap) {
+                const Interval& down, int overlap, double smoothness) {
   const auto column = [&](int row, int x) {
     return strip[static_cast<size_t>(row) * across.length + x];
   };
   const auto cost = [&](int x, int y) {
     const int a = down.begin + y, b = a + down.length;
-    return sample.SquaredDifference(a, column(a, x), b, column(b, x));
+    const double steps =
+        sample.SquaredStep(a, column(a, x), 1, 0) + sample.SquaredStep(b, column(b, x), 1, 0);
+    return sample.SquaredDifference(a, column(a, x), b, column(b, x)) + smoothness * steps / 2;
   };
   const std::vector<int> path = CheapestPath(across.length, overlap, true, cost);
   Layout layout{across.length, down.length, {}, {}};
@@ -206,9 +220,57 @@ double ScoreOf(const EncodedMaps& tile, const Layout& layout, int first, int las
          (natural / static_cast<double>(naturals) + visible);
 }
 
+// The paths on which copies agree best are not always those that show least: along the joints of a
+// floor copies may agree, and its texels differ more from their neighbours than others do; where
+// copies agree everywhere, smooth places are no better than others. Both are tried.
+constexpr std::array kSmoothness = {0.0, 0.1};
+
+struct Piece {
+  Interval across, down;
+  int overlap_x, overlap_y;
+};
+
+Piece BestPiece(const EncodedMaps& maps, const TileOptions& options) {
+  const auto share = [](double of, int size) {
+    return std::max(2, static_cast<int>(std::lround(of * size)));
+  };
+  const auto least = [&](int size, int overlap) {
+    return std::min(share(options.least_share, size), size - overlap);
+  };
+  const int overlap_x = share(options.overlap, maps.width);
+  const int overlap_y = share(options.overlap, maps.height);
+  return {BestInterval(maps, true, least(maps.width, overlap_x), overlap_x),
+          BestInterval(maps, false, least(maps.height, overlap_y), overlap_y), overlap_x,
+          overlap_y};
+}
+
+TileResult Joined(const EncodedMaps& maps, const Piece& piece, double smoothness, int threads) {
+  const Sample sample(maps);
+  const std::vector<int> strip = JoinAcross(sample, piece.across, piece.overlap_x, smoothness);
+  const Layout layout =
+      JoinDown(sample, strip, piece.across, piece.down, piece.overlap_y, smoothness);
+  // What is left of a jump fades over half the overlap.
+  const double screening = std::pow(2.0 / std::min(piece.overlap_x, piece.overlap_y), 2);
+  EncodedMaps tile(layout.width, layout.height);
+  ForEachPiece(kEncodedChannels, threads, [&](int p) {
+    const Moments wanted = MomentsOf(maps.planes.data() + p * maps.texels(), maps.texels());
+    MatchMoments(BlendPlane(sample, layout, p, screening), wanted,
+                 tile.planes.data() + p * tile.texels());
+  });
+  const SeamScore seam = {ScoreOf(tile, layout, kEncodedDiffuse, kEncodedSpecular),
+                          ScoreOf(tile, layout, kEncodedSpecular, kEncodedRoughness),
+                          ScoreOf(tile, layout, kEncodedRoughness, kEncodedNormal),
+                          ScoreOf(tile, layout, kEncodedNormal, kEncodedChannels)};
+  return {DecodeMaps(tile), piece.across, piece.down, seam};
+}
+
 }  // namespace
 
 double SeamScore::worst() const { return std::max({diffuse, specular, roughness, normal}); }
+
+SvbrdfMaps FlattenMaps(const SvbrdfMaps& maps, const TileOptions& options) {
+  return DecodeMaps(Flattened(EncodeMaps(maps), options));
+}
 
 TileResult TileMaps(const SvbrdfMaps& maps, const TileOptions& options, int threads) {
   if (std::min(maps.width, maps.height) < kLeastTileTexels) {
@@ -216,35 +278,14 @@ TileResult TileMaps(const SvbrdfMaps& maps, const TileOptions& options, int thre
                                 std::to_string(kLeastTileTexels) + " texels along each side");
   }
   const EncodedMaps flat = Flattened(EncodeMaps(maps), options);
-  const Sample sample(flat);
-  const auto share = [](double of, int size) {
-    return std::max(2, static_cast<int>(std::lround(of * size)));
-  };
-  const int overlap_x = share(options.overlap, maps.width);
-  const int overlap_y = share(options.overlap, maps.height);
-  const auto least = [&](int size, int overlap) {
-    return std::min(share(options.least_share, size), size - overlap);
-  };
-
-  TileResult result;
-  result.across = BestInterval(flat, true, least(maps.width, overlap_x), overlap_x);
-  result.down = BestInterval(flat, false, least(maps.height, overlap_y), overlap_y);
-  const Layout layout = JoinDown(sample, JoinAcross(sample, result.across, overlap_x),
-                                 result.across, result.down, overlap_y);
-  // What is left of a jump fades over half the overlap.
-  const double screening = std::pow(2.0 / std::min(overlap_x, overlap_y), 2);
-  EncodedMaps tile(layout.width, layout.height);
-  const size_t texels = layout.rows.size(), sample_texels = maps.texels();
-  ForEachPiece(kEncodedChannels, threads, [&](int p) {
-    const Moments wanted = MomentsOf(flat.planes.data() + p * sample_texels, sample_texels);
-    MatchMoments(BlendPlane(sample, layout, p, screening), wanted, tile.planes.data() + p * texels);
-  });
-  result.maps = DecodeMaps(tile);
-  result.seam = {ScoreOf(tile, layout, kEncodedDiffuse, kEncodedSpecular),
-                 ScoreOf(tile, layout, kEncodedSpecular, kEncodedRoughness),
-                 ScoreOf(tile, layout, kEncodedRoughness, kEncodedNormal),
-                 ScoreOf(tile, layout, kEncodedNormal, kEncodedChannels)};
-  return result;
+  const Piece piece = BestPiece(flat, options);
+  TileResult best;
+  best.seam.diffuse = std::numeric_limits<double>::infinity();
+  for (const double smoothness : kSmoothness) {
+    TileResult result = Joined(flat, piece, smoothness, threads);
+    if (result.seam.worst() < best.seam.worst()) best = std::move(result);
+  }
+  return best;
 }
 
 SvbrdfMaps Repeated(const SvbrdfMaps& tile, int across, int down) {

@@ -3,11 +3,12 @@
 //   1. Slow changes over the sample (shading that fitting took for colour, a tilt) are taken out.
 //   2. The piece whose ends fit together best is chosen, across and then down (period.h).
 //   3. Where it meets its own repetition, two copies of the sample overlap; they are joined along
-//      the path on which they agree best (seam.h), all maps along the same one.
+//      the path on which they agree best (seam.h), all maps along the same one. A second path, that
+//      also avoids places where the texture itself changes, is taken where its seam shows less.
 //   4. Differences that are left along the paths are spread over their surroundings: the maps whose
 //      gradients are nearest to those of the copies (gradient-domain blending, Perez et al. 2003),
 //      on a torus, so that the repetition is exact.
-//   5. Every map gets the mean and the spread back that it has in the whole sample.
+//   5. Every map gets the mean and the spread back that it has in the whole sample after step 1.
 //
 // All in the encoding of the learned space (encoding.h): albedos by their roots, normals as slopes.
 // The same bits for any number of threads.
@@ -43,6 +44,9 @@ struct TileResult {
   Interval across, down;  // of the sample's texels
   SeamScore seam;
 };
+
+// The whole sample after step 1.
+SvbrdfMaps FlattenMaps(const SvbrdfMaps& maps, const TileOptions& options);
 
 // Throws std::invalid_argument for maps of less than kLeastTileTexels along a side.
 TileResult TileMaps(const SvbrdfMaps& maps, const TileOptions& options, int threads);

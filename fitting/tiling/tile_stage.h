@@ -14,7 +14,7 @@
 
 namespace glint {
 
-inline constexpr int kTileVersion = 3;
+inline constexpr int kTileVersion = 4;
 
 struct TileStageOptions {
   std::string from = "refine";
