@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "datasets/procedural/dispatch.h"
+#include "base/cpu/vector_clones.h"
 #include "datasets/procedural/families/common.h"
 
 namespace glint::procedural {

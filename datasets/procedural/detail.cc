@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "datasets/procedural/dispatch.h"
+#include "base/cpu/vector_clones.h"
 #include "datasets/procedural/random.h"
 #include "datasets/procedural/shaping.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/cpu/vector_clones.h"
 #include "datasets/procedural/detail.h"
-#include "datasets/procedural/dispatch.h"
 #include "datasets/procedural/palette.h"
 #include "datasets/procedural/random.h"
 #include "datasets/procedural/shaping.h"

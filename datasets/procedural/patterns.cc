@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "datasets/procedural/dispatch.h"
+#include "base/cpu/vector_clones.h"
 #include "datasets/procedural/noise.h"
 #include "datasets/procedural/random.h"
 #include "datasets/procedural/shaping.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/procedural/dispatch.h"
+#include "base/cpu/vector_clones.h"
 #include "datasets/procedural/random.h"
 #include "datasets/procedural/shaping.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "datasets/procedural/dispatch.h"
+#include "base/cpu/vector_clones.h"
 #include "datasets/procedural/finish.h"
 #include "datasets/procedural/shaping.h"
 #include "datasets/procedural/weathering.h"

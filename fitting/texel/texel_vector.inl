@@ -5,15 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "base/cpu/vector_clones.h"
 #include "fitting/texel/texel_observations.h"
-
-// One binary, the widest vector unit of the machine it runs on. Every operation is rounded the same
-// way on all of them (no contraction), so results do not depend on the choice.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define GLINT_VECTOR_CLONES __attribute__((target_clones("default", "avx2", "avx512f")))
-#else
-#define GLINT_VECTOR_CLONES
-#endif
 
 namespace glint {
 namespace {

@@ -1,5 +1,7 @@
-// Compiles a kernel for several vector widths and picks one at load time. Contraction is off
-// everywhere, so that all of them give the same bits.
+// Compiles a function for several vector units and picks one when the program is loaded.
+// Contraction is off everywhere, so that all of them give the same bits.
+//
+// Not under sanitizers: the functions that pick run before a sanitizer has started, and crash.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
