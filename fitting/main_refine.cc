@@ -1,6 +1,11 @@
 // glint-refine: the fitted maps, refined texel by texel.
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/errors/errors.h"
 #include "fitting/refine/refine_stage.h"
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/cost_model.h"
@@ -43,20 +48,83 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined) {
   return result;
 }
 
-ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RefineStageOptions* options,
-                  const CommonOptions& common) {
-  const Capture capture = ReadCapture(folder);
-  set->LoadToml(capture.file, "refine");
-  const RefineStart start = ResolveRefineStart(capture.work(), *options);
-  const auto rectify_manifest = capture.work() / "rectify" / "manifest.json";
-  VerifyOutputs(rectify_manifest, ReadManifest(rectify_manifest, "rectify"));
-  std::vector<std::filesystem::path> inputs = {rectify_manifest};
-  inputs.push_back(start.manifest_file.empty() ? start.maps_file : start.manifest_file);
-  Stage stage(capture.work() / "refine", {"refine", kRefineVersion}, *set, common, inputs);
+// What every result of refinement depends on.
+struct Sources {
+  std::filesystem::path work, rectify_manifest;
+  RefineStart start;
+  std::vector<std::filesystem::path> inputs;
+};
+
+Sources ReadSources(const Capture& capture, const RefineStageOptions& options) {
+  Sources sources{capture.work(),
+                  capture.work() / "rectify" / "manifest.json",
+                  ResolveRefineStart(capture.work(), options),
+                  {}};
+  const std::filesystem::path& manifest = sources.rectify_manifest;
+  VerifyOutputs(manifest, ReadManifest(manifest, "rectify"));
+  const RefineStart& start = sources.start;
+  sources.inputs = {manifest, start.manifest_file.empty() ? start.maps_file : start.manifest_file};
+  return sources;
+}
+
+Stage PartOf(const Sources& sources, const RowPart& part, const OptionSet& set,
+             const CommonOptions& common) {
+  const std::string name = PartStage(part);
+  return Stage(sources.work / name, {name, kRefineVersion}, set, common, sources.inputs);
+}
+
+ProgramResult RunPart(const Capture& capture, const Sources& sources, const OptionSet& set,
+                      const RefineStageOptions& options, const CommonOptions& common) {
+  const RowPart part = ParseRowPart(options.part);
+  Stage stage = PartOf(sources, part, set, common);
   if (stage.UpToDate()) return stage.UpToDateResult();
   RequireMemoryForStage("refine", capture, common.threads);
-  return Summarise(stage,
-                   RunRefineStage(rectify_manifest, start, *options, common.threads, &stage));
+  const RowRange rows =
+      RunRefinePart(sources.rectify_manifest, sources.start, options, part, common.threads, &stage);
+  ProgramResult result;
+  result.text = fmt::format("refine: part {} of {}, rows {} to {} of {}\n", part.part, part.of,
+                            rows.first, rows.first + rows.rows - 1, rows.of);
+  result.json = {{"stage", PartStage(part)},
+                 {"up_to_date", false},
+                 {"manifest", stage.manifest_file().string()}};
+  return result;
+}
+
+// Folders of the parts, all of them up to date.
+std::vector<std::filesystem::path> PartFolders(const std::filesystem::path& folder,
+                                               const Sources& sources, const OptionSet& set,
+                                               int parts, const CommonOptions& common) {
+  std::vector<std::filesystem::path> folders;
+  for (int k = 1; k <= parts; ++k) {
+    const Stage part = PartOf(sources, {k, parts}, set, common);
+    if (!part.UpToDate()) {
+      throw UserError(part.folder(), "",
+                      "no result of part " + std::to_string(k) + " that is up to date",
+                      fmt::format("run glint refine {} --part {}/{}", folder.string(), k, parts));
+    }
+    folders.push_back(part.folder());
+  }
+  return folders;
+}
+
+ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RefineStageOptions* options,
+                  CommonOptions common) {
+  const Capture capture = ReadCapture(folder);
+  set->LoadToml(capture.file, "refine");
+  if (!options->part.empty() && options->join > 0) {
+    throw UserError("--part, --join: found both; refine all parts, then join them");
+  }
+  const Sources sources = ReadSources(capture, *options);
+  if (!options->part.empty()) return RunPart(capture, sources, *set, *options, common);
+  Stage stage(sources.work / "refine", {"refine", kRefineVersion}, *set, common, sources.inputs);
+  if (stage.UpToDate()) return stage.UpToDateResult();
+  RequireMemoryForStage("refine", capture, common.threads);
+  common.force = false;  // parts are joined as they are
+  const auto parts = PartFolders(folder, sources, *set, options->join, common);
+  const RefineStageResult result = RunRefineStage(sources.rectify_manifest, sources.start, *options,
+                                                  parts, common.threads, &stage);
+  for (const std::filesystem::path& part : parts) std::filesystem::remove_all(part);
+  return Summarise(stage, result);
 }
 
 }  // namespace

@@ -97,9 +97,10 @@ RefineResult Refine(const RefineProblem& problem, const SvbrdfMaps& start,
   if (!wrong.empty()) throw std::invalid_argument("refine: " + wrong);
   CheckProblem(problem, start);
   const SampleEstimate estimate = EstimateFrom(problem, start, options, std::max(threads, 1));
-  RowRefiner refiner(estimate, options, threads, progress);
+  RowRefiner refiner(estimate, options, start.height, threads, progress);
   RowRefiner::Rows rows = refiner.Refine(problem, start, 0, 0);
-  return {std::move(rows.maps), std::move(rows.confidence), refiner.Summary()};
+  return {std::move(rows.maps), std::move(rows.confidence),
+          Summarise(estimate, refiner.sums(), start.width)};
 }
 
 }  // namespace glint

@@ -31,15 +31,14 @@ class PartRefiner {
   void Run();
 
   RowRefiner::Rows& result() { return result_; }
-  // By row: the cost at the start; cost, and log differences and their number by view; how many
-  // texels have the flag.
-  double start_cost(int row) const { return start_costs_[static_cast<size_t>(row)]; }
-  const double* sums(int row) const { return &sums_[static_cast<size_t>(row) * SumColumns()]; }
-  size_t SumColumns() const { return 1 + 2 * problem_.views.size(); }
-  enum Origin : unsigned char { kConverged = 1, kOtherStart = 2, kNeighbour = 4, kUnseen = 8 };
-  std::int64_t Count(int row, Origin flag) const;
+  // One of RowSums.
+  std::vector<double> SumsOf(int row) const;
 
  private:
+  enum Origin : unsigned char { kConverged = 1, kOtherStart = 2, kNeighbour = 4, kUnseen = 8 };
+  // Of the row's texels, how many have the flag.
+  double Count(int row, Origin flag) const;
+  size_t SumColumns() const { return 1 + 2 * problem_.views.size(); }
   void SolveFromStarts();
   void SolveFromNeighbours(int half_pass);
   void Conclude();
@@ -61,8 +60,8 @@ class PartRefiner {
   std::vector<std::unique_ptr<RefineWorker>> workers_;
   RowRefiner::Rows result_;
   std::vector<unsigned char> origin_;
-  std::vector<double> start_costs_;
-  std::vector<double> sums_;
+  std::vector<double> start_costs_;  // by row
+  std::vector<double> sums_;         // by row: cost, log differences and their number by view
 };
 
 PartRefiner::PartRefiner(const SampleEstimate& estimate, const RefineProblem& said,
@@ -206,65 +205,71 @@ void PartRefiner::Run() {
   Conclude();
 }
 
-std::int64_t PartRefiner::Count(int row, Origin flag) const {
+double PartRefiner::Count(int row, Origin flag) const {
   const auto first = origin_.begin() + static_cast<std::ptrdiff_t>(row) * start_.width;
-  return std::count_if(first, first + start_.width,
-                       [flag](unsigned char origin) { return (origin & flag) != 0; });
+  return static_cast<double>(std::count_if(
+      first, first + start_.width, [flag](unsigned char origin) { return (origin & flag) != 0; }));
+}
+
+std::vector<double> PartRefiner::SumsOf(int row) const {
+  std::vector<double> sums = {start_costs_[static_cast<size_t>(row)], Count(row, kConverged),
+                              Count(row, kOtherStart), Count(row, kNeighbour)};
+  const double* more = &sums_[static_cast<size_t>(row) * SumColumns()];
+  sums.insert(sums.end(), more, more + SumColumns());
+  return sums;
 }
 
 }  // namespace
 
-RowRefiner::RowRefiner(const SampleEstimate& estimate, const RefineOptions& options, int threads,
-                       ReportProgress progress)
+RefineSummary Summarise(const SampleEstimate& estimate, const RowSums& rows, int width) {
+  RefineSummary summary = estimate.summary;
+  const size_t views = estimate.order.size();
+  const size_t by_view = RowSumColumns(0);  // where log differences begin
+  std::vector<double> sums(RowSumColumns(views), 0.0);
+  for (const std::vector<double>& row : rows) {
+    for (size_t i = 0; i < sums.size(); ++i) sums[i] += row[i];
+  }
+  const double texels = static_cast<double>(rows.size()) * width;
+  summary.start_cost = sums[0] / texels;
+  summary.converged = sums[1] / texels;
+  summary.other_start = sums[2] / texels;
+  summary.neighbour = sums[3] / texels;
+  summary.final_cost = sums[4] / texels;
+  summary.view_loss.assign(views, 0.0);
+  for (size_t v = 0; v < views; ++v) {
+    summary.view_loss[static_cast<size_t>(estimate.order[v])] =
+        sums[by_view + v] / sums[by_view + views + v];
+  }
+  return summary;
+}
+
+RowRefiner::RowRefiner(const SampleEstimate& estimate, const RefineOptions& options, int rows,
+                       int threads, ReportProgress progress)
     : estimate_(estimate),
       options_(options),
+      rows_(rows),
       threads_(std::max(threads, 1)),
-      progress_(std::move(progress)),
-      sums_(1 + 2 * estimate.order.size(), 0.0) {}
+      progress_(std::move(progress)) {}
 
 RowRefiner::Rows RowRefiner::Refine(const RefineProblem& problem, const SvbrdfMaps& start,
                                     int above, int below) {
   const RefineProblem said = estimate_.InOrder(problem);
   const int first = above, last = start.height - below;
-  const std::int64_t visits = static_cast<std::int64_t>(problem.plane.whole_height()) *
-                              start.width * (2 + 2 * options_.neighbour_passes);
+  const std::int64_t visits =
+      static_cast<std::int64_t>(rows_) * start.width * (2 + 2 * options_.neighbour_passes);
   PartRefiner part(estimate_, said, start, options_, threads_, [&](int row) {
     if (row < first || row >= last) return;
     done_ += start.width;
     if (progress_) progress_(done_, visits);
   });
   part.Run();
-  for (int row = first; row < last; ++row) {
-    start_cost_ += part.start_cost(row);
-    for (size_t i = 0; i < sums_.size(); ++i) sums_[i] += part.sums(row)[i];
-    converged_ += part.Count(row, PartRefiner::kConverged);
-    other_start_ += part.Count(row, PartRefiner::kOtherStart);
-    neighbour_ += part.Count(row, PartRefiner::kNeighbour);
-  }
-  texels_ += static_cast<std::int64_t>(last - first) * start.width;
+  for (int row = first; row < last; ++row) sums_.push_back(part.SumsOf(row));
   Rows& solved = part.result();
   if (first == 0 && last == start.height) return std::move(solved);
   Rows rows{SvbrdfMaps(start.width, last - first), {}};
   rows.maps.planes = CutRows(solved.maps.planes, start.width, start.height, first, last - first);
   rows.confidence = CutRows(solved.confidence, start.width, start.height, first, last - first);
   return rows;
-}
-
-RefineSummary RowRefiner::Summary() const {
-  RefineSummary summary = estimate_.summary;
-  const size_t views = estimate_.order.size();
-  const auto texels = static_cast<double>(texels_);
-  summary.start_cost = start_cost_ / texels;
-  summary.final_cost = sums_[0] / texels;
-  summary.view_loss.assign(views, 0.0);
-  for (size_t v = 0; v < views; ++v) {
-    summary.view_loss[static_cast<size_t>(estimate_.order[v])] =
-        sums_[1 + v] / sums_[1 + views + v];
-  }
-  summary.converged = static_cast<double>(converged_) / texels;
-  summary.other_start = static_cast<double>(other_start_) / texels;
-  summary.neighbour = static_cast<double>(neighbour_) / texels;
-  return summary;
 }
 
 }  // namespace glint

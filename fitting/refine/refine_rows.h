@@ -16,12 +16,21 @@ namespace glint {
 // prior in the end.
 inline int DependentRows(const RefineOptions& options) { return 2 * options.neighbour_passes + 1; }
 
+// What is added up over texels, a list a row, so that sums over any parts of the sample are to the
+// bit those over the whole: the cost at the start; how many texels converged, came from another
+// start, from a neighbour; the cost; log differences by view, and their number by view.
+using RowSums = std::vector<std::vector<double>>;
+inline size_t RowSumColumns(size_t views) { return 5 + 2 * views; }
+
+// What RefineSummary says of texels and views. `rows`: all of the sample, from the top.
+RefineSummary Summarise(const SampleEstimate& estimate, const RowSums& rows, int width);
+
 class RowRefiner {
  public:
   using ReportProgress = std::function<void(std::int64_t done, std::int64_t total)>;
 
-  // `estimate` and `options` must outlive this.
-  RowRefiner(const SampleEstimate& estimate, const RefineOptions& options, int threads,
+  // `estimate` and `options` must outlive this. `rows`: how many it will be given in all.
+  RowRefiner(const SampleEstimate& estimate, const RefineOptions& options, int rows, int threads,
              ReportProgress progress);
 
   struct Rows {
@@ -32,19 +41,16 @@ class RowRefiner {
   // DependentRows() where the sample goes on, 0 at its border. From the top, each row once.
   Rows Refine(const RefineProblem& problem, const SvbrdfMaps& start, int above, int below);
 
-  // After the last row.
-  RefineSummary Summary() const;
+  // Of the rows so far.
+  const RowSums& sums() const { return sums_; }
 
  private:
   const SampleEstimate& estimate_;
   const RefineOptions& options_;
-  const int threads_;
+  const int rows_, threads_;
   const ReportProgress progress_;
   std::int64_t done_ = 0;
-  // Over the rows so far.
-  std::int64_t texels_ = 0, converged_ = 0, other_start_ = 0, neighbour_ = 0;
-  double start_cost_ = 0;
-  std::vector<double> sums_;  // cost, then log differences and their number by view
+  RowSums sums_;
 };
 
 }  // namespace glint

@@ -29,6 +29,8 @@ const std::vector<std::string> kConfidenceChannels = {
     "normal.X",   "normal.Y",   "diffuse.R",  "diffuse.G",   "diffuse.B",
     "specular.R", "specular.G", "specular.B", "roughness.Y", "cost.Y"};
 
+constexpr char kMapsFile[] = "svbrdf.exr", kConfidenceFile[] = "confidence.exr";
+
 // Of the stage's time, at the paper's twenty views: lights and pictures are found on a sample.
 constexpr double kViewsShare = 0.3;
 
@@ -169,28 +171,30 @@ int RowsAtOnce(const SamplePlane& plane, size_t views) {
   return static_cast<int>(std::clamp(bytes / texel_bytes / plane.width, 16.0, 1e9));
 }
 
-// Refines the sample by rows and writes svbrdf.exr and confidence.exr.
-RefineSummary RefineByRows(const RefineOptions& options, const ReflectanceConvention& convention,
-                           int rows_at_once, int threads, SampleSource* source, Stage* stage) {
+// Writes the part's rows of svbrdf.exr and confidence.exr.
+RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
+                   const RefineOptions& options, int rows_at_once, int threads,
+                   SampleSource* source, Stage* stage) {
   const SamplePlane& plane = source->plane();
-  const SampleEstimate estimate = EstimateFrom(options, threads, source);
+  const ReflectanceConvention convention = source->Views().convention;
+  const int end = part.last(plane.height), rows = end - part.first(plane.height);
   std::unique_ptr<Progress> bar;
   const RowRefiner::ReportProgress progress = [&](std::int64_t done, std::int64_t total) {
     if (!bar) bar = std::make_unique<Progress>("refine", total, Progress::Part{kViewsShare, 1});
     bar->Set(done);
   };
-  RowRefiner refiner(estimate, options, threads, progress);
-  SvbrdfWriter maps(stage->Output("svbrdf.exr"), plane.width, plane.height, convention);
-  ExrWriter confidence(stage->Output("confidence.exr"), plane.width, plane.height,
-                       kConfidenceChannels, {{"convention", ToString(convention)}});
+  RowRefiner refiner(estimate, options, rows, threads, progress);
+  SvbrdfWriter maps(stage->Output(kMapsFile), plane.width, rows, convention);
+  ExrWriter confidence(stage->Output(kConfidenceFile), plane.width, rows, kConfidenceChannels,
+                       {{"convention", ToString(convention)}});
   const int reached = DependentRows(options);
-  for (int first = 0; first < plane.height; first += rows_at_once) {
-    const int last = std::min(first + rows_at_once, plane.height);
+  for (int first = part.first(plane.height); first < end; first += rows_at_once) {
+    const int last = std::min(first + rows_at_once, end);
     const int above = std::min(first, reached), below = std::min(plane.height - last, reached);
-    const SampleSource::Part part =
+    const SampleSource::Part some =
         source->Rows(first - above, above + last - first + below, threads);
     RowRefiner::Rows refined =
-        refiner.Refine(ProblemOf(part.photographs), part.start, above, below);
+        refiner.Refine(ProblemOf(some.photographs), some.start, above, below);
     Image deviations(plane.width, last - first, {});
     deviations.channels = kConfidenceChannels;
     deviations.samples = std::move(refined.confidence);
@@ -201,7 +205,26 @@ RefineSummary RefineByRows(const RefineOptions& options, const ReflectanceConven
   }
   maps.Close();
   confidence.Close();
-  return refiner.Summary();
+  return refiner.sums();
+}
+
+// The same of results of parts, in their folders.
+RowSums JoinParts(const std::vector<fs::path>& folders, const SampleEstimate& estimate,
+                  int rows_at_once, const SamplePlane& plane, Stage* stage) {
+  for (const char* name : {kMapsFile, kConfidenceFile}) {
+    std::vector<fs::path> files;
+    for (const fs::path& folder : folders) files.push_back(folder / name);
+    JoinRows(files, plane.height, rows_at_once, stage->Output(name));
+  }
+  RowSums sums;
+  for (size_t i = 0; i < folders.size(); ++i) {
+    const RowPart part{static_cast<int>(i) + 1, static_cast<int>(folders.size())};
+    const RowSums some =
+        ReadRowSums(folders[i] / kPartSums, part.last(plane.height) - part.first(plane.height),
+                    RowSumColumns(estimate.order.size()));
+    sums.insert(sums.end(), some.begin(), some.end());
+  }
+  return sums;
 }
 
 // What is expected of views whose light nobody calibrated.
@@ -215,6 +238,34 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStageOptions& opti
   refine.distance_power = options.distance_power;
   return refine;
 }
+
+// A capture's sample, ready to be refined by rows.
+struct Sample {
+  Sample(const fs::path& rectify_manifest, const RefineStart& start,
+         const RefineStageOptions& stage_options, int threads)
+      : set(ReadRectifiedSet(rectify_manifest)),
+        views(ChooseViews(set, start, stage_options)),
+        options(OptionsFor(set, stage_options)),
+        source(set, views, start.light_scale_rgb, start.maps_file),
+        correction(CorrectViewsWithBar(stage_options, threads, &source)),
+        rows_at_once(stage_options.rows_at_once > 0 ? stage_options.rows_at_once
+                                                    : RowsAtOnce(set.plane, views.size())),
+        estimate(EstimateCorrected(threads)) {}
+
+  RectifiedSet set;
+  std::vector<RectifiedView> views;
+  RefineOptions options;
+  SampleSource source;
+  CorrectionResult correction;
+  int rows_at_once;
+  SampleEstimate estimate;
+
+ private:
+  SampleEstimate EstimateCorrected(int threads) {
+    if (correction.taken) source.Correct(correction.corrections);
+    return EstimateFrom(options, threads, &source);
+  }
+};
 
 }  // namespace
 
@@ -274,6 +325,14 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "rows of texels held in memory at once; the result does not depend on it; 0: as "
                 "memory allows",
                 Invalidates::kNo);
+  set->Add("part", &options->part,
+           "K/N: refine only the K-th of N parts of the maps, from the top, as a job of its own; "
+           "its result is kept in glint/refine-KofN until --join",
+           Invalidates::kNo);
+  set->AddRange("join", &options->join, 0, kMostRowParts,
+                "join the results of this many parts, which --part made; the same bytes as without "
+                "parts; 0: refine",
+                Invalidates::kNo);
   set->Add("correct-exposures", &options->correction.view.exposure,
            "let corrections change the photographs' relative exposures too");
   set->Add("views", &options->views,
@@ -294,7 +353,7 @@ RefineStart ResolveRefineStart(const fs::path& work, const RefineStageOptions& o
   const fs::path& file = start.manifest_file;
   const Manifest fit = ReadManifest(file, "fit");
   VerifyOutputs(file, fit);
-  start.maps_file = work / "fit" / "svbrdf.exr";
+  start.maps_file = work / "fit" / kMapsFile;
   if (fit.data.contains("light_scale_rgb")) {
     const auto scale = RequireNumbers(file, fit.data, "data", "light_scale_rgb", 3);
     std::copy(scale.begin(), scale.end(), start.light_scale_rgb.begin());
@@ -309,34 +368,49 @@ RefineStart ResolveRefineStart(const fs::path& work, const RefineStageOptions& o
 }
 
 RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineStart& start,
-                                 const RefineStageOptions& options, int threads, Stage* stage) {
-  const RectifiedSet set = ReadRectifiedSet(rectify_manifest);
-  const std::vector<RectifiedView> views = ChooseViews(set, start, options);
-  SampleSource source(set, views, start.light_scale_rgb, start.maps_file);
-  const ReflectanceConvention convention = source.Views().convention;
-
+                                 const RefineStageOptions& options,
+                                 const std::vector<fs::path>& parts, int threads, Stage* stage) {
   const auto began = std::chrono::steady_clock::now();
+  Sample sample(rectify_manifest, start, options, threads);
+  const SamplePlane& plane = sample.set.plane;
+  const RowSums sums = parts.empty()
+                           ? RefineRows({}, sample.estimate, sample.options, sample.rows_at_once,
+                                        threads, &sample.source, stage)
+                           : JoinParts(parts, sample.estimate, sample.rows_at_once, plane, stage);
   RefineStageResult result;
-  result.correction = CorrectViewsWithBar(options, threads, &source);
-  if (result.correction.taken) source.Correct(result.correction.corrections);
-  const int rows_at_once =
-      options.rows_at_once > 0 ? options.rows_at_once : RowsAtOnce(set.plane, views.size());
-  result.summary =
-      RefineByRows(OptionsFor(set, options), convention, rows_at_once, threads, &source, stage);
+  result.correction = std::move(sample.correction);
+  result.summary = Summarise(sample.estimate, sums, plane.width);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  result.width = set.plane.width;
-  result.height = set.plane.height;
-  for (const RectifiedView& view : views) result.views.push_back(view.name);
-  result.data = {{"convention", ToString(convention)},
+  result.width = plane.width;
+  result.height = plane.height;
+  for (const RectifiedView& view : sample.views) result.views.push_back(view.name);
+  result.data = {{"convention", ToString(sample.source.Views().convention)},
                  {"light_scale_rgb", start.light_scale_rgb},
                  {"shared_light", JsonOf(result.summary.shared_light)},
                  {"views", result.views},
                  {"method", "refined"}};
-  result.metrics = Metrics(result.summary, views);
-  AddCorrections(Corrections(result.correction, result.summary), views, &result.data);
-  DescribeCorrection(result.correction, set, views, start.light_scale_rgb, &result);
+  result.metrics = Metrics(result.summary, sample.views);
+  AddCorrections(Corrections(result.correction, result.summary), sample.views, &result.data);
+  DescribeCorrection(result.correction, sample.set, sample.views, start.light_scale_rgb, &result);
   stage->Commit(result.data, result.metrics);
   return result;
+}
+
+RowRange RunRefinePart(const fs::path& rectify_manifest, const RefineStart& start,
+                       const RefineStageOptions& options, const RowPart& part, int threads,
+                       Stage* stage) {
+  Sample sample(rectify_manifest, start, options, threads);
+  const int height = sample.set.plane.height;
+  if (part.of > height) {
+    throw UserError("--part: found " + std::to_string(part.of) + " parts; the maps have " +
+                    std::to_string(height) + " rows, so that many at most");
+  }
+  const RowSums sums = RefineRows(part, sample.estimate, sample.options, sample.rows_at_once,
+                                  threads, &sample.source, stage);
+  WriteRowSums(stage->Output(kPartSums), sums);
+  const RowRange range{part.first(height), part.last(height) - part.first(height), height};
+  stage->Commit({{"first_row", range.first}, {"rows", range.rows}}, Json::object());
+  return range;
 }
 
 }  // namespace glint

@@ -8,6 +8,7 @@
 
 #include "fitting/refine/correct_views.h"
 #include "fitting/refine/refine.h"
+#include "fitting/refine/row_parts.h"
 #include "pipeline/contract/stage.h"
 
 namespace glint {
@@ -27,6 +28,8 @@ struct RefineStageOptions {
   double flash_beam = 0.3;
   double distance_power = 1;
   int rows_at_once = 0;              // in memory; 0: as memory allows; never changes a value
+  std::string part;                  // "K/N": that part alone; empty: all rows
+  int join = 0;                      // this many parts; 0: refine
   std::vector<std::string> views;    // names of those to use; empty: those that fit used
   std::vector<std::string> exclude;  // names of those held out
   std::filesystem::path from;        // maps to start from (svbrdf.exr); empty: the result of fit
@@ -55,9 +58,21 @@ struct RefineStageResult {
   double seconds = 0;  // of corrections and refinement; for a person only
 };
 
-// Reads, refines, writes the stage's outputs and commits them.
+// Reads, refines, writes the stage's outputs and commits them. `parts`: folders of the results of
+// all parts, to be joined instead of refining; none: it refines.
 RefineStageResult RunRefineStage(const std::filesystem::path& rectify_manifest,
                                  const RefineStart& start, const RefineStageOptions& options,
-                                 int threads, Stage* stage);
+                                 const std::vector<std::filesystem::path>& parts, int threads,
+                                 Stage* stage);
+
+struct RowRange {
+  int first = 0, rows = 0, of = 0;
+};
+
+// One part (row_parts.h), as a result of its own: its rows of svbrdf.exr and confidence.exr, and
+// sums.json. Throws UserError: more parts than rows.
+RowRange RunRefinePart(const std::filesystem::path& rectify_manifest, const RefineStart& start,
+                       const RefineStageOptions& options, const RowPart& part, int threads,
+                       Stage* stage);
 
 }  // namespace glint

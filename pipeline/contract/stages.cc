@@ -11,7 +11,7 @@ constexpr StageKind kStages[] = {
      "rectified top views of the sample in linear radiance",
      {0.6, 0, 0.02, 0, 0.5, 170, 8, 0, 5, 70}},
     {"fit", "material maps by latent or classic fitting", {1, 11.5, 0, 2, 0, 330, 0, 60, 0, 190}},
-    {"refine", "material maps per texel", {2.5, 0, 0, 22, 0.4, 140, 0, 226, 16, 1100}},
+    {"refine", "material maps per texel", {2.5, 0, 0, 22, 0.4, 140, 0, 226, 16, 1100}, true},
     {"tile",
      "seamlessly tiling maps ([tile] section in capture.toml)",
      {0.2, 0, 0, 3.2, 0, 140, 0, 300, 0, 0}},

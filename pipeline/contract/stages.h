@@ -31,6 +31,7 @@ struct StageKind {
   std::string_view name;
   std::string_view summary;  // one line, for lists of commands
   StageCost cost;
+  bool by_parts = false;  // whether several jobs can share it: --part K/N, then --join N
 };
 
 // In the order in which they run, whether or not a capture needs them.

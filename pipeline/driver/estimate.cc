@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pipeline/contract/run_progress.h"
+#include "pipeline/contract/stages.h"
 #include "pipeline/files/memory_limit.h"
 
 namespace glint {
@@ -43,6 +44,7 @@ Json CaptureEstimate::ToJson() const {
                     {"inputs", stage.step.inputs},
                     {"waits_for", stage.step.waits_for},
                     {"manifest", stage.step.manifest},
+                    {"by_parts", FindStage(stage.step.stage)->by_parts},
                     {"seconds", stage.seconds},
                     {"memory_bytes", stage.memory_bytes}});
   }

@@ -54,12 +54,19 @@ class WorkflowTest : public testing::Test {
   }
   std::string page() const { return ReadAll(folder_ / "captures/overview.html"); }
 
-  Outcome Run() const {
+  Outcome Run(const std::vector<std::string>& config = {}) const {
     const fs::path workflow = GLINT_WORKFLOW_DIR;
-    return test::RunProgram({"snakemake", "--snakefile", (workflow / "Snakefile").string(),
-                             "--profile", (workflow / "profiles/local").string(), "--directory",
-                             (folder_ / "captures").string(), "--config",
-                             "glint=" + (folder_ / "bin/glint").string()});
+    std::vector<std::string> command = {"snakemake",
+                                        "--snakefile",
+                                        (workflow / "Snakefile").string(),
+                                        "--profile",
+                                        (workflow / "profiles/local").string(),
+                                        "--directory",
+                                        (folder_ / "captures").string(),
+                                        "--config",
+                                        "glint=" + (folder_ / "bin/glint").string()};
+    command.insert(command.end(), config.begin(), config.end());
+    return test::RunProgram(command);
   }
 
   test::TemporaryFolder folder_;
@@ -105,6 +112,25 @@ TEST_F(WorkflowTest, ASecondRunDoesWhatIsLeftAndContentDecides) {
   fs::last_write_time(capture("a sound one") / "photos/a.jpg", before - std::chrono::hours(1000));
   EXPECT_EQ(Run().code, 0);
   EXPECT_NE(ReadAll(manifest("a sound one", "rectify")), old_result);
+}
+
+// Maps have 1024² texels, a million.
+TEST_F(WorkflowTest, SeveralJobsShareTheRefinementOfALargeCapture) {
+  for (const char* name : {"unreadable", "failing"}) fs::remove_all(capture(name));
+  const Outcome outcome = Run({"part_texels=400000"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const fs::path targets = capture("a sound one") / "glint/workflow";
+  for (const char* part : {"1of3", "2of3", "3of3"}) {
+    EXPECT_TRUE(fs::exists(targets / ("refine-" + std::string(part)))) << part;
+    EXPECT_FALSE(fs::exists(targets / ("fit-" + std::string(part)))) << part;
+  }
+  EXPECT_TRUE(fs::exists(manifest("a sound one", "refine")));
+  EXPECT_THAT(Run({"part_texels=400000"}).err, HasSubstr("Nothing to be done"));
+
+  // All parts again, for other maps.
+  WriteAll(capture("a sound one") / "photos/a.jpg", "another");
+  EXPECT_EQ(Run({"part_texels=400000"}).code, 0);
+  EXPECT_THAT(page(), HasSubstr("1 done"));
 }
 
 TEST_F(WorkflowTest, AFailureLeavesTheResultThatIsThere) {

@@ -54,7 +54,7 @@ class RefineRowsTest : public ::testing::Test {
 
   RefineResult ByRows(int at_once, int threads) const {
     const SampleEstimate estimate = EstimateSample(scene_.Problem(), start_, options_, threads);
-    RowRefiner refiner(estimate, options_, threads, {});
+    RowRefiner refiner(estimate, options_, kSize, threads, {});
     RefineResult result;
     result.maps = SvbrdfMaps(kSize, kSize);
     result.confidence.resize(kConfidencePlanes * start_.texels());
@@ -67,7 +67,7 @@ class RefineRowsTest : public ::testing::Test {
       Put(refined.maps.planes, first, rows, &result.maps.planes);
       Put(refined.confidence, first, rows, &result.confidence);
     }
-    result.summary = refiner.Summary();
+    result.summary = Summarise(estimate, refiner.sums(), kSize);
     return result;
   }
 

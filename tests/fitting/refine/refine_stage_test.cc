@@ -164,6 +164,50 @@ TEST(RefineStage, RowsInMemoryDoNotChangeAByteOfTheMaps) {
   EXPECT_EQ(maps("few", {"--estimation-size", "16", "--rows-at-once", "3"}), whole);
 }
 
+TEST(RefineStage, PartsInAnyOrderJoinToTheBytesOfTheWhole) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"whole", "parts"}) WriteCapture(folder.path() / name);
+  ASSERT_EQ(Refine(folder.path() / "whole").code, 0);
+  const fs::path parts = folder.path() / "parts";
+  for (const char* part : {"3/5", "1/5", "5/5", "2/5", "4/5"}) {
+    const test::Outcome outcome = Refine(parts, {"--part", part, "--rows-at-once", "2"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+  EXPECT_FALSE(fs::exists(parts / "glint/refine"));
+  const test::Outcome outcome = Refine(parts, {"--join", "5"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* file : {"manifest.json", "svbrdf.exr", "confidence.exr"}) {
+    EXPECT_EQ(ReadAll(parts / "glint/refine" / file),
+              ReadAll(folder.path() / "whole/glint/refine" / file))
+        << file;
+  }
+  EXPECT_FALSE(fs::exists(parts / "glint/refine-3of5"));
+}
+
+TEST(RefineStage, PartsThatAreMissingOrOfOtherOptionsAreNotJoined) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path());
+  ASSERT_EQ(Refine(folder.path(), {"--part", "1/2"}).code, 0);
+  ASSERT_EQ(Refine(folder.path(), {"--part", "2/2", "--prior", "2"}).code, 0);
+  const test::Outcome outcome = Refine(folder.path(), {"--join", "2"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("--part 2/2"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder.path() / "glint/refine"));
+  ASSERT_EQ(Refine(folder.path(), {"--part", "2/2"}).code, 0);
+  EXPECT_EQ(Refine(folder.path(), {"--join", "2"}).code, 0);
+}
+
+TEST(RefineStage, WrongPartsAreRefused) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path());
+  for (const char* part : {"0/2", "3/2", "2", "1/", "/2", "1/2/3", "a/b", "1/9999", "1/25"}) {
+    const test::Outcome outcome = Refine(folder.path(), {"--part", part});
+    EXPECT_EQ(outcome.code, 2) << part;
+    EXPECT_NE(outcome.err.find("--part"), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(Refine(folder.path(), {"--part", "1/2", "--join", "2"}).code, 2);
+}
+
 // Rows, thinned out texels and displaced pictures are those of the whole.
 TEST(SampleSource, GivesPartsOfTheCorrectedWhole) {
   const test::TemporaryFolder folder;

@@ -2,7 +2,8 @@
 // Its name, glint-<stage>, says which one it is; it reads what the real stage reads, keeps a
 // manifest with a key as real stages do, and writes one text.
 //   option "gain": enters the result · "fail" N: ends with exit code N after writing an output ·
-//   "die": ends by SIGKILL · "sleep" S: takes S seconds
+//   "die": ends by SIGKILL · "sleep" S: takes S seconds · "part" K/N: writes a file for it alone ·
+//   "join" N: ends with exit code 2 where one of these is missing
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -33,7 +34,22 @@ struct FakeOptions {
   std::string log_level;
   int threads = 0;
   double memory_gb = 0;
+  std::string part;
+  int join = 0;
 };
+
+fs::path PartFile(const FakeOptions& o, const std::string& stage, const std::string& part) {
+  return o.folder / "glint" / (stage + "-" + part + ".txt");
+}
+
+void JoinParts(const FakeOptions& o, const std::string& stage) {
+  for (int k = 1; k <= o.join; ++k) {
+    const std::string part = std::to_string(k) + "of" + std::to_string(o.join);
+    if (!fs::remove(PartFile(o, stage, part))) {
+      throw glint::UserError("part " + part + " is missing");
+    }
+  }
+}
 
 std::vector<fs::path> Inputs(const FakeOptions& o, const std::string& stage) {
   std::vector<fs::path> files;
@@ -87,6 +103,13 @@ int RunStage(const std::string& name, const FakeOptions& o, const glint::OptionS
     return 0;
   }
   if (why.empty() && !o.force) return 0;
+  if (!o.part.empty()) {
+    std::string part = o.part;
+    part.replace(part.find('/'), 1, "of");
+    std::ofstream(PartFile(o, name, part)) << part;
+    return 0;
+  }
+  JoinParts(o, name);
   const fs::path fresh = folder.parent_path() / ("." + name + ".new");
   fs::remove_all(fresh);
   fs::create_directories(fresh);
@@ -122,6 +145,8 @@ int main(int argc, char** argv) {
   options.Add("fail", &o.fail, "exit code", glint::Invalidates::kNo);
   options.Add("die", &o.die, "by SIGKILL", glint::Invalidates::kNo);
   options.Add("sleep", &o.sleep_s, "seconds", glint::Invalidates::kNo);
+  options.Add("part", &o.part, "K/N", glint::Invalidates::kNo);
+  options.Add("join", &o.join, "parts", glint::Invalidates::kNo);
   CLI::App app;
   options.Register(&app);
   app.add_flag("--status", o.check);
