@@ -173,9 +173,10 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
       "bootstrap", &options->bootstrap, {"estimator", "heuristic"},
       "how the initial maps are estimated; estimator: a trained network, from the photograph "
       "nearest to vertical; heuristic: lobes fitted to the whole sample");
-  set->AddChoice("metals", &options->metals, {"possible", "rare"},
+  set->AddChoice("metals", &options->metals, {"auto", "possible", "rare"},
                  "how the estimator interprets dark, glossy areas; possible: perhaps metal; rare: "
-                 "glass, lacquer, print and the like (for samples without bare metal)");
+                 "glass, lacquer, print and the like; auto: possible if the light's power was "
+                 "calibrated, otherwise rare, since brightness then cannot tell them apart");
   set->AddRange(
       "iterations", &options->iterations, 0, 1e6,
       "maximum number of steps at the first, coarse level; 0: the method's default, which "
@@ -205,8 +206,9 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
 }
 
 void ResolveFitOptions(const fs::path& rectify_manifest, FitStageOptions* options) {
-  if (options->method == "start") return;  // none are done
   const RectifiedSet set = ReadRectifiedSet(rectify_manifest);
+  if (options->metals == "auto") options->metals = set.light_power_known ? "possible" : "rare";
+  if (options->method == "start") return;  // without iterations
   const size_t photographs = SelectViews(set, options->views, options->exclude).size();
   const FitOptions own = IsLatent(*options) ? FitOptions::Latent() : FitOptions::Classic();
   const bool single = IsLatent(*options) && photographs == 1;

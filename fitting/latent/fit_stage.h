@@ -17,10 +17,10 @@ struct FitStageOptions {
   // latent: in the learned space; classic: texel by texel; start: no fitting, the start as it is
   std::string method = "latent";
   std::string bootstrap = "estimator";  // estimator: the trained network; heuristic: bootstrap.h
-  // possible or rare: which of the shipped estimators. One photograph does not tell a black mirror
-  // of metal from one of glass; its person does. Without effect where `estimator` or `start` is
-  // given, and on heuristics.
-  std::string metals = "possible";
+  // possible or rare: which of the shipped estimators; auto: rare where the light's power is not
+  // known, so that no highlight's brightness tells metal from glass and what people photograph
+  // decides. Without effect where `estimator` or `start` is given, and on heuristics.
+  std::string metals = "auto";
   int iterations = 0;       // at the first level; 0: the method's own (few from one photo)
   int fine_iterations = 0;  // at each later level; 0: the method's own
   int finest_size = 256;    // latent: of the last level, texels, or the photographs'
@@ -38,7 +38,7 @@ struct FitStageOptions {
 void AddFitOptions(OptionSet* set, FitStageOptions* options);
 
 // Puts the method's own numbers of iterations where none are given, for as many photographs as are
-// fitted: the manifest then has what was done. Throws UserError where `rectify_manifest` or the
+// fitted, and what `auto` comes to: the manifest then has what was done. Throws UserError where `rectify_manifest` or the
 // choice of views is wrong.
 void ResolveFitOptions(const std::filesystem::path& rectify_manifest, FitStageOptions* options);
 

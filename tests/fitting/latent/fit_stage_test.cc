@@ -57,8 +57,9 @@ TEST(RareMetals, TakesABlackMirrorForGlass) {
 }
 
 // A rectified set of three views, and the manifest's path.
-fs::path WriteRectifiedViews(const fs::path& folder) {
+fs::path WriteRectifiedViews(const fs::path& folder, bool light_power_known = true) {
   RectifiedSet set;
+  set.light_power_known = light_power_known;
   set.plane = {8, 8, 2.0, 2.0, TexelSampling::kPixelCentres};
   CommonOptions common;
   common.threads = 1;
@@ -96,6 +97,22 @@ TEST(ResolveFitOptions, PutsTheMethodsOwnNumbersWhereNoneAreGiven) {
   EXPECT_EQ(resolved(classic), std::pair(3000, 200));
   EXPECT_EQ(resolved(single), std::pair(8, 8));
   EXPECT_EQ(resolved(given), std::pair(17, 80));
+}
+
+TEST(ResolveFitOptions, MetalsAreRareWhereNoHighlightsBrightnessTellsThem) {
+  const test::TemporaryFolder folder;
+  const auto metals = [&](bool light_power_known, FitStageOptions options) {
+    const std::string name = light_power_known ? "known" : "unknown";
+    ResolveFitOptions(WriteRectifiedViews(folder / name, light_power_known), &options);
+    return options.metals;
+  };
+  FitStageOptions start;
+  start.method = "start";
+  EXPECT_EQ(metals(true, {}), "possible");
+  EXPECT_EQ(metals(false, {}), "rare");
+  EXPECT_EQ(metals(false, start), "rare");
+  EXPECT_EQ(metals(false, WithMetals("possible")), "possible");
+  EXPECT_EQ(metals(true, WithMetals("rare")), "rare");
 }
 
 // So that whoever reads a manifest knows what was done.
