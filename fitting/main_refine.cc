@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/errors/errors.h"
@@ -14,13 +15,16 @@
 namespace glint {
 namespace {
 
-ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined) {
+// `parts`: from how many it was joined; 0: it was refined.
+ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined, int parts) {
   const double texels = static_cast<double>(refined.width) * refined.height;
+  const std::string how =
+      parts > 0 ? fmt::format("joined from {} parts in {:.1f} s", parts, refined.seconds)
+                : fmt::format("{} views in {:.1f} s ({:.0f} texels/s)", refined.views.size(),
+                              refined.seconds, texels / refined.seconds);
   ProgramResult result;
-  result.text =
-      fmt::format("refine: {}x{} texels from {} views in {:.1f} s ({:.0f} texels/s)\n  {}\n",
-                  refined.width, refined.height, refined.views.size(), refined.seconds,
-                  texels / refined.seconds, refined.summary.BriefReport());
+  result.text = fmt::format("refine: {}x{} texels {}{}\n  {}\n", refined.width, refined.height,
+                            parts > 0 ? "" : "from ", how, refined.summary.BriefReport());
   result.summary = fmt::format("{} view{}, residuals {:.3g} %, {} substances", refined.views.size(),
                                refined.views.size() == 1 ? "" : "s",
                                100 * refined.summary.residual_sigma, refined.summary.substances);
@@ -73,9 +77,26 @@ Stage PartOf(const Sources& sources, const RowPart& part, const OptionSet& set,
   return Stage(sources.work / name, {name, kRefineVersion}, set, common, sources.inputs);
 }
 
+// Whether the whole has been refined, asked without its lock: parts run side by side.
+bool IsRefined(const Sources& sources, const OptionSet& set, CommonOptions common) {
+  if (common.force) return false;
+  common.check = true;
+  try {
+    const Stage whole(sources.work / "refine", {"refine", kRefineVersion}, set, common,
+                      sources.inputs);
+  } catch (const StageCheck& check) {
+    return check.why_stale.empty();
+  }
+  return false;
+}
+
 ProgramResult RunPart(const Capture& capture, const Sources& sources, const OptionSet& set,
                       const RefineStageOptions& options, const CommonOptions& common) {
   const RowPart part = ParseRowPart(options.part);
+  if (!common.check && IsRefined(sources, set, common)) {
+    return {"refine: up to date as a whole; no part is needed\n",
+            {{"stage", "refine"}, {"up_to_date", true}}};
+  }
   Stage stage = PartOf(sources, part, set, common);
   if (stage.UpToDate()) return stage.UpToDateResult();
   RequireMemoryForStage("refine", capture, common.threads);
@@ -83,48 +104,59 @@ ProgramResult RunPart(const Capture& capture, const Sources& sources, const Opti
       RunRefinePart(sources.rectify_manifest, sources.start, options, part, common.threads, &stage);
   ProgramResult result;
   result.text = fmt::format("refine: part {} of {}, rows {} to {} of {}\n", part.part, part.of,
-                            rows.first, rows.first + rows.rows - 1, rows.of);
+                            rows.first + 1, rows.first + rows.rows, rows.of);
   result.json = {{"stage", PartStage(part)},
                  {"up_to_date", false},
                  {"manifest", stage.manifest_file().string()}};
   return result;
 }
 
-// Folders of the parts, all of them up to date.
-std::vector<std::filesystem::path> PartFolders(const std::filesystem::path& folder,
-                                               const Sources& sources, const OptionSet& set,
-                                               int parts, const CommonOptions& common) {
-  std::vector<std::filesystem::path> folders;
+// The parts' results, all of them up to date, and locked for as long as they are held.
+std::vector<Stage> Parts(const std::filesystem::path& folder, const Sources& sources,
+                         const OptionSet& set, int parts, CommonOptions common) {
+  common.force = false;  // they are joined as they are
+  std::vector<Stage> results;
   for (int k = 1; k <= parts; ++k) {
-    const Stage part = PartOf(sources, {k, parts}, set, common);
-    if (!part.UpToDate()) {
-      throw UserError(part.folder(), "",
-                      "no result of part " + std::to_string(k) + " that is up to date",
-                      fmt::format("run glint refine {} --part {}/{}", folder.string(), k, parts));
-    }
-    folders.push_back(part.folder());
+    results.push_back(PartOf(sources, {k, parts}, set, common));
+    if (results.back().UpToDate()) continue;
+    throw UserError(results.back().folder(), "", fmt::format("no up-to-date result of part {}", k),
+                    fmt::format("run glint refine {} --part {}/{}, with the same options",
+                                folder.string(), k, parts));
   }
-  return folders;
+  return results;
 }
 
-ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RefineStageOptions* options,
-                  CommonOptions common) {
-  const Capture capture = ReadCapture(folder);
+void LoadToml(const Capture& capture, OptionSet* set, RefineStageOptions* options) {
+  const std::pair asked(options->part, options->join);
   set->LoadToml(capture.file, "refine");
+  if (std::pair(options->part, options->join) != asked) {
+    throw UserError(capture.file, "[refine] part, join", "a value",
+                    "each is one job's; give it on the command line");
+  }
   if (!options->part.empty() && options->join > 0) {
     throw UserError("--part, --join: found both; refine all parts, then join them");
   }
+}
+
+ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RefineStageOptions* options,
+                  const CommonOptions& common) {
+  const Capture capture = ReadCapture(folder);
+  LoadToml(capture, set, options);
   const Sources sources = ReadSources(capture, *options);
   if (!options->part.empty()) return RunPart(capture, sources, *set, *options, common);
   Stage stage(sources.work / "refine", {"refine", kRefineVersion}, *set, common, sources.inputs);
-  if (stage.UpToDate()) return stage.UpToDateResult();
+  if (stage.UpToDate()) {
+    RemoveParts(sources.work);
+    return stage.UpToDateResult();
+  }
   RequireMemoryForStage("refine", capture, common.threads);
-  common.force = false;  // parts are joined as they are
-  const auto parts = PartFolders(folder, sources, *set, options->join, common);
+  const std::vector<Stage> parts = Parts(folder, sources, *set, options->join, common);
+  std::vector<std::filesystem::path> folders;
+  for (const Stage& part : parts) folders.push_back(part.folder());
   const RefineStageResult result = RunRefineStage(sources.rectify_manifest, sources.start, *options,
-                                                  parts, common.threads, &stage);
-  for (const std::filesystem::path& part : parts) std::filesystem::remove_all(part);
-  return Summarise(stage, result);
+                                                  folders, common.threads, &stage);
+  RemoveParts(sources.work);
+  return Summarise(stage, result, options->join);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_rows.h"
+#include "pipeline/files/hash.h"
 #include "pipeline/files/memory_limit.h"
 
 namespace glint {
@@ -171,62 +172,6 @@ int RowsAtOnce(const SamplePlane& plane, size_t views) {
   return static_cast<int>(std::clamp(bytes / texel_bytes / plane.width, 16.0, 1e9));
 }
 
-// Writes the part's rows of svbrdf.exr and confidence.exr.
-RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
-                   const RefineOptions& options, int rows_at_once, int threads,
-                   SampleSource* source, Stage* stage) {
-  const SamplePlane& plane = source->plane();
-  const ReflectanceConvention convention = source->Views().convention;
-  const int end = part.last(plane.height), rows = end - part.first(plane.height);
-  std::unique_ptr<Progress> bar;
-  const RowRefiner::ReportProgress progress = [&](std::int64_t done, std::int64_t total) {
-    if (!bar) bar = std::make_unique<Progress>("refine", total, Progress::Part{kViewsShare, 1});
-    bar->Set(done);
-  };
-  RowRefiner refiner(estimate, options, rows, threads, progress);
-  SvbrdfWriter maps(stage->Output(kMapsFile), plane.width, rows, convention);
-  ExrWriter confidence(stage->Output(kConfidenceFile), plane.width, rows, kConfidenceChannels,
-                       {{"convention", ToString(convention)}});
-  const int reached = DependentRows(options);
-  for (int first = part.first(plane.height); first < end; first += rows_at_once) {
-    const int last = std::min(first + rows_at_once, end);
-    const int above = std::min(first, reached), below = std::min(plane.height - last, reached);
-    const SampleSource::Part some =
-        source->Rows(first - above, above + last - first + below, threads);
-    RowRefiner::Rows refined =
-        refiner.Refine(ProblemOf(some.photographs), some.start, above, below);
-    Image deviations(plane.width, last - first, {});
-    deviations.channels = kConfidenceChannels;
-    deviations.samples = std::move(refined.confidence);
-    // Compressing takes as long as reading the photographs.
-    ForEachPiece(2, threads, [&](int file) {
-      file == 0 ? maps.Write(refined.maps) : confidence.Write(deviations);
-    });
-  }
-  maps.Close();
-  confidence.Close();
-  return refiner.sums();
-}
-
-// The same of results of parts, in their folders.
-RowSums JoinParts(const std::vector<fs::path>& folders, const SampleEstimate& estimate,
-                  int rows_at_once, const SamplePlane& plane, Stage* stage) {
-  for (const char* name : {kMapsFile, kConfidenceFile}) {
-    std::vector<fs::path> files;
-    for (const fs::path& folder : folders) files.push_back(folder / name);
-    JoinRows(files, plane.height, rows_at_once, stage->Output(name));
-  }
-  RowSums sums;
-  for (size_t i = 0; i < folders.size(); ++i) {
-    const RowPart part{static_cast<int>(i) + 1, static_cast<int>(folders.size())};
-    const RowSums some =
-        ReadRowSums(folders[i] / kPartSums, part.last(plane.height) - part.first(plane.height),
-                    RowSumColumns(estimate.order.size()));
-    sums.insert(sums.end(), some.begin(), some.end());
-  }
-  return sums;
-}
-
 // What is expected of views whose light nobody calibrated.
 RefineOptions OptionsFor(const RectifiedSet& set, const RefineStageOptions& options) {
   RefineOptions refine = options.refine;
@@ -266,6 +211,88 @@ struct Sample {
     return EstimateFrom(options, threads, &source);
   }
 };
+
+// Writes the part's rows of svbrdf.exr and confidence.exr.
+RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
+                   const RefineOptions& options, int rows_at_once, int threads,
+                   SampleSource* source, Stage* stage) {
+  const SamplePlane& plane = source->plane();
+  const ReflectanceConvention convention = source->Views().convention;
+  const int end = part.last(plane.height), rows = end - part.first(plane.height);
+  std::unique_ptr<Progress> bar;
+  const RowRefiner::ReportProgress progress = [&](std::int64_t done, std::int64_t total) {
+    if (!bar) bar = std::make_unique<Progress>("refine", total, Progress::Part{kViewsShare, 1});
+    bar->Set(done);
+  };
+  RowRefiner refiner(estimate, options, rows, threads, progress);
+  SvbrdfWriter maps(stage->Output(kMapsFile), plane.width, rows, convention);
+  ExrWriter confidence(stage->Output(kConfidenceFile), plane.width, rows, kConfidenceChannels,
+                       {{"convention", ToString(convention)}});
+  const int reached = DependentRows(options);
+  for (int first = part.first(plane.height); first < end; first += rows_at_once) {
+    const int last = std::min(first + rows_at_once, end);
+    const int above = std::min(first, reached), below = std::min(plane.height - last, reached);
+    const SampleSource::Part some =
+        source->Rows(first - above, above + last - first + below, threads);
+    RowRefiner::Rows refined =
+        refiner.Refine(ProblemOf(some.photographs), some.start, above, below);
+    Image deviations(plane.width, last - first, {});
+    deviations.channels = kConfidenceChannels;
+    deviations.samples = std::move(refined.confidence);
+    // Compressing takes as long as reading the photographs.
+    ForEachPiece(2, threads, [&](int file) {
+      file == 0 ? maps.Write(refined.maps) : confidence.Write(deviations);
+    });
+  }
+  maps.Close();
+  confidence.Close();
+  return refiner.sums();
+}
+
+// What parts of a sample must agree on: a hash of what was estimated of it as a whole. It differs
+// between processors with different vector units.
+std::string EstimateHash(const Sample& sample) {
+  const RefineSummary& summary = sample.estimate.summary;
+  Json json = {{"residual_sigma", summary.residual_sigma},
+               {"residual_deviation", summary.residual_deviation},
+               {"roughness_spread", summary.roughness_spread},
+               {"specular_spread", summary.specular_spread},
+               {"normal_spread", summary.normal_spread},
+               {"exposure_spread", summary.exposure_spread},
+               {"light_spread", summary.light_spread},
+               {"shared_light", JsonOf(summary.shared_light)}};
+  AddCorrections(Corrections(sample.correction, summary), sample.views, &json);
+  return HashBytes(json.dump());
+}
+
+void RequireSameEstimate(const fs::path& folder, const std::string& hash) {
+  const fs::path file = folder / "manifest.json";
+  if (RequireString(file, ReadManifest(file).data, "data", "estimate") == hash) return;
+  throw UserError(file, "data.estimate", "another estimate of the sample than on this machine",
+                  "join parts on a processor with the vector instructions of those that made them");
+}
+
+// The same of results of parts, in their folders.
+RowSums JoinParts(const std::vector<fs::path>& folders, const Sample& sample, Stage* stage) {
+  const SampleEstimate& estimate = sample.estimate;
+  const SamplePlane& plane = sample.set.plane;
+  const std::string hash = EstimateHash(sample);
+  for (const fs::path& folder : folders) RequireSameEstimate(folder, hash);
+  for (const char* name : {kMapsFile, kConfidenceFile}) {
+    std::vector<fs::path> files;
+    for (const fs::path& folder : folders) files.push_back(folder / name);
+    JoinRows(files, plane.height, sample.rows_at_once, stage->Output(name));
+  }
+  RowSums sums;
+  for (size_t i = 0; i < folders.size(); ++i) {
+    const RowPart part{static_cast<int>(i) + 1, static_cast<int>(folders.size())};
+    const RowSums some =
+        ReadRowSums(folders[i] / kPartSums, part.last(plane.height) - part.first(plane.height),
+                    RowSumColumns(estimate.order.size()));
+    sums.insert(sums.end(), some.begin(), some.end());
+  }
+  return sums;
+}
 
 }  // namespace
 
@@ -376,7 +403,7 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
   const RowSums sums = parts.empty()
                            ? RefineRows({}, sample.estimate, sample.options, sample.rows_at_once,
                                         threads, &sample.source, stage)
-                           : JoinParts(parts, sample.estimate, sample.rows_at_once, plane, stage);
+                           : JoinParts(parts, sample, stage);
   RefineStageResult result;
   result.correction = std::move(sample.correction);
   result.summary = Summarise(sample.estimate, sums, plane.width);
@@ -399,17 +426,19 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
 RowRange RunRefinePart(const fs::path& rectify_manifest, const RefineStart& start,
                        const RefineStageOptions& options, const RowPart& part, int threads,
                        Stage* stage) {
-  Sample sample(rectify_manifest, start, options, threads);
-  const int height = sample.set.plane.height;
+  const int height = ReadRectifiedSet(rectify_manifest).plane.height;
   if (part.of > height) {
     throw UserError("--part: found " + std::to_string(part.of) + " parts; the maps have " +
                     std::to_string(height) + " rows, so that many at most");
   }
+  Sample sample(rectify_manifest, start, options, threads);
   const RowSums sums = RefineRows(part, sample.estimate, sample.options, sample.rows_at_once,
                                   threads, &sample.source, stage);
   WriteRowSums(stage->Output(kPartSums), sums);
   const RowRange range{part.first(height), part.last(height) - part.first(height), height};
-  stage->Commit({{"first_row", range.first}, {"rows", range.rows}}, Json::object());
+  stage->Commit(
+      {{"first_row", range.first}, {"rows", range.rows}, {"estimate", EstimateHash(sample)}},
+      Json::object());
   return range;
 }
 

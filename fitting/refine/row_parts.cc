@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <memory>
+#include <regex>
 
 #include "base/errors/errors.h"
 #include "pipeline/files/files.h"
@@ -40,6 +43,16 @@ RowPart ParseRowPart(const std::string& text) {
 
 std::string PartStage(const RowPart& part) { return "refine-" + part.name(); }
 
+void RemoveParts(const fs::path& work) {
+  const std::regex name("refine-[0-9]+of[0-9]+");
+  std::error_code error;
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(work, error)) {
+    if (std::regex_match(entry.path().filename().string(), name)) folders.push_back(entry.path());
+  }
+  for (const fs::path& folder : folders) fs::remove_all(folder, error);
+}
+
 void WriteRowSums(const fs::path& file, const RowSums& sums) {
   WriteFileAtomically(file, Json(sums).dump() + "\n");
 }
@@ -48,7 +61,8 @@ RowSums ReadRowSums(const fs::path& file, int rows, size_t columns) {
   const Json json = ReadJsonFile(file, kRunAgain);
   const auto is_row = [&](const Json& row) {
     return row.is_array() && row.size() == columns &&
-           std::all_of(row.begin(), row.end(), [](const Json& x) { return x.is_number(); });
+           std::all_of(row.begin(), row.end(),
+                       [](const Json& x) { return x.is_number() || x.is_null(); });
   };
   if (!json.is_array() || json.size() != static_cast<size_t>(rows) ||
       !std::all_of(json.begin(), json.end(), is_row)) {
@@ -57,29 +71,39 @@ RowSums ReadRowSums(const fs::path& file, int rows, size_t columns) {
         "other than " + std::to_string(rows) + " lists of " + std::to_string(columns) + " numbers",
         kRunAgain);
   }
-  return json.get<RowSums>();
+  RowSums sums;
+  for (const Json& row : json) {
+    std::vector<double>& numbers = sums.emplace_back();
+    for (const Json& x : row) numbers.push_back(x.is_null() ? std::nan("") : x.get<double>());
+  }
+  return sums;
 }
 
 void JoinRows(const std::vector<fs::path>& parts, int height, int rows_at_once,
               const fs::path& file) {
-  std::unique_ptr<ExrWriter> writer;
-  int written = 0;
+  const ExrReader like(parts.front());
+  int rows = 0;
+  for (const fs::path& part : parts) {
+    const ExrReader reader(part);
+    if (reader.width() != like.width() || reader.channels() != like.channels()) {
+      throw UserError(part, "", "another width or other channels than in the first part's",
+                      kRunAgain);
+    }
+    rows += reader.height();
+  }
+  if (rows != height) {
+    throw UserError(
+        file.filename(), "", std::to_string(rows) + " rows in all parts",
+        std::to_string(height) + " are expected; run glint-refine --part for all again");
+  }
+  ExrWriter writer(file, like.width(), height, like.channels(), like.attributes());
   for (const fs::path& part : parts) {
     ExrReader reader(part);
-    if (!writer) {
-      writer = std::make_unique<ExrWriter>(file, reader.width(), height, reader.channels(),
-                                           reader.attributes());
-    }
     for (int first = 0; first < reader.height(); first += rows_at_once) {
-      writer->Write(reader.Read(first, std::min(rows_at_once, reader.height() - first)));
+      writer.Write(reader.Read(first, std::min(rows_at_once, reader.height() - first)));
     }
-    written += reader.height();
   }
-  if (written != height) {
-    throw UserError(parts.front(), "", std::to_string(written) + " rows in all parts",
-                    std::to_string(height) + " are expected; " + kRunAgain);
-  }
-  writer->Close();
+  writer.Close();
 }
 
 }  // namespace glint

@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "fitting/refine/refine_rows.h"
-#include "pipeline/contract/stage.h"
 
 namespace glint {
 
-inline constexpr int kMostRowParts = 4096;
+inline constexpr int kMostRowParts = 256;
 
 // The part-th of `of` parts of a sample, from the top, counted from 1.
 struct RowPart {
@@ -34,15 +33,18 @@ RowPart ParseRowPart(const std::string& text);
 
 // The stage's name and folder of a part, beside the stage's own: "refine-3of8".
 std::string PartStage(const RowPart& part);
+// Removes results of parts, which a result of the whole leaves without use, from `work`. What
+// cannot be removed stays.
+void RemoveParts(const std::filesystem::path& work);
 
 // Files of a part's result.
 inline constexpr char kPartSums[] = "sums.json";
 void WriteRowSums(const std::filesystem::path& file, const RowSums& sums);
-// Throws UserError: not `rows` lists of `columns` numbers.
+// Throws UserError: not `rows` lists of `columns` numbers. What was not finite comes back as NaN.
 RowSums ReadRowSums(const std::filesystem::path& file, int rows, size_t columns);
 
 // Writes the EXR file whose rows are those of `parts`, from the top, `rows_at_once` in memory.
-// Throws UserError: they do not fit together.
+// Throws UserError: they do not fit together; nothing is then written.
 void JoinRows(const std::vector<std::filesystem::path>& parts, int height, int rows_at_once,
               const std::filesystem::path& file);
 

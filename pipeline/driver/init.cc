@@ -387,7 +387,7 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   text += result->has_board ? "# [calib]\n" : "";
   text += "# [rectify]\n# [fit]\n";
   text +=
-      "# metals = \"rare\"                # or possible (bare metal): see docs/capture.md\n";
+      "# metals = \"rare\"                # no bare metal, or possible: see docs/capture.md\n";
   text += "# [refine]\n# [report]\n";
   text += "[export]\nname = \"" + MaterialName(options.folder) +
           "\"                  # what the files' names begin with\n";

@@ -127,6 +127,11 @@ TEST_F(WorkflowTest, SeveralJobsShareTheRefinementOfALargeCapture) {
   EXPECT_TRUE(fs::exists(manifest("a sound one", "refine")));
   EXPECT_THAT(Run({"part_texels=400000"}).err, HasSubstr("Nothing to be done"));
 
+  // What is up to date as a whole needs no parts.
+  const auto before = fs::last_write_time(manifest("a sound one", "refine"));
+  EXPECT_EQ(Run({"part_texels=300000"}).code, 0);
+  EXPECT_EQ(fs::last_write_time(manifest("a sound one", "refine")), before);
+
   // All parts again, for other maps.
   WriteAll(capture("a sound one") / "photos/a.jpg", "another");
   EXPECT_EQ(Run({"part_texels=400000"}).code, 0);

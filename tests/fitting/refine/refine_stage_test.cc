@@ -167,21 +167,45 @@ TEST(RefineStage, RowsInMemoryDoNotChangeAByteOfTheMaps) {
 TEST(RefineStage, PartsInAnyOrderJoinToTheBytesOfTheWhole) {
   const test::TemporaryFolder folder;
   for (const char* name : {"whole", "parts"}) WriteCapture(folder.path() / name);
-  ASSERT_EQ(Refine(folder.path() / "whole").code, 0);
-  const fs::path parts = folder.path() / "parts";
+  const fs::path whole = folder.path() / "whole", parts = folder.path() / "parts";
+  ASSERT_EQ(Refine(whole, {"--estimation-size", "16"}).code, 0);
   for (const char* part : {"3/5", "1/5", "5/5", "2/5", "4/5"}) {
-    const test::Outcome outcome = Refine(parts, {"--part", part, "--rows-at-once", "2"});
+    const test::Outcome outcome = Refine(parts, {"--part", part, "--rows-at-once", "2", "--threads",
+                                                 "3", "--estimation-size", "16"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
   }
   EXPECT_FALSE(fs::exists(parts / "glint/refine"));
-  const test::Outcome outcome = Refine(parts, {"--join", "5"});
+  const test::Outcome outcome = Refine(parts, {"--join", "5", "--estimation-size", "16"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   for (const char* file : {"manifest.json", "svbrdf.exr", "confidence.exr"}) {
-    EXPECT_EQ(ReadAll(parts / "glint/refine" / file),
-              ReadAll(folder.path() / "whole/glint/refine" / file))
+    EXPECT_EQ(ReadAll(parts / "glint/refine" / file), ReadAll(whole / "glint/refine" / file))
         << file;
   }
   EXPECT_FALSE(fs::exists(parts / "glint/refine-3of5"));
+}
+
+// What corrections move at the parts' borders, and the room, are the whole's.
+TEST(RefineStage, PartsOfCorrectedViewsJoinToTheBytesOfTheWhole) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"whole", "parts"}) {
+    WriteCapture(folder.path() / name, 9,
+                 {{{0.1, 0.1, 0.12}, {0, 0, 0}, {0, 0, 0}, {0.05, 0.05, 0.05}}});
+  }
+  const std::vector<std::string> always = {"--correct-views", "always"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), always.begin(), always.end());
+    return more;
+  };
+  ASSERT_EQ(Refine(folder.path() / "whole", always).code, 0);
+  for (const char* part : {"2/2", "1/2"}) {
+    ASSERT_EQ(Refine(folder.path() / "parts", with({"--part", part})).code, 0);
+  }
+  ASSERT_EQ(Refine(folder.path() / "parts", with({"--join", "2"})).code, 0);
+  const fs::path result = folder.path() / "parts/glint/refine";
+  EXPECT_EQ(ReadManifest(result / "manifest.json", "refine").metrics["correction"]["taken"], true);
+  for (const char* file : {"manifest.json", "svbrdf.exr", "confidence.exr"}) {
+    EXPECT_EQ(ReadAll(result / file), ReadAll(folder.path() / "whole/glint/refine" / file)) << file;
+  }
 }
 
 TEST(RefineStage, PartsThatAreMissingOrOfOtherOptionsAreNotJoined) {
@@ -195,6 +219,45 @@ TEST(RefineStage, PartsThatAreMissingOrOfOtherOptionsAreNotJoined) {
   EXPECT_FALSE(fs::exists(folder.path() / "glint/refine"));
   ASSERT_EQ(Refine(folder.path(), {"--part", "2/2"}).code, 0);
   EXPECT_EQ(Refine(folder.path(), {"--join", "2"}).code, 0);
+}
+
+TEST(RefineStage, AResultOfTheWholeLeavesNoPartsAndNeedsNone) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path());
+  ASSERT_EQ(Refine(folder.path(), {"--part", "1/3"}).code, 0);
+  ASSERT_TRUE(fs::exists(folder.path() / "glint/refine-1of3"));
+  ASSERT_EQ(Refine(folder.path()).code, 0);
+  EXPECT_FALSE(fs::exists(folder.path() / "glint/refine-1of3"));
+  const test::Outcome outcome = Refine(folder.path(), {"--part", "2/3"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("no part is needed"), std::string::npos) << outcome.out;
+  EXPECT_FALSE(fs::exists(folder.path() / "glint/refine-2of3"));
+}
+
+// As if it had been computed on another processor.
+TEST(RefineStage, APartOfAnotherEstimateIsNotJoined) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path());
+  for (const char* part : {"1/2", "2/2"})
+    ASSERT_EQ(Refine(folder.path(), {"--part", part}).code, 0);
+  const fs::path file = folder.path() / "glint/refine-2of2/manifest.json";
+  Manifest manifest = ReadManifest(file);
+  manifest.data["estimate"] = "another";
+  test::WriteAll(file, ToJson(manifest).dump());
+  const test::Outcome outcome = Refine(folder.path(), {"--join", "2"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("data.estimate"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder.path() / "glint/refine"));
+}
+
+TEST(RefineStage, PartsAreNotForCaptureToml) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path());
+  const fs::path toml = folder.path() / "capture.toml";
+  test::WriteAll(toml, ReadAll(toml) + "[refine]\npart = \"1/2\"\n");
+  const test::Outcome outcome = Refine(folder.path());
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("command line"), std::string::npos) << outcome.err;
 }
 
 TEST(RefineStage, WrongPartsAreRefused) {

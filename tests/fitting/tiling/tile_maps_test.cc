@@ -168,6 +168,32 @@ TEST(TileMaps, SlowChangesAreTakenOutAndCanBeKept) {
   EXPECT_GT(slope(TileMaps(maps, keep, 1).maps), 1.06);
 }
 
+TEST(FlattenMaps, TakesOutMostOfASlopeOfBrightness) {
+  const SvbrdfMaps maps = Material("leather", 160);
+  SvbrdfMaps shaded = maps;
+  for (int row = 0; row < 160; ++row) {
+    for (int column = 0; column < 160; ++column) {
+      for (int c = 0; c < 3; ++c) {
+        shaded.at(kDiffuseR + c, row, column) *= 0.6f + 0.8f * column / 160;
+      }
+    }
+  }
+  const auto halves = [](const SvbrdfMaps& of) {  // right half over left half
+    double left = 0, right = 0;
+    for (int row = 0; row < 160; ++row) {
+      for (int column = 0; column < 160; ++column) {
+        (column < 80 ? left : right) += of.at(kDiffuseG, row, column);
+      }
+    }
+    return right / left;
+  };
+  ASSERT_GT(halves(shaded), 1.3);
+  EXPECT_LT(std::log(halves(FlattenMaps(shaded, {}))), 0.4 * std::log(halves(shaded)));
+  TileOptions none;
+  none.flatten = 0;
+  EXPECT_NEAR(halves(FlattenMaps(shaded, none)), halves(shaded), 2e-3);  // the encoding clamps
+}
+
 TEST(TileMaps, BitsDoNotDependOnThreadsAndSmallMapsAreRefused) {
   const SvbrdfMaps maps = Material("wood", 96);
   EXPECT_EQ(TileMaps(maps, {}, 1).maps.planes, TileMaps(maps, {}, 3).maps.planes);
