@@ -152,6 +152,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RefineSta
   RequireMemoryForStage("refine", capture, common.threads);
   const std::vector<Stage> parts = Parts(folder, sources, *set, options->join, common);
   std::vector<std::filesystem::path> folders;
+  folders.reserve(parts.size());
   for (const Stage& part : parts) folders.push_back(part.folder());
   const RefineStageResult result = RunRefineStage(sources.rectify_manifest, sources.start, *options,
                                                   folders, common.threads, &stage);

@@ -38,8 +38,8 @@ struct FitStageOptions {
 void AddFitOptions(OptionSet* set, FitStageOptions* options);
 
 // Puts the method's own numbers of iterations where none are given, for as many photographs as are
-// fitted, and what `auto` comes to: the manifest then has what was done. Throws UserError where `rectify_manifest` or the
-// choice of views is wrong.
+// fitted, and what `auto` comes to: the manifest then has what was done. Throws UserError where
+// `rectify_manifest` or the choice of views is wrong.
 void ResolveFitOptions(const std::filesystem::path& rectify_manifest, FitStageOptions* options);
 
 // The files the result depends on beside the rectified set's manifest: weights, start. Throws

@@ -280,6 +280,7 @@ RowSums JoinParts(const std::vector<fs::path>& folders, const Sample& sample, St
   for (const fs::path& folder : folders) RequireSameEstimate(folder, hash);
   for (const char* name : {kMapsFile, kConfidenceFile}) {
     std::vector<fs::path> files;
+    files.reserve(folders.size());
     for (const fs::path& folder : folders) files.push_back(folder / name);
     JoinRows(files, plane.height, sample.rows_at_once, stage->Output(name));
   }

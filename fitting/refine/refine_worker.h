@@ -34,6 +34,7 @@ inline std::vector<std::unique_ptr<RefineWorker>> RefineWorkers(const RefineProb
                                                                 const RefineOptions& options,
                                                                 int threads) {
   std::vector<std::unique_ptr<RefineWorker>> workers;
+  workers.reserve(static_cast<size_t>(threads));
   for (int i = 0; i < threads; ++i) {
     workers.push_back(std::make_unique<RefineWorker>(KernelOptionsOf(problem, options), options,
                                                      static_cast<int>(problem.views.size())));

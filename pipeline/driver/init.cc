@@ -60,7 +60,8 @@ std::string Patterns(const fs::path& folder, const std::string& subfolder,
   for (const auto& [extension, count] : CountFiles(folder / subfolder, wanted)) {
     *files += count;
     const std::string before = subfolder.empty() ? "" : subfolder + "/";
-    list += (list.empty() ? "" : ", ") + TomlQuoted(before + "*" + extension);
+    if (!list.empty()) list += ", ";
+    list += TomlQuoted(before + "*" + extension);
   }
   return list.empty() ? "" : "[" + list + "]";
 }
@@ -386,8 +387,7 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   text += "# Options of the stages, as on their command lines (glint help fit):\n";
   text += result->has_board ? "# [calib]\n" : "";
   text += "# [rectify]\n# [fit]\n";
-  text +=
-      "# metals = \"rare\"                # no bare metal, or possible: see docs/capture.md\n";
+  text += "# metals = \"rare\"                # no bare metal, or possible: see docs/capture.md\n";
   text += "# [refine]\n# [report]\n";
   text += "[export]\nname = \"" + MaterialName(options.folder) +
           "\"                  # what the files' names begin with\n";

@@ -15,7 +15,6 @@ using test::Outcome;
 using test::ReadAll;
 using test::WriteAll;
 using testing::HasSubstr;
-using testing::Not;
 
 constexpr char kCaptureToml[] =
     "[sample]\nsize_mm = [100, 100]\n[photos]\nfiles = [\"photos/*.jpg\"]\n"

@@ -293,9 +293,9 @@ TEST(SampleSource, GivesPartsOfTheCorrectedWhole) {
       EXPECT_EQ(some.view.light_rgb[0], 2 * set.views[v].view.light_rgb[0]);
       for (int row = 0; row < plane.height; ++row) {
         for (int column = 0; column < plane.width; ++column) {
-          const auto i = static_cast<size_t>(row * plane.width + column);
-          const auto j = static_cast<size_t>((first + stride * row) * kSize +
-                                             (stride > 1 ? first : 0) + stride * column);
+          const auto i = static_cast<size_t>(row) * plane.width + column;
+          const auto j = static_cast<size_t>(first + stride * row) * kSize +
+                         (stride > 1 ? first : 0) + stride * column;
           EXPECT_EQ(some.mask[i], all.mask[j]) << v << " " << i;
           EXPECT_EQ(some.rgb[some.mask.size() + i], all.rgb[all.mask.size() + j]) << v << " " << i;
           EXPECT_EQ(part.start.plane(kRoughness)[i], whole.start.plane(kRoughness)[j]);

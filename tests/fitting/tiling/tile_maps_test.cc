@@ -54,7 +54,7 @@ TEST(CheapestPath, IsThatOfBruteForce) {
         double sum = 0;
         for (int step = 0; step < kSteps; ++step, rest /= kDepth) {
           positions[step] = rest % kDepth;
-          sum += costs[static_cast<size_t>(step * kDepth + positions[step])];
+          sum += costs[static_cast<size_t>(step) * kDepth + positions[step]];
         }
         bool allowed = !cyclic || std::abs(positions[0] - positions[kSteps - 1]) <= 1;
         for (int step = 1; step < kSteps; ++step) {
@@ -63,11 +63,11 @@ TEST(CheapestPath, IsThatOfBruteForce) {
         if (allowed) least = std::min(least, sum);
       }
       const auto path = CheapestPath(kSteps, kDepth, cyclic, [&](int step, int position) {
-        return costs[static_cast<size_t>(step * kDepth + position)];
+        return costs[static_cast<size_t>(step) * kDepth + position];
       });
       double sum = 0;
       for (int step = 0; step < kSteps; ++step) {
-        sum += costs[static_cast<size_t>(step * kDepth + path[static_cast<size_t>(step)])];
+        sum += costs[static_cast<size_t>(step) * kDepth + path[static_cast<size_t>(step)]];
       }
       EXPECT_NEAR(sum, least, 1e-12) << trial << cyclic;
     }
@@ -83,7 +83,7 @@ TEST(TorusPoisson, FindsValuesFromTheirDifferences) {
   for (int row = 0; row < kHeight; ++row) {
     for (int column = 0; column < kWidth; ++column) {
       const auto at = [&](int r, int c) {
-        return values[static_cast<size_t>((r % kHeight) * kWidth + c % kWidth)];
+        return values[static_cast<size_t>(r % kHeight) * kWidth + c % kWidth];
       };
       across.push_back(at(row, column + 1) - at(row, column));
       down.push_back(at(row + 1, column) - at(row, column));
@@ -209,7 +209,7 @@ TEST(RepeatingHeights, MeetTheirNormalsAcrossTheBorder) {
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
       const double x = wave * (column + 9), y = wave * (row + 5);
-      truth.height_mm[static_cast<size_t>(row * kSize + column)] =
+      truth.height_mm[static_cast<size_t>(row) * kSize + column] =
           static_cast<float>(2 * std::sin(x) + std::cos(2 * y));
       const double slope_x = 2 * wave * std::cos(x), slope_down = -2 * wave * std::sin(2 * y);
       const double length = std::sqrt(1 + slope_x * slope_x + slope_down * slope_down);
