@@ -1,5 +1,7 @@
 #include "pipeline/driver/init.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -61,7 +63,7 @@ std::string Patterns(const fs::path& folder, const std::string& subfolder,
     *files += count;
     const std::string before = subfolder.empty() ? "" : subfolder + "/";
     if (!list.empty()) list += ", ";
-    list += TomlQuoted(before + "*" + extension);
+    list += TomlQuoted(fmt::format("{}*{}", before, extension));
   }
   return list.empty() ? "" : "[" + list + "]";
 }
