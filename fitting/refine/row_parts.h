@@ -10,6 +10,7 @@
 
 namespace glint {
 
+// A join holds a lock, an open file, on each; a process may have 1024.
 inline constexpr int kMostRowParts = 256;
 
 // The part-th of `of` parts of a sample, from the top, counted from 1.

@@ -74,8 +74,8 @@ class Sample {
   size_t texels_;
 };
 
-// What a path costs is where two copies differ, and `smoothness` times by how much each of them
-// changes across the path by itself.
+// A path between two copies costs their squared difference, and `smoothness` times the squared step
+// that each of them takes across the path by itself.
 
 // For every row of the sample, the columns of a strip that repeats across: left of the path the
 // continuation of the piece's end, right of it the piece's beginning.
@@ -220,9 +220,10 @@ double ScoreOf(const EncodedMaps& tile, const Layout& layout, int first, int las
          (natural / static_cast<double>(naturals) + visible);
 }
 
-// The paths on which copies agree best are not always those that show least: along the joints of a
-// floor copies may agree, and its texels differ more from their neighbours than others do; where
-// copies agree everywhere, smooth places are no better than others. Both are tried.
+// The path on which copies agree best is not always the one that shows least: copies of a floor
+// agree in its joints, whose texels differ more from their neighbours than others do. Where copies
+// agree everywhere, the steps alone would decide, and do worse. So both are tried. .03, .1 and .3
+// show the same on the floor (docs/experiments/tiling.md).
 constexpr std::array kSmoothness = {0.0, 0.1};
 
 struct Piece {
