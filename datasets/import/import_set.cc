@@ -214,7 +214,7 @@ ImportSummary ImportSet(const ForeignSet& foreign, const ImportOptions& options,
     ViewCounts counts;
     const RectifiedImage image = ToPlane(photo, set.plane, Cropped(size, foreign, first),
                                          common.threads, source.image, &counts);
-    WriteRectifiedImage(stage->Output(view.file), image, set);
+    WriteRectifiedImage(stage->Output(view.file), image, set, view);
     guess.Add(image);
     Json metrics = {{"name", view.name}};
     metrics.update(ToJson(counts));

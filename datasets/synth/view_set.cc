@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kStageVersion = 1;  // of stage "rectify" as written here
+constexpr int kStageVersion = 2;  // of stage "rectify" as written here
 constexpr double kDirSide = 2.0;  // DIR's plane spans [-1, 1]²
 constexpr double kRadians = std::numbers::pi / 180;
 
@@ -302,7 +302,7 @@ void WriteViewSet(const fs::path& folder, const MaterialSource& material,
   Stage stage(folder / "glint" / "rectify", {"rectify", kStageVersion}, echo, common, inputs);
   if (stage.UpToDate()) return;
   for (size_t i = 0; i < set.views.size(); ++i) {
-    WriteRectifiedImage(stage.Output(set.views[i].file), images[i], set);
+    WriteRectifiedImage(stage.Output(set.views[i].file), images[i], set, set.views[i]);
   }
   stage.Commit(ToJson(set), Json::object());
 }

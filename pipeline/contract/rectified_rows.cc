@@ -49,9 +49,11 @@ RectifiedImage RectifiedReader::Read(int first_row, int rows) {
   return result;
 }
 
-RectifiedWriter::RectifiedWriter(const std::filesystem::path& file, const RectifiedSet& set)
+RectifiedWriter::RectifiedWriter(const std::filesystem::path& file, const RectifiedSet& set,
+                                 const RectifiedView& view)
     : writer_(file, set.plane.width, set.plane.height, RectifiedChannels(),
-              {{"reflectance_convention", ToString(set.convention)}}) {}
+              {{"reflectance_convention", ToString(set.convention)}},
+              view.ldr ? ExrPrecision::kHalf : ExrPrecision::kFloat) {}
 
 void RectifiedWriter::Write(const RectifiedImage& rows) {
   Image image(rows.width, rows.height, RectifiedChannels());

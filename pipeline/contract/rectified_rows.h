@@ -21,8 +21,11 @@ class RectifiedReader {
 
 class RectifiedWriter {
  public:
+  // Half floats for a photograph of 8 or 16 bit: they round by .014 % (standard deviation), where a
+  // step of 8 bit is .9 % at white and photon noise of 30,000 electrons .6 %. Float for others.
   // Throws EnvironmentError, as all that follows.
-  RectifiedWriter(const std::filesystem::path& file, const RectifiedSet& set);
+  RectifiedWriter(const std::filesystem::path& file, const RectifiedSet& set,
+                  const RectifiedView& view);
   // The next rows, from the top.
   void Write(const RectifiedImage& rows);
   void Close() { writer_.Close(); }

@@ -168,8 +168,8 @@ void AdmitClippedTexels(const RectifiedView& view, RectifiedImage* image) {
 }
 
 void WriteRectifiedImage(const std::filesystem::path& file, const RectifiedImage& image,
-                         const RectifiedSet& set) {
-  RectifiedWriter writer(file, set);
+                         const RectifiedSet& set, const RectifiedView& view) {
+  RectifiedWriter writer(file, set, view);
   writer.Write(image);
   writer.Close();
 }

@@ -54,7 +54,7 @@ RectifiedImage ReadRectifiedImage(const RectifiedSet& set, const RectifiedView& 
 void AdmitClippedTexels(const RectifiedView& view, RectifiedImage* image);
 
 void WriteRectifiedImage(const std::filesystem::path& file, const RectifiedImage& image,
-                         const RectifiedSet& set);
+                         const RectifiedSet& set, const RectifiedView& view);
 
 // Views named by `only` (empty: all) less those named by `exclude`; names are a view's name or the
 // photograph's file name. Throws UserError for a name that no view has, or when none is left.

@@ -16,6 +16,7 @@ constexpr char kPrefix[] = "glint:";
 // As many rows are converted between planes and pixels at a time: a multiple of the 16 that are
 // compressed together.
 constexpr int kConvertedRows = 64;
+constexpr float kLargestHalf = 65504;
 
 }  // namespace
 
@@ -43,6 +44,9 @@ ExrReader::ExrReader(ExrReader&&) noexcept = default;
 
 int ExrReader::width() const { return input_->file->spec().width; }
 int ExrReader::height() const { return input_->file->spec().height; }
+ExrPrecision ExrReader::precision() const {
+  return input_->file->spec().format == OIIO::TypeHalf ? ExrPrecision::kHalf : ExrPrecision::kFloat;
+}
 
 Image ExrReader::Read(int first_row, int rows) {
   const OIIO::ImageSpec& spec = input_->file->spec();
@@ -102,11 +106,12 @@ struct ExrWriter::Output {
 
 ExrWriter::ExrWriter(const std::filesystem::path& file, int width, int height,
                      const std::vector<std::string>& channels,
-                     const std::map<std::string, std::string>& attributes)
+                     const std::map<std::string, std::string>& attributes, ExrPrecision precision)
     : file_(file), output_(new Output) {
   SetUpOiio();
   OIIO::ImageSpec& spec = output_->spec;
-  spec = OIIO::ImageSpec(width, height, static_cast<int>(channels.size()), OIIO::TypeFloat);
+  spec = OIIO::ImageSpec(width, height, static_cast<int>(channels.size()),
+                         precision == ExrPrecision::kHalf ? OIIO::TypeHalf : OIIO::TypeFloat);
   spec.channelnames = channels;
   spec.attribute("compression", "zip");
   spec.attribute("DateTime", kNoDate);
@@ -148,6 +153,9 @@ void ExrWriter::Write(const Image& rows) {
     for (size_t c = 0; c < channels; ++c) {
       const float* plane = rows.channel(static_cast<int>(c)).data() + offset;
       for (size_t i = 0; i < count; ++i) interleaved[i * channels + c] = plane[i];
+    }
+    if (spec.format == OIIO::TypeHalf) {
+      for (float& sample : interleaved) sample = std::min(sample, kLargestHalf);
     }
     if (!output_->file->write_scanlines(next_row_ + begin, next_row_ + end, 0, OIIO::TypeFloat,
                                         interleaved.data())) {

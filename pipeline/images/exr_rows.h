@@ -11,6 +11,10 @@
 
 namespace glint {
 
+// How samples are stored. kHalf (IEEE binary16) rounds by at most 2⁻¹¹ of a value from 6.1e-5 on,
+// absolutely by 3e-8 below; what exceeds its range becomes the largest, 65504.
+enum class ExrPrecision { kFloat, kHalf };
+
 // Any EXR; channels in file order.
 class ExrReader {
  public:
@@ -22,6 +26,7 @@ class ExrReader {
   int width() const;
   int height() const;
   const std::vector<std::string>& channels() const { return channels_; }
+  ExrPrecision precision() const;
   // Those that WriteExr and ExrWriter were given.
   const std::map<std::string, std::string>& attributes() const { return attributes_; }
 
@@ -42,13 +47,14 @@ class ExrReader {
 Image ReadExrAveraged(const std::filesystem::path& file, const std::vector<std::string>& channels,
                       int width, int height);
 
-// float32 scan-line EXR as WriteExr makes it: the same bytes, whatever rows are written together.
+// Scan-line EXR as WriteExr makes it: the same bytes, whatever rows are written together.
 class ExrWriter {
  public:
   // Throws EnvironmentError.
   ExrWriter(const std::filesystem::path& file, int width, int height,
             const std::vector<std::string>& channels,
-            const std::map<std::string, std::string>& attributes = {});
+            const std::map<std::string, std::string>& attributes = {},
+            ExrPrecision precision = ExrPrecision::kFloat);
   ~ExrWriter();
   ExrWriter(ExrWriter&&) noexcept;
 

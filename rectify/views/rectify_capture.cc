@@ -126,7 +126,7 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     const CameraProjection projection(camera, calibrated.camera_from_sample);
     ResampleOptions resample = ResampleOptionsOf(options, common.threads);
     if (camera.vignetting != std::array<double, 3>{}) resample.vignetting = camera;
-    RectifiedWriter writer(stage->Output(view.file), set);
+    RectifiedWriter writer(stage->Output(view.file), set, view);
     guess.BeginView();
     const ViewCounts counts =
         RectifyByRows(photo.photo, projection, set.plane, resample,

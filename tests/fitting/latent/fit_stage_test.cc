@@ -76,7 +76,7 @@ fs::path WriteRectifiedViews(const fs::path& folder, bool light_power_known = tr
     image.width = image.height = 8;
     image.rgb.assign(3 * 64, 0.5f);
     image.mask.assign(64, 1.0f);
-    WriteRectifiedImage(stage.Output(view.file), image, set);
+    WriteRectifiedImage(stage.Output(view.file), image, set, view);
   }
   stage.Commit(ToJson(set), Json::object());
   return folder / "manifest.json";

@@ -54,7 +54,7 @@ void WriteCapture(const fs::path& folder, int views = 3, const RoomLight& room =
       image.width = image.height = kSize;
       image.rgb = scene.photographs[i];
       image.mask = scene.masks[i];
-      WriteRectifiedImage(stage.Output(view.file), image, set);
+      WriteRectifiedImage(stage.Output(view.file), image, set, view);
     }
     stage.Commit(ToJson(set), Json::object());
   }

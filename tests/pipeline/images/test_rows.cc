@@ -54,6 +54,26 @@ TEST(ExrRows, HaveTheSameBytesHoweverTheyAreCut) {
   }
 }
 
+TEST(ExrRows, AsHalfFloatsRoundByLessThanTwoToTheMinusEleven) {
+  const test::TemporaryFolder folder;
+  Image image(64, 20, {"R"});
+  for (size_t i = 0; i < image.pixels(); ++i) {
+    image.samples[i] = 6.2e-5f * std::pow(1.016f, static_cast<float>(i));  // to 4e4
+  }
+  image.samples.back() = 1e6f;
+  const auto written = [&](int at_once) {
+    ExrWriter writer(folder / "half.exr", 64, 20, {"R"}, {}, ExrPrecision::kHalf);
+    WriteByRows(image, at_once, &writer);
+    return ReadTextFile(folder / "half.exr");
+  };
+  EXPECT_EQ(written(7), written(20));
+  const Image half = ReadExr(folder / "half.exr");
+  for (size_t i = 0; i + 1 < image.pixels(); ++i) {
+    EXPECT_NEAR(half.samples[i], image.samples[i], image.samples[i] / 2048) << i;
+  }
+  EXPECT_EQ(half.samples.back(), 65504);
+}
+
 TEST(ExrRows, AreThoseOfTheWholeImageInAnyOrder) {
   const test::TemporaryFolder folder;
   const Image image = Waves(33, 150, {"R", "G", "B"});

@@ -72,7 +72,7 @@ class ReportTest : public testing::Test {
       image.mask.assign(kSize * kSize, 1.0f);
       image.rgb.resize(3 * kSize * kSize);
       RenderView(Maps(), set.plane, view.view, set.convention, image.rgb.data());
-      WriteRectifiedImage(stage.Output(view.file), image, set);
+      WriteRectifiedImage(stage.Output(view.file), image, set, view);
       set.views.push_back(view);
     }
     stage.Commit(ToJson(set), Json::object());
