@@ -16,6 +16,33 @@ constexpr double kWorthwhile = 0.98;
 constexpr double kWorthStep = 0.05;  // gain of a step against one residual's noise
 constexpr double kExplained = 1.5;   // squared residuals against noise alone
 
+// Turns the normal so that it mirrors the light into the camera of the view in which the texel is
+// brightest for the light it receives. A normal far from the true one has no slope toward it where
+// the lobe is narrow: the highlight is either missed or explained by diffuse light.
+bool TurnToBrightest(const TexelObservations& observations, TexelValues* values) {
+  int brightest = -1;
+  double most = 0;
+  for (int v = 0; v < observations.views(); ++v) {
+    double reflected = 0;
+    for (int c = 0; c < 3; ++c) {
+      const double irradiance = observations.plane(TexelObservations::kIrradiance + c)[v];
+      const double radiance =
+          1 / observations.plane(TexelObservations::kInverseTarget + c)[v] - kLogOffset;
+      if (irradiance > 0) reflected += radiance / irradiance;
+    }
+    if (reflected > most) {
+      most = reflected;
+      brightest = v;
+    }
+  }
+  if (brightest < 0) return false;
+  const double z = observations.plane(TexelObservations::kHalfZ)[brightest];
+  if (!(z > 1 / kMostSlope)) return false;
+  (*values)[kSlopeX] = observations.plane(TexelObservations::kHalfX)[brightest] / z;
+  (*values)[kSlopeY] = observations.plane(TexelObservations::kHalfY)[brightest] / z;
+  return true;
+}
+
 }  // namespace
 
 TexelSearch::TexelSearch(const KernelOptions& options, int most_iterations, int most_views,
@@ -60,29 +87,24 @@ TexelSearch::Candidate TexelSearch::WithFittedAlbedos(const TexelObservations& o
 }
 
 void TexelSearch::TryRoughnesses(const TexelObservations& observations, const TexelPrior& prior,
-                                 Found* best) {
+                                 const TexelValues& from, Found* best) {
   const auto fit = [&](double roughness) {
-    TexelValues values = best->solution.values;
+    TexelValues values = from;
     values[kRough] = roughness;
     return WithFittedAlbedos(observations, prior, values);
   };
-  // The profile over roughness, with the solution's own in its place.
+  // The profile over roughness, with the one it comes from in its place.
   constexpr int kProfile = static_cast<int>(kRoughnesses.size()) + 1;
+  std::array<double, kProfile> roughnesses;
+  std::copy(kRoughnesses.begin(), kRoughnesses.end(), roughnesses.begin());
+  roughnesses.back() = from[kRough];
+  std::sort(roughnesses.begin(), roughnesses.end());
   std::array<Candidate, kProfile> profile;
-  const double own = best->solution.values[kRough];
-  double own_squares = 0.0;
-  int filled = 0;
-  for (size_t i = 0; i <= kRoughnesses.size(); ++i) {
-    const bool own_is_next =
-        filled == static_cast<int>(i) && (i == kRoughnesses.size() || own <= kRoughnesses[i]);
-    if (own_is_next) {
-      profile[filled++] = fit(own);
-      own_squares = profile[filled - 1].fit.before;
-    }
-    if (i < kRoughnesses.size()) profile[filled++] = fit(kRoughnesses[i]);
-  }
+  std::transform(roughnesses.begin(), roughnesses.end(), profile.begin(), fit);
 
   // Its valleys that promise less than the solution has.
+  const double own_squares =
+      WithFittedAlbedos(observations, prior, best->solution.values).fit.before;
   std::array<int, kProfile> valleys;
   int count = 0;
   for (int i = 0; i < kProfile; ++i) {
@@ -109,9 +131,11 @@ TexelSearch::Found TexelSearch::FromStart(const TexelObservations& observations,
     best.solution.values = start;
     best.solution.cost = best.start_cost;
   }
-  if (starts_ > 1 && Unexplained(observations.views(), best.solution.cost)) {
-    TryRoughnesses(observations, prior, &best);
-  }
+  if (starts_ == 1 || !Unexplained(observations.views(), best.solution.cost)) return best;
+  TryRoughnesses(observations, prior, best.solution.values, &best);
+  if (!Unexplained(observations.views(), best.solution.cost)) return best;
+  TexelValues mirror = best.solution.values;
+  if (TurnToBrightest(observations, &mirror)) TryRoughnesses(observations, prior, mirror, &best);
   return best;
 }
 

@@ -50,7 +50,9 @@ class TexelSearch {
   // `values` with albedos fitted to the texel.
   Candidate WithFittedAlbedos(const TexelObservations& observations, const TexelPrior& prior,
                               const TexelValues& values);
-  void TryRoughnesses(const TexelObservations& observations, const TexelPrior& prior, Found* best);
+  // From `from` with other roughnesses.
+  void TryRoughnesses(const TexelObservations& observations, const TexelPrior& prior,
+                      const TexelValues& from, Found* best);
   bool TrySolve(const TexelObservations& observations, const TexelPrior& prior,
                 const TexelValues& from, TexelSolution* best);
 

@@ -71,6 +71,27 @@ TEST(Refine, DoesNotInheritAWrongRoughness) {
   EXPECT_GT(MeanSquare(start, scene.truth, kRoughness, kRoughness), 0.1);
 }
 
+// Nearly all light of embossed black plastic is its highlight, which a level start misses.
+TEST(Refine, FindsNormalsOfABlackSampleFromALevelStart) {
+  SvbrdfMaps truth = QuarteredMaps(24, 31), start = truth;
+  const auto fill = [](SvbrdfMaps* maps, int first, int last, float value) {
+    for (int p = first; p <= last; ++p) std::ranges::fill(maps->plane(p), value);
+  };
+  fill(&truth, kDiffuseR, kDiffuseB, 0.004f);
+  fill(&truth, kSpecularR, kSpecularB, 0.04f);
+  fill(&truth, kRoughness, kRoughness, 0.27f);
+  fill(&start, kDiffuseR, kDiffuseB, 0.004f);
+  fill(&start, kSpecularR, kSpecularB, 0.13f);
+  fill(&start, kRoughness, kRoughness, 0.14f);
+  fill(&start, kNormalX, kNormalY, 0.0f);
+  fill(&start, kNormalZ, kNormalZ, 1.0f);
+  const SyntheticScene scene = Photograph(truth, 20, 8);
+  const RefineResult result = Refine(scene.Problem(), start, {}, 1);
+  EXPECT_GT(MeanSquare(start, truth, kNormalX, kNormalY), 0.02);
+  EXPECT_LT(MeanSquare(result.maps, truth, kNormalX, kNormalY), 2e-4);
+  EXPECT_LT(MeanSquare(result.maps, truth, kRoughness, kRoughness), 2e-4);
+}
+
 TEST(Refine, NeverRaisesATexelsCost) {
   const SyntheticScene scene = Photograph(QuarteredMaps(16, 4), 3, 8);
   const SvbrdfMaps start = DisturbedMaps(scene.truth, 1.0f, 5);
