@@ -227,7 +227,7 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
   RowRefiner refiner(estimate, options, rows, threads, progress);
   SvbrdfWriter maps(stage->Output(kMapsFile), plane.width, rows, convention);
   ExrWriter confidence(stage->Output(kConfidenceFile), plane.width, rows, kConfidenceChannels,
-                       {{"convention", ToString(convention)}});
+                       {{"convention", ToString(convention)}}, ExrPrecision::kHalf);
   const int reached = DependentRows(options);
   for (int first = part.first(plane.height); first < end; first += rows_at_once) {
     const int last = std::min(first + rows_at_once, end);
@@ -303,7 +303,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "maximum number of Levenberg-Marquardt steps per solve");
   set->AddRange("starts", &refine->starts, 1, 8,
                 "solver runs per texel: one from the initial maps, the others from other initial "
-                "roughness values");
+                "roughness values; with two or more also from other initial normals");
   set->AddRange("neighbour-passes", &refine->neighbour_passes, 0, 16,
                 "how many times a texel tries its neighbours' solutions");
   set->AddRange("substances", &refine->substances, 1, kMostSubstances,

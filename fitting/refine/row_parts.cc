@@ -95,7 +95,8 @@ void JoinRows(const std::vector<fs::path>& parts, int height, int rows_at_once,
         file.filename(), "", std::to_string(rows) + " rows in all parts",
         std::to_string(height) + " are expected; run glint-refine --part for all again");
   }
-  ExrWriter writer(file, like.width(), height, like.channels(), like.attributes());
+  ExrWriter writer(file, like.width(), height, like.channels(), like.attributes(),
+                   like.precision());
   for (const fs::path& part : parts) {
     ExrReader reader(part);
     for (int first = 0; first < reader.height(); first += rows_at_once) {
