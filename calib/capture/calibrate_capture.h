@@ -19,7 +19,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 11;
+inline constexpr int kCalibVersion = 12;
 
 struct RejectedPhoto {
   std::string name, reason;

@@ -101,6 +101,9 @@ void TakeEstimate(CalibSummary* summary) {
   calibration.light_rgb = Values(light.power_rgb);
   calibration.ambient_rgb = Values(light.ambient_rgb);
   calibration.light_power_known = true;
+  const auto& flash = light.flash_in_camera_mm;
+  const double sd_mm = std::max({flash[0].sigma, flash[1].sigma, flash[2].sigma});
+  if (sd_mm > 0) calibration.light_sd_mm = sd_mm;  // 0: held
   for (CalibratedPhoto& photo : calibration.photos) {
     const size_t detected = DetectedIndex(*summary, photo);
     photo.light_in_camera_mm =

@@ -138,15 +138,15 @@ void DescribeCorrection(const CorrectionResult& found, const RectifiedSet& set,
                                         {"ambient_of_flash", room / flash}});
 }
 
-CorrectionResult CorrectViewsWithBar(const RefineStageOptions& options, int threads,
-                                     SampleSource* source) {
-  if (!options.correction.Wanted(DistinctViews(ProblemOf(source->Views())))) return {};
+CorrectionResult CorrectViewsWithBar(const RefineOptions& refine, const CorrectionOptions& options,
+                                     int threads, SampleSource* source) {
+  if (!options.Wanted(DistinctViews(ProblemOf(source->Views())))) return {};
   const SamplePlane& plane = source->plane();
-  const auto [width, height] = options.correction.WorkingSize(plane);
+  const auto [width, height] = options.WorkingSize(plane);
   const SampleSource::Part small = source->Downsampled(width, height, threads);
   std::unique_ptr<Progress> bar;
   CorrectionResult found = FindCorrections(
-      small.photographs, small.start, options.refine, options.correction, threads,
+      small.photographs, small.start, refine, options, threads,
       [&](std::int64_t done, std::int64_t total) {
         if (!bar) bar = std::make_unique<Progress>("views", total, Progress::Part{0, kViewsShare});
         bar->Set(done);
@@ -184,6 +184,20 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStageOptions& opti
   return refine;
 }
 
+// A flash that was measured stands where it was found, to the accuracy that is stated.
+CorrectionOptions CorrectionFor(const RectifiedSet& set, const std::vector<RectifiedView>& views,
+                                CorrectionOptions options) {
+  if (!set.light_sd_mm) return options;
+  double distance_mm = 0;
+  for (const RectifiedView& view : views) {
+    const Vec3d& light = view.view.light_in_sample_mm;
+    distance_mm += std::hypot(light[0], light[1], light[2]) / static_cast<double>(views.size());
+  }
+  ViewExpectations& expected = options.view.expected;
+  expected.light = expected.distance = expected.shared_light = *set.light_sd_mm / distance_mm;
+  return options;
+}
+
 // A capture's sample, ready to be refined by rows.
 struct Sample {
   Sample(const fs::path& rectify_manifest, const RefineStart& start,
@@ -192,7 +206,9 @@ struct Sample {
         views(ChooseViews(set, start, stage_options)),
         options(OptionsFor(set, stage_options)),
         source(set, views, start.light_scale_rgb, start.maps_file),
-        correction(CorrectViewsWithBar(stage_options, threads, &source)),
+        correction(CorrectViewsWithBar(stage_options.refine,
+                                       CorrectionFor(set, views, stage_options.correction), threads,
+                                       &source)),
         rows_at_once(stage_options.rows_at_once > 0 ? stage_options.rows_at_once
                                                     : RowsAtOnce(set.plane, views.size())),
         estimate(EstimateCorrected(threads)) {}

@@ -17,9 +17,10 @@ constexpr float kMembershipWidth = 0.2f;  // of the features, for soft shares
 constexpr int kIterations = 40;
 constexpr size_t kClustered = 8192;
 
-// Expected of a substance's difference from the others' mean; of specular albedo relative …
-constexpr double kMeansRoughness = 0.2, kMeansSpecular = 1.5;
-// … and of its channels from each other: metals are coloured.
+// Substances are expected to differ from their common mean by so many times what texels of one
+// differ from each other …
+constexpr double kBetweenToWithin = 2;
+// … and specular albedos by channel, relative: metals are coloured.
 constexpr double kChroma = 0.6;
 constexpr double kMostMeanStep = 0.5;  // of a mean, in one round, relative
 
@@ -170,7 +171,8 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
     for (Eigen::Index p = 0; p < 4; ++p) {
       const auto q = static_cast<size_t>(p);
       const double width =
-          p == 3 ? kMeansRoughness : kMeansSpecular * (common[q] + kSpecularOffset);
+          kBetweenToWithin * (p == 3 ? kExpectedRoughnessSpread
+                                     : kExpectedSpecularSpread * (common[q] + kSpecularOffset));
       const double precision = 1 / (width * width);
       information(4 * k + p, 4 * k + p) += precision;
       gradient[4 * k + p] += precision * (common[q] - means->mean[static_cast<size_t>(k)][q]);

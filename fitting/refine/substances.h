@@ -35,12 +35,14 @@ class Substances {
   std::vector<std::array<float, 3>> centres_;  // in the space of features
 };
 
+inline constexpr double kExpectedRoughnessSpread = 0.1, kExpectedSpecularSpread = 0.8;
+
 // What has been learned of them.
 struct SubstanceMeans {
   std::vector<SharedValues> mean;
   // Standard deviation of texels about their substance's mean: of roughness, and of specular albedo
   // relative to mean + kSpecularOffset.
-  double roughness_spread = 0.1, specular_spread = 0.8;
+  double roughness_spread = kExpectedRoughnessSpread, specular_spread = kExpectedSpecularSpread;
 
   SharedValues Of(const float* shares) const;
   // Variances of a texel's values about that.

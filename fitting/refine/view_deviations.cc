@@ -15,10 +15,6 @@ constexpr double kMostDeviationStep = 0.2;  // of a deviation, in one step
 // precision.
 constexpr double kHeldMean = 1e3;
 
-// Of the logarithm of radiance, from a sample's centre to its edge, in one view. A choice: phones'
-// JPEGs are corrected for vignetting to some per cent.
-constexpr double kShadingGradient = 0.1;
-
 using TexelMatrix = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
 // A view's deviations, then its shading's gradient along x and y, then what all views share.
@@ -156,8 +152,10 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
   }
   for (int i = 0; i < kOwnUnknowns; ++i) {
     const bool shading = i >= kViewDeviations;
+    // From a sample's centre to its edge a view's exposure is expected to be off by as much as the
+    // whole view's is: phones' JPEGs are corrected for vignetting to some per cent.
     const double spread =
-        shading ? kShadingGradient : std::max(spreads_[static_cast<size_t>(i)], 1e-6);
+        std::max(shading ? expected_[kLogExposure] : spreads_[static_cast<size_t>(i)], 1e-6);
     const double precision = 1 / (spread * spread);
     for (int v = 0; v < views; ++v) {
       hessian(at(v, i), at(v, i)) += precision;

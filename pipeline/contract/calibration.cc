@@ -86,6 +86,7 @@ Json ToJson(const Calibration& calibration) {
   }
   data["light_rgb"] = List(calibration.light_rgb);
   data["light_power_known"] = calibration.light_power_known;
+  if (calibration.light_sd_mm) data["light_sd_mm"] = *calibration.light_sd_mm;
   if (calibration.ambient_rgb) data["ambient_rgb"] = List(*calibration.ambient_rgb);
   data["photos"] = Json::array();
   for (const CalibratedPhoto& photo : calibration.photos) {
@@ -136,6 +137,8 @@ Calibration ReadCalibration(const std::filesystem::path& manifest_file) {
                     "true or false is expected");
   }
   calibration.light_power_known = known.get<bool>();
+  calibration.light_sd_mm =
+      PositiveNumberIfAny(manifest_file, manifest.data, "data", "light_sd_mm");
   if (manifest.data.contains("ambient_rgb")) {
     const auto ambient = RequireNumbers(manifest_file, manifest.data, "data", "ambient_rgb", 3);
     calibration.ambient_rgb = Eigen::Map<const Eigen::Vector3d>(ambient.data());

@@ -28,6 +28,8 @@ struct Calibration {
   std::vector<CalibratedPhoto> photos;  // accepted flash photographs, in capture order
   Eigen::Vector3d light_rgb{1, 1, 1};  // power, radiance·mm² in units where the sensor clips at 1
   bool light_power_known = false;      // false: light_rgb is a first guess
+  // Standard deviation of the flash's position, where it was estimated: its least certain axis.
+  std::optional<double> light_sd_mm;
   // Irradiance of the room, times the exposure of the first photo; nullopt: not told.
   std::optional<Eigen::Vector3d> ambient_rgb;
 };

@@ -110,6 +110,15 @@ double RequireNumber(const std::filesystem::path& file, const Json& object,
   return value.get<double>();
 }
 
+std::optional<double> PositiveNumberIfAny(const std::filesystem::path& file, const Json& object,
+                                          const std::string& object_name,
+                                          const std::string& field) {
+  if (!object.contains(field)) return std::nullopt;
+  const double number = RequireNumber(file, object, object_name, field);
+  if (number > 0) return number;
+  throw UserError(file, object_name + "." + field, std::to_string(number), "it must be above 0");
+}
+
 int RequireCount(const std::filesystem::path& file, const Json& object,
                  const std::string& object_name, const std::string& field) {
   const double number = RequireNumber(file, object, object_name, field);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,9 @@ const Json& RequireField(const std::filesystem::path& file, const Json& object,
                          const std::string& object_name, const std::string& field);
 double RequireNumber(const std::filesystem::path& file, const Json& object,
                      const std::string& object_name, const std::string& field);
+// A field that may be left out; above 0 where it is there.
+std::optional<double> PositiveNumberIfAny(const std::filesystem::path& file, const Json& object,
+                                          const std::string& object_name, const std::string& field);
 // A whole number that an int holds, 0 or more.
 int RequireCount(const std::filesystem::path& file, const Json& object,
                  const std::string& object_name, const std::string& field);

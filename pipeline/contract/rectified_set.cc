@@ -105,6 +105,7 @@ Json ToJson(const RectifiedSet& set) {
   data["height_mm"] = set.plane.height_mm;
   data["convention"] = ToString(set.convention);
   data["light_power_known"] = set.light_power_known;
+  if (set.light_sd_mm) data["light_sd_mm"] = *set.light_sd_mm;
   data["views"] = Json::array();
   for (const RectifiedView& view : set.views) {
     data["views"].push_back({{"name", view.name},
@@ -142,6 +143,7 @@ RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file) {
   }
   set.plane.sampling = set.convention.sampling;
   set.light_power_known = RequireBool(manifest_file, data, "data", "light_power_known");
+  set.light_sd_mm = PositiveNumberIfAny(manifest_file, data, "data", "light_sd_mm");
   const Json& views = RequireField(manifest_file, data, "data", "views");
   if (!views.is_array() || views.empty()) {
     throw UserError(manifest_file, "data.views", "no views", "run rectify again");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct RectifiedSet {
   ReflectanceConvention convention;
   bool light_power_known =
       true;  // false: light_rgb is a first guess, common factor to be estimated
+  // Standard deviation of the flash's position, where calibration estimated it.
+  std::optional<double> light_sd_mm;
   std::vector<RectifiedView> views;
 };
 
