@@ -44,6 +44,12 @@ std::string DataUri(const std::string& type, const std::string& bytes) {
   return "data:image/" + type + ";base64," + Base64(bytes);
 }
 
+void ShrinkPlane(std::span<const float> plane, int width, int height, int channel, Image* small) {
+  const cv::Mat from(height, width, CV_32F, const_cast<float*>(plane.data()));
+  cv::Mat to(small->height, small->width, CV_32F, small->channel(channel).data());
+  cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);
+}
+
 }  // namespace
 
 Image Shrunk(const Image& image, int largest_side) {
@@ -51,10 +57,18 @@ Image Shrunk(const Image& image, int largest_side) {
   if (width == image.width && height == image.height) return image;
   Image small(width, height, image.channels);
   for (int c = 0; c < static_cast<int>(image.channels.size()); ++c) {
-    const cv::Mat from(image.height, image.width, CV_32F,
-                       const_cast<float*>(image.channel(c).data()));
-    cv::Mat to(small.height, small.width, CV_32F, small.channel(c).data());
-    cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);
+    ShrinkPlane(image.channel(c), image.width, image.height, c, &small);
+  }
+  return small;
+}
+
+Image ShrunkPlanes(std::span<const float> rgb_planar, int width, int height, int largest_side) {
+  const auto [small_width, small_height] = SizeAtMost(width, height, largest_side);
+  Image small(small_width, small_height, {"R", "G", "B"});
+  const size_t texels = static_cast<size_t>(width) * static_cast<size_t>(height);
+  for (int c = 0; c < 3; ++c) {
+    ShrinkPlane(rgb_planar.subspan(static_cast<size_t>(c) * texels, texels), width, height, c,
+                &small);
   }
   return small;
 }

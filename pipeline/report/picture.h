@@ -11,6 +11,8 @@ namespace glint {
 
 // Shrinks to at most `largest_side` pixels a side (area average); never enlarges.
 Image Shrunk(const Image& image, int largest_side);
+// The same of three planes, as channels R, G, B.
+Image ShrunkPlanes(std::span<const float> rgb_planar, int width, int height, int largest_side);
 
 // The image (one or three channels, display values, clamped to [0, 1]) as a JPEG file's bytes, and
 // as a data: URI.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/errors/errors.h"
+#include "base/parallel/parallel.h"
 #include "pipeline/files/hash.h"
 #include "pipeline/images/exr_rows.h"
 #include "pipeline/photos/photo.h"
@@ -56,7 +57,7 @@ bool Used(const ReportInput& input, const RectifiedView& view) {
 
 // Photograph, rendering and four times their difference, as three table cells.
 std::string PanelCells(const RectifiedImage& photograph, std::span<const float> rendered,
-                       const RectifiedView& view, int side_px) {
+                       const RectifiedView& view, int side_px, int threads) {
   std::vector<float> difference(rendered.size());
   const size_t texels = photograph.mask.size();
   for (size_t i = 0; i < rendered.size(); ++i) {
@@ -66,13 +67,23 @@ std::string PanelCells(const RectifiedImage& photograph, std::span<const float> 
                                       std::clamp(rendered[i], 0.0f, high))
                            : 0.0f;
   }
-  const auto cell = [&](std::span<const float> rgb, float gain, const std::string& what) {
-    const Image shown =
-        Shrunk(DisplayImage(rgb, photograph.width, photograph.height, gain), side_px);
-    return "<td>" + ImageHtml(JpegUri(shown), what + " " + view.name) + "</td>";
+  struct Cell {
+    std::span<const float> rgb;
+    float gain;
+    const char* what;
+    std::string html;
   };
-  return cell(photograph.rgb, 1, "photograph") + cell(rendered, 1, "rendering") +
-         cell(difference, kDifferenceGain, "difference");
+  Cell cells[] = {{photograph.rgb, 1, "photograph", ""},
+                  {rendered, 1, "rendering", ""},
+                  {difference, kDifferenceGain, "difference", ""}};
+  ForEachPiece(3, threads, [&](int i) {
+    Cell& cell = cells[i];
+    // Radiance is averaged, not what is displayed of it.
+    const Image small = ShrunkPlanes(cell.rgb, photograph.width, photograph.height, side_px);
+    const Image shown = DisplayImage(small.samples, small.width, small.height, cell.gain);
+    cell.html = "<td>" + ImageHtml(JpegUri(shown), cell.what + (" " + view.name)) + "</td>";
+  });
+  return cells[0].html + cells[1].html + cells[2].html;
 }
 
 // Where large photographs are compared at a smaller size: which.
@@ -241,7 +252,7 @@ std::string ViewsSection(const ReportInput& input, const ReportOptions& options,
     const Json& entry = views.back();
     rows += "<tr><td>" + HtmlText(view.name) + "<br><code>" + HtmlText(view.photo) + "</code>" +
             (used ? "" : "<br><span class=\"kept\">held out</span>") + "</td>" +
-            PanelCells(photograph, rendered, view, options.picture_px / 2) +
+            PanelCells(photograph, rendered, view, options.picture_px / 2, threads) +
             "<td class=\"number\">" + FigureHtml(entry["log_l1"], trace.Field("log_l1")) +
             "</td><td class=\"number\">" + FigureHtml(entry["rmse"], trace.Field("rmse")) +
             "</td></tr>\n";
