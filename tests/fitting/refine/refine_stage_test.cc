@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "fitting/refine/sample_source.h"
 #include "fitting/render/render_room.h"
@@ -22,7 +23,15 @@ using test::ReadAll;
 constexpr int kSize = 24;
 
 // A capture as rectify and fit leave it: a fit of half the size, light found 2× too weak.
-void WriteCapture(const fs::path& folder, int views = 3, const RoomLight& room = {}) {
+// What is said of the lights: how far aside of the true ones they stand, and how well that is
+// known.
+struct SaidOfLights {
+  double aside_mm = 0;
+  std::optional<double> sd_mm;
+};
+
+void WriteCapture(const fs::path& folder, int views = 3, const RoomLight& room = {},
+                  const SaidOfLights& said = {}) {
   test::WriteAll(folder / "capture.toml",
                  "[sample]\nsize_mm = [2, 2]\n[photos]\nfiles = [\"photos/*.png\"]\n");
   test::WriteAll(folder / "photos/0.png", "refine reads rectified views only");
@@ -39,7 +48,8 @@ void WriteCapture(const fs::path& folder, int views = 3, const RoomLight& room =
     RectifiedSet set;
     set.plane = scene.plane;
     set.convention = scene.convention;
-    set.light_power_known = false;
+    set.light_power_known = said.sd_mm.has_value();
+    set.light_sd_mm = said.sd_mm;
     Stage stage(folder / "glint/rectify", {"rectify", 1}, none, common, {});
     for (size_t i = 0; i < scene.views.size(); ++i) {
       RectifiedView view;
@@ -49,6 +59,7 @@ void WriteCapture(const fs::path& folder, int views = 3, const RoomLight& room =
       view.photo = "photos/" + std::to_string(i) + ".png";
       view.view = scene.views[i];
       for (double& power : view.view.light_rgb) power /= 2.0;
+      view.view.light_in_sample_mm[0] += said.aside_mm;
       set.views.push_back(view);
       RectifiedImage image;
       image.width = image.height = kSize;
@@ -116,6 +127,25 @@ TEST(RefineStage, KeepsViewsBack) {
   ASSERT_EQ(Refine(folder.path(), {"--exclude", "view_001"}).code, 0);
   const Manifest manifest = ReadManifest(folder.path() / "glint/refine/manifest.json", "refine");
   EXPECT_EQ(manifest.data["views"], Json({"view_000", "view_002"}));
+}
+
+TEST(RefineStage, AFlashThatWasMeasuredMovesNoFurtherThanItsAccuracyAllows) {
+  const auto largest_offset_mm = [](const SaidOfLights& said) {
+    const test::TemporaryFolder folder;
+    WriteCapture(folder.path(), 9, {}, said);
+    const test::Outcome outcome = Refine(folder.path(), {"--correct-views", "always"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const fs::path file = folder.path() / "glint/refine/manifest.json";
+    double largest = 0;
+    for (const auto& [name, correction] :
+         ReadCorrections(file, ReadManifest(file, "refine").data)) {
+      const Vec3d& offset = correction.light_offset_mm;
+      largest = std::max(largest, std::hypot(offset[0], offset[1], offset[2]));
+    }
+    return largest;
+  };
+  EXPECT_GT(largest_offset_mm({0.6, 1.0}), 0.3);
+  EXPECT_LT(largest_offset_mm({0.6, 0.002}), 0.02);
 }
 
 TEST(RefineStage, ARoomThatIsFoundStandsInTheManifest) {

@@ -61,6 +61,7 @@ class RectifyStage : public testing::Test {
     Calibration calibration;
     calibration.cameras = {camera()};
     calibration.light_power_known = light_known;
+    if (light_known) calibration.light_sd_mm = 0.5;
     calibration.light_rgb = {7, 8, 9};
     std::vector<fs::path> inputs;
     for (int i = 0; i < 3; ++i) {
@@ -103,6 +104,7 @@ TEST_F(RectifyStage, ViewsShowThePlaneAsItWasPainted) {
   ASSERT_EQ(set.views.size(), 3u);
   EXPECT_EQ(set.convention, ReflectanceConvention::Photograph());
   EXPECT_FALSE(set.light_power_known);
+  EXPECT_FALSE(set.light_sd_mm.has_value());
   for (size_t v = 0; v < 3; ++v) {
     EXPECT_EQ(set.views[v].photo, "photos/p" + std::to_string(v) + ".png");
     EXPECT_TRUE(set.views[v].ldr);
@@ -131,6 +133,7 @@ TEST_F(RectifyStage, KeepsAKnownLight) {
   ASSERT_EQ(Run(), 0) << output_;
   const RectifiedSet set = ReadRectifiedSet(Views() / "manifest.json");
   EXPECT_TRUE(set.light_power_known);
+  EXPECT_EQ(set.light_sd_mm, 0.5);
   EXPECT_EQ(set.views[1].view.light_rgb, (Vec3d{7, 8, 9}));
 }
 
