@@ -55,6 +55,20 @@ TEST_F(ManifestTest, AMissingFieldIsNamed) {
   }
 }
 
+TEST_F(ManifestTest, APositiveNumberMayBeLeftOutAndIsRefusedOtherwise) {
+  const auto read = [](const Json& data) {
+    return PositiveNumberIfAny("manifest.json", data, "data", "light_sd_mm");
+  };
+  EXPECT_EQ(read(Json::object()), std::nullopt);
+  EXPECT_EQ(read({{"light_sd_mm", 0.25}}), 0.25);
+  for (const Json& wrong : {Json(0), Json(-1.5), Json("thin")}) {
+    EXPECT_THAT(test::MessageOf<UserError>([&] {
+                  read({{"light_sd_mm", wrong}});
+                }),
+                HasSubstr("manifest.json: data.light_sd_mm"));
+  }
+}
+
 TEST_F(ManifestTest, AChangedOutputIsNoticed) {
   folder_.Write("out.txt", "another result");
   EXPECT_THAT(Complaint(), AllOf(HasSubstr("outputs[0].hash"), HasSubstr("out.txt")));
