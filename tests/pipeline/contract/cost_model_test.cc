@@ -25,48 +25,48 @@ struct MeasuredRun {
 
 constexpr double kMega = 1e6;
 
-// Two cores of a Xeon with AVX-512 and without bfloat16; `glint run`, run.json of each stage.
-// Memory as it is since stages work by rows.
+// Two cores of a Xeon with AVX-512 and bfloat16 and nothing else running, 24 November 2026; `glint
+// run`, run.json of each stage.
 std::vector<MeasuredRun> Runs() {
   const auto size = [](int photographs, double megapixels, int side) {
-    return CaptureSize{photographs, kMega * megapixels, 1.0 * side * side, false};
+    return CaptureSize{photographs, kMega * megapixels, 1.0 * side * side, true};
   };
   return {
       {size(5, 12, 256),
-       {{"calib", 5.45, 552},
-        {"rectify", 2.11, 357},
-        {"fit", 30.6, 364},
-        {"refine", 4.49, 159},
-        {"export", 1.42, 150},
-        {"report", 2.58, 277}}},
+       {{"calib", 2.53, 565},
+        {"rectify", 1.29, 324},
+        {"fit", 5.98, 359},
+        {"refine", 1.35, 156},
+        {"export", 0.694, 160},
+        {"report", 1.21, 280}}},
       {size(12, 12, 512),
-       {{"calib", 11.5, 570},
-        {"rectify", 5.95, 354},
-        {"fit", 22.3, 376},
-        {"refine", 9.91, 240},
-        {"export", 2.52, 204},
-        {"report", 4.22, 304}}},
+       {{"calib", 5.23, 570},
+        {"rectify", 3.43, 323},
+        {"fit", 7.62, 381},
+        {"refine", 5.75, 279},
+        {"export", 1.57, 208},
+        {"report", 2.37, 317}}},
       {size(9, 2, 1024),
-       {{"calib", 4.37, 239},
-        {"rectify", 7.09, 222},
-        {"fit", 24.0, 357},
-        {"refine", 36.1, 499},
-        {"export", 10.2, 382},
-        {"report", 14.5, 390}}},
+       {{"calib", 2.22, 236},
+        {"rectify", 2.37, 230},
+        {"fit", 8.84, 392},
+        {"refine", 14.5, 517},
+        {"export", 5.64, 391},
+        {"report", 6.4, 398}}},
       {size(12, 12, 1024),
-       {{"calib", 9.73, 569},
-        {"rectify", 9.74, 366},
-        {"fit", 26.2, 374},
-        {"refine", 36.5, 546},
-        {"export", 10.5, 387},
-        {"report", 11.2, 396}}},
+       {{"calib", 5.25, 570},
+        {"rectify", 4.15, 384},
+        {"fit", 8.79, 375},
+        {"refine", 16.9, 566},
+        {"export", 5.63, 392},
+        {"report", 6.38, 408}}},
       {size(12, 12, 2048),
-       {{"calib", 10.3, 568},
-        {"rectify", 34.31, 383},
-        {"fit", 32.93, 446},
-        {"refine", 102.83, 1128},
-        {"export", 33.52, 775},
-        {"report", 36.92, 693}}},
+       {{"calib", 5.21, 570},
+        {"rectify", 13.4, 404},
+        {"fit", 12.6, 419},
+        {"refine", 51, 1142},
+        {"export", 23, 798},
+        {"report", 15.9, 696}}},
   };
 }
 
