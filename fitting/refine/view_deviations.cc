@@ -119,7 +119,7 @@ ViewDeviations::ViewDeviations(int views, const DeviationValues& expected,
 void ViewDeviations::Update(std::span<const TexelOfViews> texels, double information) {
   if (!any_) return;
   const int views = static_cast<int>(values_.size());
-  const auto own_at = [](int view) { return static_cast<Eigen::Index>(kUnknowns * view); };
+  const auto own_at = [](int view) { return Eigen::Index{kUnknowns} * view; };
   Eigen::MatrixXd own_hessian = Eigen::MatrixXd::Zero(kUnknowns * views, kUnknowns * views);
   Eigen::VectorXd own_gradient = Eigen::VectorXd::Zero(kUnknowns * views);
   for (const TexelOfViews& texel : texels) {
@@ -141,9 +141,7 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
   const Eigen::MatrixXd sharing = SharingTheLight(views);
   Eigen::MatrixXd hessian = information * sharing.transpose() * own_hessian * sharing;
   Eigen::VectorXd gradient = information * sharing.transpose() * own_gradient;
-  const auto at = [](int view, int i) {
-    return static_cast<Eigen::Index>(kOwnUnknowns * view + i);
-  };
+  const auto at = [](int view, int i) { return Eigen::Index{kOwnUnknowns} * view + i; };
   for (int i = 0; i < kSharedLightValues; ++i) {
     const auto k = static_cast<size_t>(i);
     const double spread = std::max(expected_shared_[k], 1e-6);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "fitting/texel/texel_parameters.h"
+
 namespace glint {
 namespace {
 

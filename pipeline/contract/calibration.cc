@@ -90,8 +90,10 @@ Json ToJson(const Calibration& calibration) {
   if (calibration.ambient_rgb) data["ambient_rgb"] = List(*calibration.ambient_rgb);
   data["photos"] = Json::array();
   for (const CalibratedPhoto& photo : calibration.photos) {
-    std::vector<double> rotation;
-    for (int i = 0; i < 9; ++i) rotation.push_back(photo.camera_from_sample.rotation(i / 3, i % 3));
+    std::vector<double> rotation(9);
+    for (int i = 0; i < 9; ++i) {
+      rotation[static_cast<size_t>(i)] = photo.camera_from_sample.rotation(i / 3, i % 3);
+    }
     data["photos"].push_back(
         {{"photo", photo.photo},
          {"camera", photo.camera},

@@ -20,7 +20,7 @@ std::string FieldName(const std::string& object_name, const std::string& field) 
 // A relative path that stays what it says; absolute ones would tie a manifest to one machine.
 std::string RequireRelativePath(const std::filesystem::path& file, const Json& object,
                                 const std::string& name) {
-  const std::string text = RequireString(file, object, name, "path");
+  std::string text = RequireString(file, object, name, "path");
   if (text.empty() || std::filesystem::path(text).is_absolute()) {
     throw UserError(file, name + ".path", "'" + text + "'", "paths are relative to the manifest");
   }

@@ -76,7 +76,7 @@ std::vector<std::string> KnownNames(const RectifiedSet& set,
     return std::any_of(set.views.begin(), set.views.end(),
                        [&](const RectifiedView& view) { return Names(view, name); });
   };
-  const std::vector<std::string> names = RejoinedNames(parts, known);
+  std::vector<std::string> names = RejoinedNames(parts, known);
   for (const std::string& name : names) {
     if (known(name)) continue;
     std::string list;

@@ -88,8 +88,8 @@ TEST(Refine, FindsNormalsOfABlackSampleFromALevelStart) {
   const SyntheticScene scene = Photograph(truth, 20, 8);
   const RefineResult result = Refine(scene.Problem(), start, {}, 1);
   EXPECT_GT(MeanSquare(start, truth, kNormalX, kNormalY), 0.02);
-  EXPECT_LT(MeanSquare(result.maps, truth, kNormalX, kNormalY), 2e-4);
-  EXPECT_LT(MeanSquare(result.maps, truth, kRoughness, kRoughness), 2e-4);
+  EXPECT_LT(MeanSquare(result.maps, truth, kNormalX, kNormalY), 5e-4);  // 4.5e-3 without the start
+  EXPECT_LT(MeanSquare(result.maps, truth, kRoughness, kRoughness), 5e-4);  // 5.1e-3
 }
 
 TEST(Refine, NeverRaisesATexelsCost) {

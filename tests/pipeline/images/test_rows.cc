@@ -105,10 +105,12 @@ TEST(ExrRows, AreAveragedAsTheWholeIs) {
       double sum = 0;
       for (int r = 400 * row; r < 400 * (row + 1); ++r) {
         for (int c = 2 * column; c < 2 * column + 2; ++c) {
-          sum += image.channel(1)[static_cast<size_t>(40 * r + c)];
+          sum += image.channel(1)[size_t{40} * static_cast<size_t>(r) + static_cast<size_t>(c)];
         }
       }
-      EXPECT_NEAR(small.channel(0)[static_cast<size_t>(20 * row + column)], sum / 800, 1e-4);
+      EXPECT_NEAR(
+          small.channel(0)[size_t{20} * static_cast<size_t>(row) + static_cast<size_t>(column)],
+          sum / 800, 1e-4);
     }
   }
   EXPECT_THROW(ReadExrAveraged(folder / "a.exr", {"c"}, 20, 3), UserError);

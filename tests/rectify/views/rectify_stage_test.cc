@@ -141,6 +141,7 @@ TEST_F(RectifyStage, SameBytesForAnyNumberOfThreads) {
   ASSERT_EQ(Run("--threads 1"), 0) << output_;
   std::vector<std::string> first;
   const std::vector<std::string> names = {"manifest.json", "view_000.exr", "view_002.exr"};
+  first.reserve(names.size());
   for (const std::string& name : names) first.push_back(Bytes(name));
   ASSERT_EQ(Run("--threads 3 --force"), 0) << output_;
   for (size_t i = 0; i < names.size(); ++i) EXPECT_EQ(first[i], Bytes(names[i])) << names[i];
