@@ -79,7 +79,7 @@ TEST(RenderPlannedView, EightBitsAreWithinHalfALevelOfTheRendering) {
 
 TEST(WriteViewSet, ReadsBackAsARectifiedSetAndACapture) {
   const test::TemporaryFolder temporary;
-  const fs::path folder = temporary.path();
+  const fs::path& folder = temporary.path();
   const MaterialSource material{"m", MakeMaterial(5, 32, 32)};
   CommonOptions common;
   common.threads = 1;
