@@ -1,7 +1,6 @@
 #include "fitting/refine/estimate_sample.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <tuple>
 
@@ -33,15 +32,6 @@ RefineProblem Reordered(RefineProblem problem, const std::vector<int>& order) {
   return problem;
 }
 
-double MeanDistance_mm(const std::vector<View>& views) {
-  double sum = 0;
-  for (const View& view : views) {
-    const Vec3d& light = view.light_in_sample_mm;
-    sum += std::hypot(light[0], light[1], light[2]);
-  }
-  return sum / static_cast<double>(views.size());
-}
-
 std::vector<View> ViewsOf(const RefineProblem& problem) {
   std::vector<View> views;
   for (const RefineView& view : problem.views) views.push_back(view.view);
@@ -61,7 +51,7 @@ class Estimator {
         workers_(RefineWorkers(problem, options, threads)),
         part_(problem_, start, std::nullopt, options.substances),
         model_(part_, options) {
-    shared_light_.distance_mm = MeanDistance_mm(said_);
+    shared_light_.distance_mm = MeanLightDistance_mm(said_);
   }
   void Run();
   SampleEstimate Estimate(std::vector<int> order) const;

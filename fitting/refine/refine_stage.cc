@@ -14,6 +14,7 @@
 #include "fitting/refine/substances.h"
 #include "fitting/reflectance/brdf.h"
 #include "fitting/view_correction/corrections_json.h"
+#include "fitting/view_correction/shared_light.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_rows.h"
@@ -188,13 +189,12 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStageOptions& opti
 CorrectionOptions CorrectionFor(const RectifiedSet& set, const std::vector<RectifiedView>& views,
                                 CorrectionOptions options) {
   if (!set.light_sd_mm) return options;
-  double distance_mm = 0;
-  for (const RectifiedView& view : views) {
-    const Vec3d& light = view.view.light_in_sample_mm;
-    distance_mm += std::hypot(light[0], light[1], light[2]) / static_cast<double>(views.size());
-  }
+  std::vector<View> said(views.size());
+  std::transform(views.begin(), views.end(), said.begin(),
+                 [](const RectifiedView& view) { return view.view; });
   ViewExpectations& expected = options.view.expected;
-  expected.light = expected.distance = expected.shared_light = *set.light_sd_mm / distance_mm;
+  expected.light = expected.distance = expected.shared_light =
+      *set.light_sd_mm / MeanLightDistance_mm(said);
   return options;
 }
 

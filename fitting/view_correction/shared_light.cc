@@ -14,6 +14,12 @@ double Distance_mm(const View& view) {
 
 }  // namespace
 
+double MeanLightDistance_mm(std::span<const View> views) {
+  double sum = 0;
+  for (const View& view : views) sum += Distance_mm(view);
+  return sum / static_cast<double>(views.size());
+}
+
 View WithSharedLight(const View& said, const SharedLight& shared) {
   const SharedLightValues& values = shared.values;
   View view = WithFlashOffset(

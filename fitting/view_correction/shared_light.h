@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "fitting/reflectance/view.h"
 #include "fitting/view_correction/deviating_view.h"
@@ -27,6 +28,9 @@ struct SharedLight {
 
   bool operator==(const SharedLight&) const = default;
 };
+
+// From the sample's centre to the light; of at least one view.
+double MeanLightDistance_mm(std::span<const View> views);
 
 View WithSharedLight(const View& said, const SharedLight& shared);
 
