@@ -17,6 +17,12 @@ void NormalOf(const TexelValues& texel, double normal[2], double* length) {
 
 }  // namespace
 
+void InitialisationErrors::ScaleAlbedos(double factor) {
+  for (double* error : {&diffuse, &diffuse_relative, &specular, &specular_relative}) {
+    *error *= factor;
+  }
+}
+
 TexelGaussian::TexelGaussian(const TexelValues& initial, const InitialisationErrors& errors) {
   for (int i = 0; i <= kRough; ++i) {
     const bool specular = i % 2 == 1;
