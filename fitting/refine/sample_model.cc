@@ -61,7 +61,8 @@ SharedValues SharedOf(const TexelValues& values) {
 InitialisationErrors ErrorsOfInitialisation(const RefineProblem& problem) {
   InitialisationErrors errors;
   if (problem.views.size() == 1) return errors;
-  errors.ScaleAlbedos(kSeenAlready);
+  errors.ScaleDiffuse(kSeenAlready);
+  errors.ScaleSpecular(kSeenAlready);
   errors.normal = errors.roughness = std::numeric_limits<double>::infinity();
   return errors;
 }
@@ -406,17 +407,22 @@ void SampleModel::ChooseSpreads(const Sampling& sampling) {
 }
 
 // Of the diffuse spread the mean variance likewise; of the initialisation's errors the mean
-// logarithm: large ones all mean that it is not used, however large.
+// logarithm: large ones all mean that it is not used, however large. Specular albedo keeps some
+// hold on it: where few texels show a highlight, cross-validation hardly tells.
 void SampleModel::ChooseAlbedoErrors(const Sampling& sampling) {
   const Scale spread = [](double factor, SampleModel* model) {
     model->means_.spreads.diffuse *= factor;
   };
   means_.spreads.diffuse = SubstanceSpreads().diffuse;
   spread(TryFactors(sampling, 0.125, 2, spread).RootMeanSquare(), this);
-  const Scale errors = [](double factor, SampleModel* model) {
-    model->initial_errors_.ScaleAlbedos(factor);
+  const Scale diffuse = [](double factor, SampleModel* model) {
+    model->initial_errors_.ScaleDiffuse(factor);
   };
-  errors(TryFactors(sampling, 0.5, 16, errors).GeometricMean(), this);
+  const Scale specular = [](double factor, SampleModel* model) {
+    model->initial_errors_.ScaleSpecular(factor);
+  };
+  diffuse(TryFactors(sampling, 0.5, 16, diffuse).GeometricMean(), this);
+  specular(TryFactors(sampling, 0.5, 4, specular).GeometricMean(), this);
 }
 
 // Residuals that are worth something of their own: those that are not discrepancy, and of
@@ -452,7 +458,9 @@ void SampleModel::Describe(RefineSummary* summary) const {
   summary->roughness_spread = means_.spreads.roughness;
   summary->specular_spread = means_.spreads.specular;
   summary->diffuse_spread = means_.spreads.diffuse;
-  summary->initialisation_errors = initial_errors_.diffuse / InitialisationErrors().diffuse;
+  const InitialisationErrors expected;
+  summary->diffuse_errors = initial_errors_.diffuse / expected.diffuse;
+  summary->specular_errors = initial_errors_.specular / expected.specular;
   summary->exposure_spread = deviations_.spreads()[kLogExposure];
   summary->light_spread = deviations_.spreads()[kLightAcrossX];
   double squares = 0;

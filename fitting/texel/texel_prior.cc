@@ -17,10 +17,14 @@ void NormalOf(const TexelValues& texel, double normal[2], double* length) {
 
 }  // namespace
 
-void InitialisationErrors::ScaleAlbedos(double factor) {
-  for (double* error : {&diffuse, &diffuse_relative, &specular, &specular_relative}) {
-    *error *= factor;
-  }
+void InitialisationErrors::ScaleDiffuse(double factor) {
+  diffuse *= factor;
+  diffuse_relative *= factor;
+}
+
+void InitialisationErrors::ScaleSpecular(double factor) {
+  specular *= factor;
+  specular_relative *= factor;
 }
 
 TexelGaussian::TexelGaussian(const TexelValues& initial, const InitialisationErrors& errors) {

@@ -23,7 +23,8 @@ struct InitialisationErrors {
   double specular = 0.02;
   double specular_relative = 0.2;
 
-  void ScaleAlbedos(double factor);
+  void ScaleDiffuse(double factor);
+  void ScaleSpecular(double factor);
 };
 
 // In the parameters' order; n_x and n_y in the slopes' places.
