@@ -372,10 +372,11 @@ double SampleModel::CrossValidate(const Sampling& sampling) const {
 }
 
 SampleModel::FactorLikelihoods SampleModel::TryFactors(const Sampling& sampling, double least,
-                                                       double most, const Scale& scale) const {
+                                                       int count, const Scale& scale) const {
   FactorLikelihoods tried;
   std::vector<double> errors;
-  for (double factor = least; factor <= most; factor *= 2) {
+  for (int i = 0; i < count; ++i) {
+    const double factor = std::ldexp(least, i);
     SampleModel model(*this);
     scale(factor, &model);
     tried.factors.push_back(factor);
@@ -394,14 +395,14 @@ SampleModel::FactorLikelihoods SampleModel::TryFactors(const Sampling& sampling,
 // well as the best one is nearly as likely, and to take the best alone would state deviations that
 // are too small.
 void SampleModel::ChooseSpreads(const Sampling& sampling) {
-  const auto choose = [&](double least, double most, const Scale& scale) {
-    scale(TryFactors(sampling, least, most, scale).RootMeanSquare(), this);
+  const auto choose = [&](double least, int count, const Scale& scale) {
+    scale(TryFactors(sampling, least, count, scale).RootMeanSquare(), this);
   };
-  choose(0.25, 2, [](double factor, SampleModel* model) {
+  choose(0.25, 4, [](double factor, SampleModel* model) {
     model->means_.spreads.roughness *= factor;
     model->means_.spreads.specular *= factor;
   });
-  choose(0.25, 2, [](double factor, SampleModel* model) {
+  choose(0.25, 4, [](double factor, SampleModel* model) {
     for (double& spread : model->normal_spreads_) spread *= factor;
   });
 }
@@ -414,14 +415,14 @@ void SampleModel::ChooseAlbedoErrors(const Sampling& sampling) {
     model->means_.spreads.diffuse *= factor;
   };
   means_.spreads.diffuse = SubstanceSpreads().diffuse;
-  spread(TryFactors(sampling, 0.125, 2, spread).RootMeanSquare(), this);
+  spread(TryFactors(sampling, 0.125, 5, spread).RootMeanSquare(), this);
   const Scale diffuse = [](double factor, SampleModel* model) {
     model->initial_errors_.ScaleDiffuse(factor);
   };
   const Scale specular = [](double factor, SampleModel* model) {
     model->initial_errors_.ScaleSpecular(factor);
   };
-  diffuse(TryFactors(sampling, 0.5, 16, diffuse).GeometricMean(), this);
+  diffuse(TryFactors(sampling, 0.5, 6, diffuse).GeometricMean(), this);
   specular(TryFactors(sampling, 0.5, 4, specular).GeometricMean(), this);
 }
 

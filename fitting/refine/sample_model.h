@@ -86,8 +86,8 @@ class SampleModel {
   // Multiplies some of the spreads.
   using Scale = std::function<void(double factor, SampleModel* model)>;
   struct FactorLikelihoods;
-  // Of factors from `least` to `most`, each twice the one before.
-  FactorLikelihoods TryFactors(const Sampling& sampling, double least, double most,
+  // Of `count` factors from `least` on, each twice the one before.
+  FactorLikelihoods TryFactors(const Sampling& sampling, double least, int count,
                                const Scale& scale) const;
   void ChooseSpreads(const Sampling& sampling);
   void ChooseAlbedoErrors(const Sampling& sampling);
