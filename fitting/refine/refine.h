@@ -96,12 +96,9 @@ struct RefineSummary {
   double effective_views = 0;     // how many views say something of their own
   int substances = 0;             // that are told apart
   double roughness_spread = 0;    // of texels about their substance's mean …
-  double specular_spread = 0;     // … relative …
-  double diffuse_spread = 0;      // … likewise
-  // Errors of the initialisation's albedos, in multiples of texel_prior.h's.
-  double diffuse_errors = 0, specular_errors = 0;
-  double normal_spread = 0;  // of n_x, n_y about 0, and between neighbours
-  SharedLight shared_light;  // of all views
+  double specular_spread = 0;     // … relative
+  double normal_spread = 0;       // of n_x, n_y about 0, and between neighbours
+  SharedLight shared_light;       // of all views
   // What single views deviate by: added to the lights beside `shared_light`, factors on
   // exposures; and the spreads of both, estimated.
   std::vector<Vec3d> light_offsets_mm;

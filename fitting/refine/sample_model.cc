@@ -22,10 +22,9 @@ constexpr double kSeenAlready = 3;
 // part is what fitting made of its photographs.
 constexpr double kNormalSpread = 0.05;
 constexpr double kNormalTexels = 20;  // that this belief is worth, of a substance
-// Relative; until cross-validation chooses one, diffuse albedo is whatever photographs say.
-constexpr double kFreeDiffuseSpread = 8;
-// So many of the shared values, specular albedo and roughness, are alike in neighbours.
-constexpr size_t kAlikeNearby = kSharedRoughness + 1;
+
+// By which spreads are tried.
+constexpr std::array<double, 4> kSpreadFactors = {0.25, 0.5, 1.0, 2.0};
 
 using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
@@ -50,8 +49,7 @@ std::array<double, 2> PlaceOf(const SamplePlane& plane, size_t texel) {
 
 SharedValues SharedOf(const TexelValues& values) {
   SharedValues shared;
-  for (size_t p = 0; p < kShared; ++p)
-    shared[p] = values[static_cast<size_t>(kSharedParameters[p])];
+  for (size_t p = 0; p < 4; ++p) shared[p] = values[static_cast<size_t>(kSharedParameters[p])];
   return shared;
 }
 
@@ -61,8 +59,10 @@ SharedValues SharedOf(const TexelValues& values) {
 InitialisationErrors ErrorsOfInitialisation(const RefineProblem& problem) {
   InitialisationErrors errors;
   if (problem.views.size() == 1) return errors;
-  errors.ScaleDiffuse(kSeenAlready);
-  errors.ScaleSpecular(kSeenAlready);
+  for (double* error :
+       {&errors.diffuse, &errors.diffuse_relative, &errors.specular, &errors.specular_relative}) {
+    *error *= kSeenAlready;
+  }
   errors.normal = errors.roughness = std::numeric_limits<double>::infinity();
   return errors;
 }
@@ -76,7 +76,7 @@ std::vector<SharedValues> InitialMeans(const SamplePart& part) {
     for (size_t k = 0; k < means.size(); ++k) {
       const double share = part.shares(t)[k];
       weights[k] += share;
-      for (size_t p = 0; p < kShared; ++p) means[k][p] += share * shared[p];
+      for (size_t p = 0; p < 4; ++p) means[k][p] += share * shared[p];
     }
   }
   for (size_t k = 0; k < means.size(); ++k) {
@@ -86,29 +86,6 @@ std::vector<SharedValues> InitialMeans(const SamplePart& part) {
 }
 
 }  // namespace
-
-// Factors that were tried, and how likely each is.
-struct SampleModel::FactorLikelihoods {
-  std::vector<double> factors, likelihoods;
-
-  double RootMeanSquare() const {
-    return std::sqrt(Mean([](double factor) { return factor * factor; }));
-  }
-  double GeometricMean() const {
-    return std::exp(Mean([](double factor) { return std::log(factor); }));
-  }
-
- private:
-  template <class Function>
-  double Mean(const Function& of) const {
-    double weights = 0, sum = 0;
-    for (size_t i = 0; i < factors.size(); ++i) {
-      weights += likelihoods[i];
-      sum += likelihoods[i] * of(factors[i]);
-    }
-    return sum / weights;
-  }
-};
 
 struct SampleModel::Sampling {
   std::vector<size_t> texels;
@@ -130,7 +107,6 @@ SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
                    options.flash_beam, options.distance_power}) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   means_.mean = InitialMeans(part);
-  means_.spreads.diffuse = kFreeDiffuseSpread;
 }
 
 SampleModel SampleModel::On(const SamplePart& part) const {
@@ -142,8 +118,8 @@ SampleModel SampleModel::On(const SamplePart& part) const {
 TexelGaussian SampleModel::Knowledge(size_t texel) const {
   TexelGaussian gaussian(ReadTexel(part_->initial(), texel), initial_errors_);
   const SharedValues mean = means_.Of(part_->shares(texel));
-  const SharedValues variances = means_.spreads.Variances(mean);
-  for (size_t p = 0; p < kShared; ++p) {
+  const SharedValues variances = means_.Variances(mean);
+  for (size_t p = 0; p < 4; ++p) {
     gaussian.Multiply(kSharedParameters[p], mean[p], 1 / variances[p]);
   }
   const double precision = NormalPrecision(texel);
@@ -152,8 +128,7 @@ TexelGaussian SampleModel::Knowledge(size_t texel) const {
   return gaussian;
 }
 
-// Neighbours are expected to differ by as much as texels from their substance, or from level; not
-// so their diffuse albedos: print has edges.
+// Neighbours are expected to differ by as much as texels from their substance, or from level.
 void SampleModel::MultiplyNeighbours(size_t texel, const SvbrdfMaps& maps,
                                      TexelGaussian* gaussian) const {
   const int width = maps.width, height = maps.height;
@@ -169,7 +144,7 @@ void SampleModel::MultiplyNeighbours(size_t texel, const SvbrdfMaps& maps,
     normal[1] += maps.plane(kNormalY)[i];
     const SharedValues shared = SharedOf(ReadTexel(maps, i));
     const SharedValues mean = means_.Of(part_->shares(i));
-    for (size_t p = 0; p < kAlikeNearby; ++p) departure[p] += shared[p] - mean[p];
+    for (size_t p = 0; p < 4; ++p) departure[p] += shared[p] - mean[p];
     ++count;
   };
   add(row - 1, column);
@@ -181,8 +156,8 @@ void SampleModel::MultiplyNeighbours(size_t texel, const SvbrdfMaps& maps,
     gaussian->Multiply(kSlopeX + i, normal[i] / count, count * NormalPrecision(texel));
   }
   const SharedValues mean = means_.Of(part_->shares(texel));
-  const SharedValues variances = means_.spreads.Variances(mean);
-  for (size_t p = 0; p < kAlikeNearby; ++p) {
+  const SharedValues variances = means_.Variances(mean);
+  for (size_t p = 0; p < 4; ++p) {
     gaussian->Multiply(kSharedParameters[p], mean[p] + departure[p] / count, count / variances[p]);
   }
 }
@@ -210,7 +185,7 @@ SampleModel::Sampling SampleModel::Sample(size_t most, const SampleSolver& solve
   return sampling;
 }
 
-void SampleModel::Fit(std::span<const int> views, int rounds, const Learns& learns,
+void SampleModel::Fit(std::span<const int> views, int rounds, bool update_residuals,
                       Sampling* sampling) {
   const int count = static_cast<int>(sampling->texels.size());
   for (int round = 0; round < rounds; ++round) {
@@ -220,9 +195,9 @@ void SampleModel::Fit(std::span<const int> views, int rounds, const Learns& lear
           sampling->solver->solve(texel, PriorOf(texel), sampling->solved[k].values, views, worker);
     });
     UpdateSubstances(*sampling);
-    if (learns.deviations) UpdateDeviations(*sampling);
-    if (learns.normals) UpdateNormalSpreads(*sampling);
-    if (learns.residuals) UpdateResiduals(*sampling);
+    if (update_residuals) UpdateDeviations(*sampling);
+    if (update_residuals && learns_normals_) UpdateNormalSpreads(*sampling);
+    if (update_residuals) UpdateResiduals(*sampling);
   }
 }
 
@@ -236,9 +211,9 @@ void SampleModel::UpdateSubstances(const Sampling& sampling) {
     SubstanceSample sample;
     sample.shares = part_->shares(sampling.texels[i]);
     sample.value = SharedOf(solved.values);
-    for (size_t p = 0; p < kShared; ++p) {
-      for (size_t q = 0; q < kShared; ++q) {
-        sample.covariance[kShared * p + q] =
+    for (size_t p = 0; p < 4; ++p) {
+      for (size_t q = 0; q < 4; ++q) {
+        sample.covariance[4 * p + q] =
             variance * inverse(kSharedParameters[p], kSharedParameters[q]);
       }
     }
@@ -355,7 +330,7 @@ double SampleModel::CrossValidate(const Sampling& sampling) const {
     for (size_t k = 0; k < part.texels.size(); ++k) {
       part.solved[k].values = PriorOf(part.texels[k]).mean();
     }
-    model.Fit(fitted, kFoldRounds, {}, &part);
+    model.Fit(fitted, kFoldRounds, false, &part);
     std::vector<Prediction> predictions(part.texels.size());
     ForEachPieceByWorker(
         static_cast<int>(predictions.size()), part.threads, [&](int i, int worker) {
@@ -371,59 +346,35 @@ double SampleModel::CrossValidate(const Sampling& sampling) const {
   return sum.squares / std::max(sum.residuals, 1);
 }
 
-SampleModel::FactorLikelihoods SampleModel::TryFactors(const Sampling& sampling, double least,
-                                                       int count, const Scale& scale) const {
-  FactorLikelihoods tried;
-  std::vector<double> errors;
-  for (int i = 0; i < count; ++i) {
-    const double factor = std::ldexp(least, i);
-    SampleModel model(*this);
-    scale(factor, &model);
-    tried.factors.push_back(factor);
-    errors.push_back(model.CrossValidate(sampling));
-  }
-  const double least_error = *std::min_element(errors.begin(), errors.end());
-  const double independent = CrossValidatedResiduals(sampling);
-  for (const double error : errors) {
-    // Gauss's likelihood of as many residuals, their variance the least that is found.
-    tried.likelihoods.push_back(std::exp(-0.5 * independent * (error / least_error - 1)));
-  }
-  return tried;
-}
-
 // The mean variance over what cross-validation leaves possible: a spread that predicts nearly as
 // well as the best one is nearly as likely, and to take the best alone would state deviations that
 // are too small.
 void SampleModel::ChooseSpreads(const Sampling& sampling) {
-  const auto choose = [&](double least, int count, const Scale& scale) {
-    scale(TryFactors(sampling, least, count, scale).RootMeanSquare(), this);
+  const double independent = CrossValidatedResiduals(sampling);
+  const auto choose = [&](const auto& scale) {
+    std::array<double, kSpreadFactors.size()> error{};
+    for (size_t i = 0; i < kSpreadFactors.size(); ++i) {
+      SampleModel tried(*this);
+      scale(kSpreadFactors[i], &tried);
+      error[i] = tried.CrossValidate(sampling);
+    }
+    const double least = *std::min_element(error.begin(), error.end());
+    double weights = 0, squares = 0;
+    for (size_t i = 0; i < kSpreadFactors.size(); ++i) {
+      // Gauss's likelihood of as many residuals, their variance the least that is found.
+      const double weight = std::exp(-0.5 * independent * (error[i] / least - 1));
+      weights += weight;
+      squares += weight * kSpreadFactors[i] * kSpreadFactors[i];
+    }
+    scale(std::sqrt(squares / weights), this);
   };
-  choose(0.25, 4, [](double factor, SampleModel* model) {
-    model->means_.spreads.roughness *= factor;
-    model->means_.spreads.specular *= factor;
+  choose([](double factor, SampleModel* model) {
+    model->means_.roughness_spread *= factor;
+    model->means_.specular_spread *= factor;
   });
-  choose(0.25, 4, [](double factor, SampleModel* model) {
+  choose([](double factor, SampleModel* model) {
     for (double& spread : model->normal_spreads_) spread *= factor;
   });
-}
-
-// Of the diffuse spread the mean variance likewise; of the initialisation's errors the mean
-// logarithm: large ones all mean that it is not used, however large. Specular albedo keeps some
-// hold on it: where few texels show a highlight, cross-validation hardly tells.
-void SampleModel::ChooseAlbedoErrors(const Sampling& sampling) {
-  const Scale spread = [](double factor, SampleModel* model) {
-    model->means_.spreads.diffuse *= factor;
-  };
-  means_.spreads.diffuse = SubstanceSpreads().diffuse;
-  spread(TryFactors(sampling, 0.125, 5, spread).RootMeanSquare(), this);
-  const Scale diffuse = [](double factor, SampleModel* model) {
-    model->initial_errors_.ScaleDiffuse(factor);
-  };
-  const Scale specular = [](double factor, SampleModel* model) {
-    model->initial_errors_.ScaleSpecular(factor);
-  };
-  diffuse(TryFactors(sampling, 0.5, 6, diffuse).GeometricMean(), this);
-  specular(TryFactors(sampling, 0.5, 4, specular).GeometricMean(), this);
 }
 
 // Residuals that are worth something of their own: those that are not discrepancy, and of
@@ -438,15 +389,12 @@ double SampleModel::CrossValidatedResiduals(const Sampling& sampling) const {
 
 void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   Sampling sampling = Sample(kSampled, solver, threads);
-  const int rounds = options_.estimation_rounds;
-  Fit(all_views_, rounds, {.residuals = true, .normals = true, .deviations = true}, &sampling);
+  learns_normals_ = true;
+  Fit(all_views_, options_.estimation_rounds, true, &sampling);
+  learns_normals_ = false;
   if (static_cast<int>(all_views_.size()) < kLeastValidatedViews) return;
   ChooseSpreads(Sample(kCrossValidated, solver, threads));
-  Fit(all_views_, rounds, {.residuals = true, .deviations = true}, &sampling);
-  // Not before the views are known: the light would be found such that albedos are even, as if
-  // those of neighbours departed from their substance independently of each other.
-  ChooseAlbedoErrors(Sample(kCrossValidated, solver, threads));
-  Fit(all_views_, rounds, {.residuals = true}, &sampling);
+  Fit(all_views_, options_.estimation_rounds, true, &sampling);
 }
 
 void SampleModel::Describe(RefineSummary* summary) const {
@@ -456,12 +404,8 @@ void SampleModel::Describe(RefineSummary* summary) const {
   summary->discrepancy = residuals_.discrepancy();
   summary->effective_views = residuals_.effective_views();
   summary->substances = part_->substances().count();
-  summary->roughness_spread = means_.spreads.roughness;
-  summary->specular_spread = means_.spreads.specular;
-  summary->diffuse_spread = means_.spreads.diffuse;
-  const InitialisationErrors expected;
-  summary->diffuse_errors = initial_errors_.diffuse / expected.diffuse;
-  summary->specular_errors = initial_errors_.specular / expected.specular;
+  summary->roughness_spread = means_.roughness_spread;
+  summary->specular_spread = means_.specular_spread;
   summary->exposure_spread = deviations_.spreads()[kLogExposure];
   summary->light_spread = deviations_.spreads()[kLightAcrossX];
   double squares = 0;

@@ -69,12 +69,9 @@ class SampleModel {
  private:
   struct Sampling;  // sampled texels and what solves them
   Sampling Sample(size_t most, const SampleSolver& solver, int threads) const;
-  // What rounds of estimation update beside the substances.
-  struct Learns {
-    bool residuals = false, normals = false, deviations = false;
-  };
-  // Rounds of solving the sampled texels by `views` and updating what is to be learned.
-  void Fit(std::span<const int> views, int rounds, const Learns& learns, Sampling* sampling);
+  // Rounds of solving the sampled texels by `views` and updating the substances and, where asked
+  // for, the residuals' variance.
+  void Fit(std::span<const int> views, int rounds, bool update_residuals, Sampling* sampling);
   void UpdateSubstances(const Sampling& sampling);
   void UpdateResiduals(const Sampling& sampling);
   void UpdateNormalSpreads(const Sampling& sampling);
@@ -83,14 +80,7 @@ class SampleModel {
   double SampleWorth(const std::vector<size_t>& texels) const;
   // Mean squared residual of held-out views.
   double CrossValidate(const Sampling& sampling) const;
-  // Multiplies some of the spreads.
-  using Scale = std::function<void(double factor, SampleModel* model)>;
-  struct FactorLikelihoods;
-  // Of `count` factors from `least` on, each twice the one before.
-  FactorLikelihoods TryFactors(const Sampling& sampling, double least, int count,
-                               const Scale& scale) const;
   void ChooseSpreads(const Sampling& sampling);
-  void ChooseAlbedoErrors(const Sampling& sampling);
   double CrossValidatedResiduals(const Sampling& sampling) const;
 
   TexelGaussian Knowledge(size_t texel) const;
@@ -105,6 +95,7 @@ class SampleModel {
   SubstanceMeans means_;
   // Of n_x, n_y about 0, and about their neighbours' mean, by substance.
   std::vector<double> normal_spreads_;
+  bool learns_normals_ = false;  // whether Fit estimates them
   ViewDeviations deviations_;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 // Chroma tells substances apart better than brightness, which shading changes too.
 constexpr float kBrightnessWeight = 0.5f, kChromaWeight = 2.0f;
-constexpr float kColourOffset = 0.01f;
+constexpr float kAlbedoOffset = 0.01f;
 constexpr float kMembershipWidth = 0.2f;  // of the features, for soft shares
 constexpr int kIterations = 40;
 constexpr size_t kClustered = 8192;
@@ -31,7 +31,7 @@ Feature FeatureOf(const std::vector<float>& colour, size_t texel) {
   float mean = 0;
   for (size_t c = 0; c < 3; ++c) {
     const float d = colour[c * colour.size() / 3 + texel];
-    logs[c] = std::log(std::max(0.0f, d) + kColourOffset);
+    logs[c] = std::log(std::max(0.0f, d) + kAlbedoOffset);
     mean += logs[c] / 3;
   }
   return {kBrightnessWeight * mean, kChromaWeight * (logs[0] - mean),
@@ -116,115 +116,88 @@ std::vector<float> Substances::SharesOf(const std::vector<float>& colour) const 
 SharedValues SubstanceMeans::Of(const float* shares) const {
   SharedValues value{};
   for (size_t k = 0; k < mean.size(); ++k) {
-    for (size_t p = 0; p < kShared; ++p) value[p] += shares[k] * mean[k][p];
+    for (size_t p = 0; p < 4; ++p) value[p] += shares[k] * mean[k][p];
   }
   return value;
 }
 
-SharedValues SubstanceSpreads::Variances(const SharedValues& mean) const {
+SharedValues SubstanceMeans::Variances(const SharedValues& of) const {
   SharedValues variances;
-  for (size_t p = 0; p < kShared; ++p) {
-    const double relative = p < kSharedRoughness ? specular : diffuse;
-    const double spread = p == kSharedRoughness ? roughness : relative * (mean[p] + kAlbedoOffset);
+  for (size_t p = 0; p < 3; ++p) {
+    const double spread = specular_spread * (of[p] + kSpecularOffset);
     variances[p] = spread * spread;
   }
+  variances[3] = roughness_spread * roughness_spread;
   return variances;
 }
 
-namespace {
-
-constexpr auto kN = static_cast<Eigen::Index>(kShared);
-using SharedMatrix = Eigen::Matrix<double, kN, kN, Eigen::RowMajor>;
-using SharedVector = Eigen::Matrix<double, kN, 1>;
-
-// Normal equations of all substances' means, kShared of each one after the other.
-struct MeanEquations {
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient;
-};
-
-// What the texels say of the means.
-MeanEquations EquationsOf(const std::vector<SubstanceSample>& samples,
-                          const SubstanceMeans& means) {
-  const auto count = static_cast<Eigen::Index>(means.mean.size());
-  MeanEquations equations{Eigen::MatrixXd::Zero(kN * count, kN * count),
-                          Eigen::VectorXd::Zero(kN * count)};
+void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, SubstanceMeans* means) {
+  using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  using Vector4 = Eigen::Vector4d;
+  const auto count = static_cast<Eigen::Index>(means->mean.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(4 * count, 4 * count);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(4 * count);
   for (const SubstanceSample& sample : samples) {
-    const SharedValues mean = means.Of(sample.shares);
-    const SharedValues variances = means.spreads.Variances(mean);
-    const SharedVector precision = Eigen::Map<const SharedVector>(variances.data()).cwiseInverse();
-    const SharedMatrix covariance = Eigen::Map<const SharedMatrix>(sample.covariance.data());
+    const SharedValues mean = means->Of(sample.shares);
+    const SharedValues variances = means->Variances(mean);
+    const Vector4 precision(1 / variances[0], 1 / variances[1], 1 / variances[2], 1 / variances[3]);
+    const Matrix4 covariance = Eigen::Map<const Matrix4>(sample.covariance.data());
+    Vector4 departure;
+    for (int p = 0; p < 4; ++p) {
+      departure[p] = sample.value[static_cast<size_t>(p)] - mean[static_cast<size_t>(p)];
+    }
     // The texel's own marginal information about its mean: P − P·C·P.
-    SharedMatrix own = -(precision.asDiagonal() * covariance * precision.asDiagonal());
+    Matrix4 own = -(precision.asDiagonal() * covariance * precision.asDiagonal());
     own.diagonal() += precision;
-    const SharedVector pull =
-        precision.cwiseProduct(Eigen::Map<const SharedVector>(sample.value.data()) -
-                               Eigen::Map<const SharedVector>(mean.data()));
+    const Vector4 pull = precision.cwiseProduct(departure);
     for (Eigen::Index k = 0; k < count; ++k) {
       const double share = sample.shares[k];
       if (share < 1e-3) continue;
-      equations.gradient.segment<kN>(kN * k) += share * pull;
+      gradient.segment<4>(4 * k) += share * pull;
       for (Eigen::Index l = 0; l < count; ++l) {
         const double other = sample.shares[l];
-        if (other >= 1e-3) {
-          equations.information.block<kN, kN>(kN * k, kN * l) += share * other * own;
-        }
+        if (other >= 1e-3) information.block<4, 4>(4 * k, 4 * l) += share * other * own;
       }
     }
   }
-  return equations;
-}
-
-// Means are expected within a wide range of their common mean.
-void HoldToCommonMean(const SubstanceMeans& means, MeanEquations* equations) {
-  const auto count = static_cast<Eigen::Index>(means.mean.size());
+  information *= worth;
+  gradient *= worth;
+  // Means are expected within a wide range of their common mean.
   SharedValues common{};
-  for (const SharedValues& m : means.mean) {
-    for (size_t p = 0; p < kShared; ++p) common[p] += m[p] / static_cast<double>(count);
+  for (const SharedValues& m : means->mean) {
+    for (size_t p = 0; p < 4; ++p) common[p] += m[p] / static_cast<double>(count);
   }
-  const SharedValues variances = SubstanceSpreads().Variances(common);
   for (Eigen::Index k = 0; k < count; ++k) {
-    for (size_t p = 0; p < kShared; ++p) {
-      const Eigen::Index i = kN * k + static_cast<Eigen::Index>(p);
-      const double precision = 1 / (kBetweenToWithin * kBetweenToWithin * variances[p]);
-      equations->information(i, i) += precision;
-      equations->gradient[i] += precision * (common[p] - means.mean[static_cast<size_t>(k)][p]);
+    for (Eigen::Index p = 0; p < 4; ++p) {
+      const auto q = static_cast<size_t>(p);
+      const double width =
+          kBetweenToWithin * (p == 3 ? kExpectedRoughnessSpread
+                                     : kExpectedSpecularSpread * (common[q] + kSpecularOffset));
+      const double precision = 1 / (width * width);
+      information(4 * k + p, 4 * k + p) += precision;
+      gradient[4 * k + p] += precision * (common[q] - means->mean[static_cast<size_t>(k)][q]);
     }
   }
-}
-
-// … and specular albedos of a substance to be alike in all channels.
-void HoldToGrey(const SubstanceMeans& means, MeanEquations* equations) {
-  for (size_t k = 0; k < means.mean.size(); ++k) {
-    const SharedValues& m = means.mean[k];
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const SharedValues& m = means->mean[static_cast<size_t>(k)];
     const double grey = (m[0] + m[1] + m[2]) / 3;
-    const double width = kChroma * (grey + kAlbedoOffset);
-    const Eigen::Index first = kN * static_cast<Eigen::Index>(k);
+    const double width = kChroma * (grey + kSpecularOffset);
     for (Eigen::Index p = 0; p < 3; ++p) {
       for (Eigen::Index q = 0; q < 3; ++q) {
-        equations->information(first + p, first + q) +=
-            ((p == q ? 1.0 : 0.0) - 1.0 / 3) / (width * width);
+        information(4 * k + p, 4 * k + q) += ((p == q ? 1.0 : 0.0) - 1.0 / 3) / (width * width);
       }
-      equations->gradient[first + p] += (grey - m[static_cast<size_t>(p)]) / (width * width);
+      gradient[4 * k + p] += (grey - m[static_cast<size_t>(p)]) / (width * width);
     }
   }
-}
-
-}  // namespace
-
-void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, SubstanceMeans* means) {
-  MeanEquations equations = EquationsOf(samples, *means);
-  equations.information *= worth;
-  equations.gradient *= worth;
-  HoldToCommonMean(*means, &equations);
-  HoldToGrey(*means, &equations);
-  const Eigen::VectorXd step = equations.information.ldlt().solve(equations.gradient);
-  for (size_t i = 0; i < means->mean.size() * kShared; ++i) {
-    const size_t p = i % kShared;
-    double& mean = means->mean[i / kShared][p];
-    const double most = kMostMeanStep * (mean + kAlbedoOffset);
-    mean += std::clamp(step[static_cast<Eigen::Index>(i)], -most, most);
-    mean = std::clamp(mean, p == kSharedRoughness ? kRoughnessBounds.low : 0.0, 1.0);
+  const Eigen::VectorXd step = information.ldlt().solve(gradient);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    SharedValues& mean = means->mean[static_cast<size_t>(k)];
+    for (Eigen::Index p = 0; p < 4; ++p) {
+      const auto q = static_cast<size_t>(p);
+      const double most = kMostMeanStep * (mean[q] + kSpecularOffset);
+      mean[q] += std::clamp(step[4 * k + p], -most, most);
+      mean[q] = std::clamp(mean[q], p == 3 ? kRoughnessBounds.low : 0.0, 1.0);
+    }
   }
 }
 

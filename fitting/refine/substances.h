@@ -1,9 +1,9 @@
 // Substances: places of one reflectance, wherever they lie in the sample (docs/model.md,
 // "Reflectance sharing").
 //
-// A texel belongs to a few substances, by its colour. Its roughness and albedos are those of its
-// substances, in the mean, and depart from them by spreads that all substances have in common.
-// Means are found from sampled texels by type-II maximum likelihood.
+// A texel belongs to a few substances, by its colour. Its roughness and specular albedo are those
+// of its substances, in the mean, and depart from them by a spread that all substances share. Means
+// and spreads are found from sampled texels by type-II maximum likelihood.
 #pragma once
 
 #include <array>
@@ -16,12 +16,9 @@ namespace glint {
 
 inline constexpr int kMostSubstances = 8;
 // Shared values, by their place among a texel's parameters.
-inline constexpr size_t kShared = 7;
-inline constexpr std::array<int, kShared> kSharedParameters = {
-    SpecularParameter(0), SpecularParameter(1), SpecularParameter(2), kRough,
-    DiffuseParameter(0),  DiffuseParameter(1),  DiffuseParameter(2)};
-inline constexpr size_t kSharedRoughness = 3;  // its place among them
-using SharedValues = std::array<double, kShared>;
+inline constexpr std::array<int, 4> kSharedParameters = {SpecularParameter(0), SpecularParameter(1),
+                                                         SpecularParameter(2), kRough};
+using SharedValues = std::array<double, 4>;
 
 // Which substances there are, by colour.
 class Substances {
@@ -38,37 +35,34 @@ class Substances {
   std::vector<std::array<float, 3>> centres_;  // in the space of features
 };
 
-// Standard deviations of texels about their substance's mean: of roughness, and of albedos relative
-// to mean + kAlbedoOffset.
-struct SubstanceSpreads {
-  double roughness = 0.1, specular = 0.8, diffuse = 1.0;
-
-  // Of a texel's values about such a mean.
-  SharedValues Variances(const SharedValues& mean) const;
-};
+inline constexpr double kExpectedRoughnessSpread = 0.1, kExpectedSpecularSpread = 0.8;
 
 // What has been learned of them.
 struct SubstanceMeans {
   std::vector<SharedValues> mean;
-  SubstanceSpreads spreads;
+  // Standard deviation of texels about their substance's mean: of roughness, and of specular albedo
+  // relative to mean + kSpecularOffset.
+  double roughness_spread = kExpectedRoughnessSpread, specular_spread = kExpectedSpecularSpread;
 
   SharedValues Of(const float* shares) const;
+  // Variances of a texel's values about that.
+  SharedValues Variances(const SharedValues& mean) const;
 };
 
 // Half of what dielectrics reflect at least: what is nearer to 0 is black to all photographs.
-inline constexpr double kAlbedoOffset = 0.02;
+inline constexpr double kSpecularOffset = 0.02;
 
 // A sampled texel at its most probable values, for estimating means and spreads.
 struct SubstanceSample {
   const float* shares = nullptr;
   SharedValues value{};
   // Posterior covariance of the values, row-major.
-  std::array<double, kShared * kShared> covariance{};
+  std::array<double, 16> covariance{};
 };
 
-// One Newton step of the means on the marginal likelihood. `worth`: of a sample, in independent
-// ones, ≤ 1: model discrepancy is common to the texels of a substance that are seen under like half
-// vectors.
+// One Newton step of the means and one fixed-point step of the spreads (MacKay 1992) on the
+// marginal likelihood. `worth`: of a sample, in independent ones, ≤ 1: model discrepancy is common
+// to the texels of a substance that are seen under like half vectors.
 void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, SubstanceMeans* means);
 
 }  // namespace glint

@@ -17,16 +17,6 @@ void NormalOf(const TexelValues& texel, double normal[2], double* length) {
 
 }  // namespace
 
-void InitialisationErrors::ScaleDiffuse(double factor) {
-  diffuse *= factor;
-  diffuse_relative *= factor;
-}
-
-void InitialisationErrors::ScaleSpecular(double factor) {
-  specular *= factor;
-  specular_relative *= factor;
-}
-
 TexelGaussian::TexelGaussian(const TexelValues& initial, const InitialisationErrors& errors) {
   for (int i = 0; i <= kRough; ++i) {
     const bool specular = i % 2 == 1;

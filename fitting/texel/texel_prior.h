@@ -22,9 +22,6 @@ struct InitialisationErrors {
   double diffuse_relative = 0.1;
   double specular = 0.02;
   double specular_relative = 0.2;
-
-  void ScaleDiffuse(double factor);
-  void ScaleSpecular(double factor);
 };
 
 // In the parameters' order; n_x and n_y in the slopes' places.

@@ -73,7 +73,7 @@ TEST(ResidualNoise, DeviationsHoldWhereChannelsShareTheirErrors) {
 
 TEST(ResidualNoise, DeviationsAreOnTheSafeSideWhereChannelsErrOnTheirOwn) {
   const double ratio = ErrorOverSigma(Refined(false, 16));
-  EXPECT_GT(ratio, 0.79 / std::sqrt(2.8) / 1.4);
+  EXPECT_GT(ratio, 0.79 / std::sqrt(2.8) / 1.2);
   EXPECT_LT(ratio, 1.2);
 }
 
