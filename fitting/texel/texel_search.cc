@@ -15,8 +15,10 @@ constexpr std::array<double, 8> kRoughnesses = {0.07, 0.10, 0.14, 0.20, 0.28, 0.
 // Another start is worth a solve when it promises this much less cost; solutions that differ by
 // less are the same for every practical purpose.
 constexpr double kWorthwhile = 0.98;
-constexpr double kWorthStep = 0.05;  // gain of a step against one residual's noise
-constexpr double kExplained = 1.5;   // squared residuals against noise alone
+// Gain of a step against one residual's noise: narrow valleys (diffuse light against a rough lobe)
+// are walked in short steps.
+constexpr double kWorthStep = 0.005;
+constexpr double kExplained = 1.5;  // squared residuals against noise alone
 
 // Turns the normal so that it mirrors the light into the camera of the view in which the texel is
 // brightest for the light it receives. A normal far from the true one has no slope toward it where
