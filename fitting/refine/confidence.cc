@@ -15,7 +15,7 @@ constexpr double kWidest = 1.0;
 
 std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
                                                      const TexelValues& texel, double squares,
-                                                     double scale) {
+                                                     double scale, const TexelCovariance& common) {
   const double variance = scale * scale;
   // What nothing is known of keeps the widest deviation: it stands in for a missing prior.
   double unknown[kTexelParameters];
@@ -27,7 +27,9 @@ std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
     unit[i] = 1.0;
     factor.Solve(unit, &inverse[i]);
   }
-  const auto covariance = [&](int a, int b) { return variance * inverse[a][b]; };
+  const auto covariance = [&](int a, int b) {
+    return variance * inverse[a][b] + common[static_cast<size_t>(a * kTexelParameters + b)];
+  };
 
   // n_x, n_y by the slopes.
   const double x = texel[kSlopeX], y = texel[kSlopeY];

@@ -170,8 +170,9 @@ void PartRefiner::ConcludeTexel(size_t texel, RefineWorker* worker) {
   TexelGram gram;
   worker->search.solver().Gram(worker->observations, TexelPrior(), values, &gram);
   const double squares = gram[kTexelParameters][kTexelParameters];
+  const TexelCovariance common = model_.CommonCovariance(texel, values, gram);
   prior.AddTo(values, &gram);
-  const auto planes = TexelConfidence(gram, values, squares, model_.residuals().scale());
+  const auto planes = TexelConfidence(gram, values, squares, model_.residuals().scale(), common);
   for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];
 
   double* sum = &sums_[texel / static_cast<size_t>(start_.width) * SumColumns()];

@@ -29,11 +29,11 @@ constexpr std::array<double, 4> kSpreadFactors = {0.25, 0.5, 1.0, 2.0};
 using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
 // (JᵀJ + prior)⁻¹ by the physical values.
-Matrix9 InverseInformation(const SampledTexel& sampled) {
+Matrix9 InverseInformation(const TexelGram& gram) {
   Matrix9 information;
   for (int i = 0; i < kTexelParameters; ++i) {
     for (int j = i; j < kTexelParameters; ++j) {
-      information(i, j) = information(j, i) = sampled.gram[i][j];
+      information(i, j) = information(j, i) = gram[i][j];
     }
     information(i, i) += 1e-9;  // what nothing is known of, without a prior
   }
@@ -207,7 +207,7 @@ void SampleModel::UpdateSubstances(const Sampling& sampling) {
   for (size_t i = 0; i < sampling.solved.size(); ++i) {
     const SampledTexel& solved = sampling.solved[i];
     if (solved.views == 0) continue;
-    const Matrix9 inverse = InverseInformation(solved);
+    const Matrix9 inverse = InverseInformation(solved.gram);
     SubstanceSample sample;
     sample.shares = part_->shares(sampling.texels[i]);
     sample.value = SharedOf(solved.values);
@@ -253,7 +253,7 @@ void SampleModel::UpdateResiduals(const Sampling& sampling) {
   double squares = 0, free = 0;
   for (const SampledTexel& solved : sampling.solved) {
     if (solved.views == 0) continue;
-    const Matrix9 inverse = InverseInformation(solved);
+    const Matrix9 inverse = InverseInformation(solved.gram);
     double determined = kTexelParameters;  // tr (JᵀJ + prior)⁻¹ JᵀJ
     for (int i = 0; i < kTexelParameters; ++i) {
       determined -= inverse(i, i) * solved.prior_diagonal[static_cast<size_t>(i)];
@@ -266,6 +266,27 @@ void SampleModel::UpdateResiduals(const Sampling& sampling) {
   if (free > 0) {
     residuals_.SetVariance(HyperbolicVariance(squares / free, options_.robust_scale));
   }
+}
+
+// Where the means move by dm, the most probable values move by C·P·dm, with C the texel's posterior
+// covariance and P its substances' precisions. Neighbours are left out of C: theirs move alike.
+TexelCovariance SampleModel::CommonCovariance(size_t texel, const TexelValues& values,
+                                              const TexelGram& photographs) const {
+  TexelGram gram = photographs;
+  PriorOf(texel).AddTo(values, &gram);
+  const Matrix9 covariance = residuals_.scale() * residuals_.scale() * InverseInformation(gram);
+  const float* shares = part_->shares(texel);
+  const SharedValues variances = means_.Variances(means_.Of(shares));
+  Eigen::Matrix<double, kTexelParameters, 4> moved;
+  for (int p = 0; p < 4; ++p) {
+    const auto q = static_cast<size_t>(p);
+    moved.col(p) = covariance.col(kSharedParameters[q]) / variances[q];
+  }
+  const std::array<double, 16> means = means_.CovarianceOf(shares);
+  TexelCovariance common;
+  Eigen::Map<Matrix9>(common.data()) =
+      moved * Eigen::Map<const Eigen::Matrix4d>(means.data()) * moved.transpose();
+  return common;
 }
 
 double SampleModel::NormalPrecision(size_t texel) const {
@@ -285,7 +306,7 @@ void SampleModel::UpdateNormalSpreads(const Sampling& sampling) {
   for (size_t i = 0; i < sampling.solved.size(); ++i) {
     const SampledTexel& solved = sampling.solved[i];
     if (solved.views == 0) continue;
-    const Matrix9 inverse = InverseInformation(solved);
+    const Matrix9 inverse = InverseInformation(solved.gram);
     double normal[2];
     NormalOfSlopes(solved.values[kSlopeX], solved.values[kSlopeY], normal);
     double square = 0;
@@ -310,7 +331,7 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
     if (solved.views == 0) continue;
     TexelOfViews& texel = texels.emplace_back();
     texel.place = PlaceOf(part_->problem().plane, sampling.texels[i]);
-    Eigen::Map<Matrix9>(texel.inverse.data()) = InverseInformation(solved);
+    Eigen::Map<Matrix9>(texel.inverse.data()) = InverseInformation(solved.gram);
     texel.products = &solved.of_views;
   }
   const double scale = residuals_.scale();

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "fitting/refine/confidence.h"
 #include "fitting/refine/refine.h"
 #include "fitting/refine/residual_model.h"
 #include "fitting/refine/sample_part.h"
@@ -63,6 +64,12 @@ class SampleModel {
   // The texel's prior: without what its neighbours know, and with their values in `maps`.
   TexelPrior PriorOf(size_t texel) const;
   TexelPrior PriorOf(size_t texel, const SvbrdfMaps& maps) const;
+
+  // Covariance of the texel's values that its substances' means leave open, row-major: those are
+  // uncertain themselves, and all their texels share what they are wrong by. `photographs`: the
+  // Gram matrix of the photographs alone at `values`.
+  TexelCovariance CommonCovariance(size_t texel, const TexelValues& values,
+                                   const TexelGram& photographs) const;
 
   void Describe(RefineSummary* summary) const;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fitting/refine/bounded_step.h"
 #include "fitting/texel/texel_parameters.h"
 
 namespace glint {
@@ -121,6 +122,23 @@ SharedValues SubstanceMeans::Of(const float* shares) const {
   return value;
 }
 
+std::array<double, 16> SubstanceMeans::CovarianceOf(const float* shares) const {
+  std::array<double, 16> sum{};
+  if (covariance.empty()) return sum;
+  const size_t count = mean.size();
+  for (size_t k = 0; k < count; ++k) {
+    for (size_t l = 0; l < count; ++l) {
+      const double share = static_cast<double>(shares[k]) * shares[l];
+      if (share < 1e-6) continue;
+      for (size_t p = 0; p < 4; ++p) {
+        const double* row = covariance.data() + (4 * k + p) * 4 * count + 4 * l;
+        for (size_t q = 0; q < 4; ++q) sum[4 * p + q] += share * row[q];
+      }
+    }
+  }
+  return sum;
+}
+
 SharedValues SubstanceMeans::Variances(const SharedValues& of) const {
   SharedValues variances;
   for (size_t p = 0; p < 3; ++p) {
@@ -189,16 +207,20 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
       gradient[4 * k + p] += (grey - m[static_cast<size_t>(p)]) / (width * width);
     }
   }
-  const Eigen::VectorXd step = information.ldlt().solve(gradient);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    SharedValues& mean = means->mean[static_cast<size_t>(k)];
-    for (Eigen::Index p = 0; p < 4; ++p) {
-      const auto q = static_cast<size_t>(p);
-      const double most = kMostMeanStep * (mean[q] + kSpecularOffset);
-      mean[q] += std::clamp(step[4 * k + p], -most, most);
-      mean[q] = std::clamp(mean[q], p == 3 ? kRoughnessBounds.low : 0.0, 1.0);
-    }
+  Eigen::VectorXd least(4 * count), most(4 * count);
+  for (Eigen::Index i = 0; i < 4 * count; ++i) {
+    const double mean = means->mean[static_cast<size_t>(i / 4)][static_cast<size_t>(i % 4)];
+    const double farthest = kMostMeanStep * (mean + kSpecularOffset);
+    least[i] = std::max(-farthest, (i % 4 == 3 ? kRoughnessBounds.low : 0.0) - mean);
+    most[i] = std::min(farthest, 1.0 - mean);
   }
+  const Eigen::VectorXd step = StepWithin(information, gradient, least, most);
+  for (Eigen::Index i = 0; i < 4 * count; ++i) {
+    means->mean[static_cast<size_t>(i / 4)][static_cast<size_t>(i % 4)] += step[i];
+  }
+  const Eigen::MatrixXd covariance =
+      information.ldlt().solve(Eigen::MatrixXd::Identity(4 * count, 4 * count));
+  means->covariance.assign(covariance.data(), covariance.data() + covariance.size());
 }
 
 }  // namespace glint

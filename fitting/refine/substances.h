@@ -3,7 +3,7 @@
 //
 // A texel belongs to a few substances, by its colour. Its roughness and specular albedo are those
 // of its substances, in the mean, and depart from them by a spread that all substances share. Means
-// and spreads are found from sampled texels by type-II maximum likelihood.
+// are found from sampled texels by type-II maximum likelihood.
 #pragma once
 
 #include <array>
@@ -44,7 +44,12 @@ struct SubstanceMeans {
   // relative to mean + kSpecularOffset.
   double roughness_spread = kExpectedRoughnessSpread, specular_spread = kExpectedSpecularSpread;
 
+  // Posterior covariance of all means, row-major by substance and value; empty: they are certain.
+  std::vector<double> covariance;
+
   SharedValues Of(const float* shares) const;
+  // Covariance of that, row-major.
+  std::array<double, 16> CovarianceOf(const float* shares) const;
   // Variances of a texel's values about that.
   SharedValues Variances(const SharedValues& mean) const;
 };
@@ -60,9 +65,9 @@ struct SubstanceSample {
   std::array<double, 16> covariance{};
 };
 
-// One Newton step of the means and one fixed-point step of the spreads (MacKay 1992) on the
-// marginal likelihood. `worth`: of a sample, in independent ones, ≤ 1: model discrepancy is common
-// to the texels of a substance that are seen under like half vectors.
+// One Newton step of the means on the marginal likelihood, and their covariance. `worth`: of a
+// sample, in independent ones, ≤ 1: model discrepancy is common to the texels of a substance that
+// are seen under like half vectors.
 void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, SubstanceMeans* means);
 
 }  // namespace glint

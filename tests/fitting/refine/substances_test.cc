@@ -53,8 +53,8 @@ TEST(Substances, SharesSumToOneAndDoNotChangeWithBrightnessOfLight) {
 
 // Texels that know their values to `noise`, of two substances.
 std::vector<SubstanceSample> Samples(const std::vector<float>& shares, double noise,
-                                     const SubstanceMeans& prior) {
-  std::mt19937 random(1);
+                                     const SubstanceMeans& prior, unsigned seed = 1) {
+  std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, 1);
   std::vector<SubstanceSample> samples;
   for (size_t t = 0; t < 1000; ++t) {
@@ -101,6 +101,54 @@ TEST(UpdateMeans, SubstancesThatLittleIsKnownOfStayTogether) {
     UpdateMeans(Samples(shares, 0.3, means), 1e-4, &means);
   }
   EXPECT_LT(std::abs(means.mean[0][3] - means.mean[1][3]), 0.15);
+}
+
+// Two substances that all texels share about alike, and whose roughness texels know well.
+std::vector<SubstanceSample> MixedSamples(const std::vector<float>& shares,
+                                          const SubstanceMeans& prior) {
+  std::vector<SubstanceSample> samples;
+  for (size_t t = 0; t < shares.size() / 2; ++t) {
+    SubstanceSample sample;
+    sample.shares = shares.data() + 2 * t;
+    const SharedValues mean = prior.Of(sample.shares), variances = prior.Variances(mean);
+    sample.value = mean;
+    for (size_t p = 0; p < 3; ++p) sample.covariance[5 * p] = variances[p];
+    sample.value[3] = 0.055 - 0.5 * (sample.shares[0] - 0.575);  // as if the first had −.16
+    sample.covariance[15] = 1e-6;
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+TEST(UpdateMeans, WhereOneIsHeldAtItsBoundTheOtherMakesUpForIt) {
+  std::vector<float> shares;
+  for (int t = 0; t < 1000; ++t) {
+    const float first = 0.55f + 0.05f * static_cast<float>(t) / 1000;
+    shares.insert(shares.end(), {first, 1 - first});
+  }
+  SubstanceMeans means;
+  means.mean.assign(2, {0.5, 0.5, 0.5, 0.055});
+  for (int round = 0; round < 12; ++round) UpdateMeans(MixedSamples(shares, means), 1, &means);
+  const float middle[2] = {0.575f, 0.425f};
+  EXPECT_NEAR(means.Of(middle)[3], 0.055, 0.005);
+  EXPECT_NEAR(means.mean[0][3], 0.03, 1e-9);
+}
+
+TEST(UpdateMeans, MeansAreOffByAsMuchAsTheirCovarianceSays) {
+  const std::vector<float> shares = Substances(Stripes(1000), 2).SharesOf(Stripes(1000));
+  double squares = 0;
+  constexpr int kSeeds = 100;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    SubstanceMeans means;
+    means.mean.assign(2, {0.1, 0.1, 0.1, 0.45});
+    for (int round = 0; round < 12; ++round) {
+      UpdateMeans(Samples(shares, 0.3, means, static_cast<unsigned>(seed)), 1, &means);
+    }
+    const double error = means.Of(shares.data())[3] - 0.3;
+    squares += error * error / means.CovarianceOf(shares.data())[15];
+  }
+  EXPECT_GT(squares / kSeeds, 0.6);
+  EXPECT_LT(squares / kSeeds, 1.4);
 }
 
 }  // namespace
