@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/parallel/parallel.h"
+#include "fitting/texel/texel_cholesky.h"
 #include "fitting/texel/texel_parameters.h"
 
 namespace glint {
@@ -26,6 +27,9 @@ constexpr double kNormalTexels = 20;  // that this belief is worth, of a substan
 // By which spreads are tried.
 constexpr std::array<double, 4> kSpreadFactors = {0.25, 0.5, 1.0, 2.0};
 
+// What nothing is known of, without a prior.
+constexpr double kUnknownInformation = 1e-9;
+
 using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
 // (JᵀJ + prior)⁻¹ by the physical values.
@@ -35,7 +39,7 @@ Matrix9 InverseInformation(const TexelGram& gram) {
     for (int j = i; j < kTexelParameters; ++j) {
       information(i, j) = information(j, i) = gram[i][j];
     }
-    information(i, i) += 1e-9;  // what nothing is known of, without a prior
+    information(i, i) += kUnknownInformation;
   }
   return information.ldlt().solve(Matrix9::Identity());
 }
@@ -276,18 +280,30 @@ TexelCovariance SampleModel::CommonCovariance(size_t texel, const TexelValues& v
                                               const TexelGram& photographs) const {
   TexelGram gram = photographs;
   PriorOf(texel).AddTo(values, &gram);
-  const Matrix9 covariance = residuals_.scale() * residuals_.scale() * InverseInformation(gram);
+  double nothing[kTexelParameters];
+  std::fill_n(nothing, kTexelParameters, kUnknownInformation);
+  const TexelCholesky information(gram, nothing);
   const float* shares = part_->shares(texel);
   const SharedValues variances = means_.Variances(means_.Of(shares));
-  Eigen::Matrix<double, kTexelParameters, 4> moved;
-  for (int p = 0; p < 4; ++p) {
-    const auto q = static_cast<size_t>(p);
-    moved.col(p) = covariance.col(kSharedParameters[q]) / variances[q];
+  double moved[4][kTexelParameters];  // by each of the means
+  for (size_t p = 0; p < 4; ++p) {
+    double pull[kTexelParameters] = {};
+    pull[kSharedParameters[p]] = residuals_.scale() * residuals_.scale() / variances[p];
+    information.Solve(pull, &moved[p]);
   }
   const std::array<double, 16> means = means_.CovarianceOf(shares);
-  TexelCovariance common;
-  Eigen::Map<Matrix9>(common.data()) =
-      moved * Eigen::Map<const Eigen::Matrix4d>(means.data()) * moved.transpose();
+  TexelCovariance common{};
+  for (size_t p = 0; p < 4; ++p) {
+    double with[kTexelParameters] = {};
+    for (size_t q = 0; q < 4; ++q) {
+      for (size_t j = 0; j < kTexelParameters; ++j) with[j] += means[4 * p + q] * moved[q][j];
+    }
+    for (size_t i = 0; i < kTexelParameters; ++i) {
+      for (size_t j = 0; j < kTexelParameters; ++j) {
+        common[i * kTexelParameters + j] += moved[p][i] * with[j];
+      }
+    }
+  }
   return common;
 }
 
