@@ -45,7 +45,6 @@ class PartRefiner {
   void ConcludeTexel(size_t texel, RefineWorker* worker);
   void ForEachTexel(const std::function<void(size_t texel, RefineWorker* worker)>& visit);
   TexelPrior PriorOf(size_t texel) const { return model_.PriorOf(texel, result_.maps); }
-  TexelSolution Current(size_t texel, const TexelPrior& prior, RefineWorker* worker);
   void Keep(size_t texel, const TexelSolution& solution);
 
   std::vector<int> all_views_;
@@ -101,14 +100,6 @@ void PartRefiner::ForEachTexel(const std::function<void(size_t, RefineWorker*)>&
   });
 }
 
-TexelSolution PartRefiner::Current(size_t texel, const TexelPrior& prior, RefineWorker* worker) {
-  TexelSolution solution;
-  solution.values = ReadTexel(result_.maps, texel);
-  solution.cost = worker->search.solver().Cost(worker->observations, prior, solution.values);
-  solution.converged = (origin_[texel] & kConverged) != 0;
-  return solution;
-}
-
 void PartRefiner::Keep(size_t texel, const TexelSolution& solution) {
   WriteTexel(solution.values, texel, &result_.maps);
   origin_[texel] = static_cast<unsigned char>((origin_[texel] & ~kConverged) |
@@ -153,7 +144,8 @@ void PartRefiner::SolveFromNeighbours(int half_pass) {
     const TexelPrior prior = PriorOf(texel);
     // The prior is no longer the one it was solved with.
     const TexelSolution current =
-        worker->search.Improved(worker->observations, prior, Current(texel, prior, worker));
+        worker->search.Improved(worker->observations, prior, ReadTexel(result_.maps, texel),
+                                (origin_[texel] & kConverged) != 0);
     const TexelSearch::Found found = worker->search.FromNeighbours(
         worker->observations, prior, current, std::span(neighbours).first(count));
     if (found.other_start) origin_[texel] |= kNeighbour;

@@ -144,9 +144,13 @@ TexelSearch::Found TexelSearch::FromStart(const TexelObservations& observations,
 }
 
 TexelSolution TexelSearch::Improved(const TexelObservations& observations, const TexelPrior& prior,
-                                    const TexelSolution& current) {
-  TexelSolution best = current;
-  TrySolve(observations, prior, current.values, &best);
+                                    const TexelValues& values, bool converged) {
+  TexelSolution best = solver_.Solve(observations, prior, values, TexelSolver::kNearMinimum);
+  if (!(best.cost < best.start_cost)) {
+    best.values = values;
+    best.cost = best.start_cost;
+    best.converged = converged;
+  }
   return best;
 }
 

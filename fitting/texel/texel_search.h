@@ -31,9 +31,10 @@ class TexelSearch {
   Found FromStart(const TexelObservations& observations, const TexelPrior& prior,
                   const TexelValues& start);
 
-  // The local minimum near `current`, if it is less costly.
+  // The local minimum near `values`, which are next to one, or they themselves where that is no
+  // less costly; `converged` is whether they were.
   TexelSolution Improved(const TexelObservations& observations, const TexelPrior& prior,
-                         const TexelSolution& current);
+                         const TexelValues& values, bool converged);
 
   // The best of `current` and the minimum near the neighbour that promises least: its normal and
   // roughness, or its roughness alone, with albedos fitted to this texel.

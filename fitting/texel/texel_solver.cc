@@ -15,10 +15,6 @@ constexpr double kSquaresTolerance = 1e-9;
 constexpr double kStepTolerance = 1e-6;
 constexpr double kGradientTolerance = 1e-10;  // by scaled variables
 constexpr double kExactCost = 1e-14;          // nothing to gain
-// Full Gauss–Newton steps from a rough start throw texels into corners that hold them (no specular
-// at all; the smoothest lobe): with a trust region of 1e4 a third of texels ended in one, with 1 a
-// twentieth (20 views), in no more steps.
-constexpr double kFirstRadius = 1.0;
 
 using Variables = double[kTexelParameters];
 
@@ -30,14 +26,14 @@ class LevenbergMarquardt {
   // evaluate(variables, gram): see EvaluateCost.
   template <class Evaluate>
   LevenbergMarquardt(const Evaluate& evaluate, int most_iterations, double squares_tolerance,
-                     Variables* variables) {
+                     double damping, Variables* variables) {
     TexelGram tried;
     Variables& x = *variables;
     evaluate(x, &gram_);
     start_cost = CostOf(gram_);
     if (!std::isfinite(start_cost)) return;
     for (int i = 0; i < kTexelParameters; ++i) scale_[i] = 1.0 / (1.0 + std::sqrt(gram_[i][i]));
-    double damping = 1.0 / kFirstRadius, growth = 2.0;
+    double growth = 2.0;
     while (!Minimal()) {
       if (++iterations >= most_iterations) return;
       Variables step, at;
@@ -123,7 +119,7 @@ void TexelSolver::Gram(const TexelObservations& observations, const TexelPrior& 
 }
 
 TexelSolution TexelSolver::Solve(const TexelObservations& observations, const TexelPrior& prior,
-                                 const TexelValues& start) {
+                                 const TexelValues& start, double damping) {
   Variables variables;
   ToVariables(start, variables);
   TexelSolution solution;
@@ -138,7 +134,7 @@ TexelSolution TexelSolver::Solve(const TexelObservations& observations, const Te
       [&](const Variables& at, TexelGram* gram) {
         EvaluateCost(options_, observations, prior, at, &rows_, gram);
       },
-      most_iterations_, squares_tolerance_, &variables);
+      most_iterations_, squares_tolerance_, damping, &variables);
   ToTexelValues(variables, &solution.values, &derivatives);
   solution.cost = solved.cost();
   solution.start_cost = moved ? Cost(observations, prior, start) : solved.start_cost;
