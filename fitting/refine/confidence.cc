@@ -28,7 +28,8 @@ std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
     factor.Solve(unit, &inverse[i]);
   }
   const auto covariance = [&](int a, int b) {
-    return variance * inverse[a][b] + common[static_cast<size_t>(a * kTexelParameters + b)];
+    return variance * inverse[a][b] +
+           common[static_cast<size_t>(a) * kTexelParameters + static_cast<size_t>(b)];
   };
 
   // n_x, n_y by the slopes.
