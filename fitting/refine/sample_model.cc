@@ -263,11 +263,9 @@ void SampleModel::UpdateResiduals(const Sampling& sampling) {
       determined -= inverse(i, i) * solved.prior_diagonal[static_cast<size_t>(i)];
     }
     determined = std::clamp(determined, 0.0, static_cast<double>(kTexelParameters));
-    const double residuals = 3.0 * solved.views;
-    // One photograph is explained wholly and says nothing of σ, twenty leave no need to guess.
-    const double belief = model.expected_residuals * determined / residuals;
-    squares += solved.squares + belief * model.expected_sigma * model.expected_sigma;
-    free += std::max(residuals - determined, 0.0) + belief;
+    squares +=
+        solved.squares + model.expected_residuals * model.expected_sigma * model.expected_sigma;
+    free += std::max(3.0 * solved.views - determined, 0.0) + model.expected_residuals;
   }
   if (free > 0) {
     residuals_.SetVariance(HyperbolicVariance(squares / free, options_.robust_scale));

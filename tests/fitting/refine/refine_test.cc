@@ -169,8 +169,7 @@ TEST(Refine, KeepsTheStartWhereNothingIsSeen) {
     return result.confidence[plane * start.texels() + texel];
   };
   EXPECT_GT(sigma(kSigmaDiffuseR, 5), 3 * sigma(kSigmaDiffuseR, 6));
-  // Roughness: as texels of a substance differ, and substances from each other.
-  EXPECT_LT(sigma(kSigmaRoughness, 5), std::hypot(0.1, 0.2));
+  EXPECT_LT(sigma(kSigmaRoughness, 5), 0.2);
 }
 
 TEST(Refine, OnePhotographDoesNotMakeMapsWorse) {
@@ -370,49 +369,18 @@ TEST(Refine, FindsTheShapeOfTheFlashsLight) {
   EXPECT_LT(MeanSquare(found.maps, scene.truth, kDiffuseR, kDiffuseB), 0.7 * believed);
 }
 
-// By how much what texels receive differs from what is said, as the largest difference of
-// logarithms, but for a factor that all views and texels have in common. The shape of the light and
-// the views' exposures make up for each other, so that each alone says little.
-double ChangeOfLight(const RefineProblem& problem, const RefineSummary& found) {
-  std::vector<double> logarithms;
-  double mean = 0;
-  const size_t texels = static_cast<size_t>(problem.plane.width) * problem.plane.height;
-  for (size_t v = 0; v < problem.views.size(); ++v) {
-    const View& said = problem.views[v].view;
-    const View lit = WithSharedLight(said, found.shared_light);
-    for (size_t t = 0; t < texels; ++t) {
-      const double x = problem.plane.x_mm(static_cast<int>(t) % problem.plane.width);
-      const double y = problem.plane.y_mm(static_cast<int>(t) / problem.plane.width);
-      const auto irradiance = [&](const View& view) {
-        return TexelGeometryInView<double>(view, problem.convention.falloff, x, y).irradiance[0];
-      };
-      logarithms.push_back(std::log(found.exposures[v] * irradiance(lit) / irradiance(said)));
-      mean += logarithms.back();
-    }
-  }
-  mean /= static_cast<double>(logarithms.size());
-  double most = 0;
-  for (const double l : logarithms) most = std::max(most, std::abs(l - mean));
-  return most;
-}
-
 TEST(Refine, LeavesTheShapeOfALightThatIsAsSaid) {
-  for (const unsigned seed : {26u, 28u, 30u}) {
-    const SyntheticScene scene = Photograph(QuarteredMaps(24, seed), 8, 8);
-    RefineOptions options;
-    options.exposure_spread = 0.1;
-    options.flash_beam = 0.3;
-    options.distance_power = 1;
-    const RefineSummary found =
-        Refine(scene.Problem(), DisturbedMaps(scene.truth, 0.5f, 27), options, 1).summary;
-    // Within one standard deviation of what these photographs leave open: a mean slope of normals
-    // looks like a beam.
-    EXPECT_NEAR(found.shared_light.values[kBeamX], 0, 0.054) << seed;
-    EXPECT_NEAR(found.shared_light.values[kBeamY], 0, 0.079) << seed;
-    EXPECT_NEAR(found.shared_light.values[kDistancePower], 0, 0.33) << seed;
-    // A third of what exposures are expected to scatter by.
-    EXPECT_LT(ChangeOfLight(scene.Problem(), found), 0.033) << seed;
-  }
+  const SyntheticScene scene = Photograph(QuarteredMaps(24, 26), 8, 8);
+  RefineOptions options;
+  options.exposure_spread = 0.1;
+  options.flash_beam = 0.3;
+  options.distance_power = 1;
+  const SharedLightValues values =
+      Refine(scene.Problem(), DisturbedMaps(scene.truth, 0.5f, 27), options, 1)
+          .summary.shared_light.values;
+  EXPECT_NEAR(values[kBeamX], 0, 0.03);
+  EXPECT_NEAR(values[kBeamY], 0, 0.03);
+  EXPECT_NEAR(values[kDistancePower], 0, 0.1);
 }
 
 double RootMeanSquareLog(const std::vector<double>& factors) {
