@@ -169,7 +169,8 @@ TEST(Refine, KeepsTheStartWhereNothingIsSeen) {
     return result.confidence[plane * start.texels() + texel];
   };
   EXPECT_GT(sigma(kSigmaDiffuseR, 5), 3 * sigma(kSigmaDiffuseR, 6));
-  EXPECT_LT(sigma(kSigmaRoughness, 5), 0.2);
+  // Roughness: as texels of a substance differ, and substances from each other.
+  EXPECT_LT(sigma(kSigmaRoughness, 5), std::hypot(0.1, 0.2));
 }
 
 TEST(Refine, OnePhotographDoesNotMakeMapsWorse) {
