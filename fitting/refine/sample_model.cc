@@ -33,11 +33,11 @@ constexpr double kUnknownInformation = 1e-9;
 using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
 // (JᵀJ + prior)⁻¹ by the physical values.
-Matrix9 InverseInformation(const TexelGram& gram) {
+Matrix9 InverseInformation(const SampledTexel& sampled) {
   Matrix9 information;
   for (int i = 0; i < kTexelParameters; ++i) {
     for (int j = i; j < kTexelParameters; ++j) {
-      information(i, j) = information(j, i) = gram[i][j];
+      information(i, j) = information(j, i) = sampled.gram[i][j];
     }
     information(i, i) += kUnknownInformation;
   }
@@ -211,7 +211,7 @@ void SampleModel::UpdateSubstances(const Sampling& sampling) {
   for (size_t i = 0; i < sampling.solved.size(); ++i) {
     const SampledTexel& solved = sampling.solved[i];
     if (solved.views == 0) continue;
-    const Matrix9 inverse = InverseInformation(solved.gram);
+    const Matrix9 inverse = InverseInformation(solved);
     SubstanceSample sample;
     sample.shares = part_->shares(sampling.texels[i]);
     sample.value = SharedOf(solved.values);
@@ -257,7 +257,7 @@ void SampleModel::UpdateResiduals(const Sampling& sampling) {
   double squares = 0, free = 0;
   for (const SampledTexel& solved : sampling.solved) {
     if (solved.views == 0) continue;
-    const Matrix9 inverse = InverseInformation(solved.gram);
+    const Matrix9 inverse = InverseInformation(solved);
     double determined = kTexelParameters;  // tr (JᵀJ + prior)⁻¹ JᵀJ
     for (int i = 0; i < kTexelParameters; ++i) {
       determined -= inverse(i, i) * solved.prior_diagonal[static_cast<size_t>(i)];
@@ -322,7 +322,7 @@ void SampleModel::UpdateNormalSpreads(const Sampling& sampling) {
   for (size_t i = 0; i < sampling.solved.size(); ++i) {
     const SampledTexel& solved = sampling.solved[i];
     if (solved.views == 0) continue;
-    const Matrix9 inverse = InverseInformation(solved.gram);
+    const Matrix9 inverse = InverseInformation(solved);
     double normal[2];
     NormalOfSlopes(solved.values[kSlopeX], solved.values[kSlopeY], normal);
     double square = 0;
@@ -347,7 +347,7 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
     if (solved.views == 0) continue;
     TexelOfViews& texel = texels.emplace_back();
     texel.place = PlaceOf(part_->problem().plane, sampling.texels[i]);
-    Eigen::Map<Matrix9>(texel.inverse.data()) = InverseInformation(solved.gram);
+    Eigen::Map<Matrix9>(texel.inverse.data()) = InverseInformation(solved);
     texel.products = &solved.of_views;
   }
   const double scale = residuals_.scale();

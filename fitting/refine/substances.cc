@@ -18,10 +18,7 @@ constexpr float kMembershipWidth = 0.2f;  // of the features, for soft shares
 constexpr int kIterations = 40;
 constexpr size_t kClustered = 8192;
 
-// Substances are expected to differ from their common mean by so many times what texels of one
-// differ from each other …
-constexpr double kBetweenToWithin = 2;
-// … and specular albedos by channel, relative: metals are coloured.
+// Substances are expected to differ in specular albedo by channel, relative: metals are coloured.
 constexpr double kChroma = 0.6;
 constexpr double kMostMeanStep = 0.5;  // of a mean, in one round, relative
 

@@ -36,6 +36,9 @@ class Substances {
 };
 
 inline constexpr double kExpectedRoughnessSpread = 0.1, kExpectedSpecularSpread = 0.8;
+// Substances are expected to differ from their common mean by so many times what texels of one
+// differ from each other.
+inline constexpr double kBetweenToWithin = 2;
 
 // What has been learned of them.
 struct SubstanceMeans {

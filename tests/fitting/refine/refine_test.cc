@@ -1,4 +1,5 @@
 #include "fitting/refine/refine.h"
+#include "fitting/refine/substances.h"
 
 #include <gtest/gtest.h>
 
@@ -169,8 +170,10 @@ TEST(Refine, KeepsTheStartWhereNothingIsSeen) {
     return result.confidence[plane * start.texels() + texel];
   };
   EXPECT_GT(sigma(kSigmaDiffuseR, 5), 3 * sigma(kSigmaDiffuseR, 6));
-  // Roughness: as texels of a substance differ, and substances from each other.
-  EXPECT_LT(sigma(kSigmaRoughness, 5), std::hypot(0.1, 0.2));
+  // No wider than the model's own prior: as texels of a substance differ, and substances from each
+  // other.
+  EXPECT_LT(sigma(kSigmaRoughness, 5),
+            kExpectedRoughnessSpread * std::hypot(1.0, kBetweenToWithin));
 }
 
 TEST(Refine, OnePhotographDoesNotMakeMapsWorse) {
