@@ -13,9 +13,10 @@ namespace glint {
 
 struct Photograph {
   View view;
-  bool ldr = true;          // clips at radiance 1
-  std::vector<float> rgb;   // planar, 3·H·W, linear Rec.709
-  std::vector<float> mask;  // H·W, 0 … 1; 0: the values may be anything
+  bool ldr = true;              // clips at radiance 1
+  std::vector<float> rgb;       // planar, 3·H·W, linear Rec.709
+  std::vector<float> mask;      // H·W, 0 … 1; 0: the values may be anything
+  double pixels_per_texel = 0;  // side of a texel in the picture that this was; 0: not known
 };
 
 struct PhotographSet {

@@ -21,7 +21,8 @@ PhotographSet RectifiedPhotographs::WithoutPixels() const {
   photographs.convention = set_.convention;
   photographs.light_power_known = set_.light_power_known;
   for (const RectifiedView& view : views_) {
-    photographs.photographs.push_back({view.view, view.ldr, {}, {}});
+    photographs.photographs.push_back(
+        {view.view, view.ldr, {}, {}, view.pixels_per_texel.value_or(0)});
   }
   return photographs;
 }
@@ -30,7 +31,8 @@ Photograph RectifiedPhotographs::ReadRows(size_t photograph, int first_row, int 
   const RectifiedView& view = views_[photograph];
   RectifiedImage image = readers_[photograph].Read(first_row, rows);
   AdmitClippedTexels(view, &image);
-  return {view.view, view.ldr, std::move(image.rgb), std::move(image.mask)};
+  return {view.view, view.ldr, std::move(image.rgb), std::move(image.mask),
+          view.pixels_per_texel.value_or(0)};
 }
 
 PhotographSet RectifiedPhotographs::Rows(int first_row, int rows, int threads) {

@@ -54,6 +54,7 @@ RectifiedView ReadView(const std::filesystem::path& file, const Json& json, size
   view.view.light_rgb = RequireVec(file, json, name, "light_rgb");
   view.view.ambient_rgb = RequireVec(file, json, name, "ambient_rgb");
   view.view.exposure = RequireNumber(file, json, name, "exposure");
+  view.pixels_per_texel = PositiveNumberIfAny(file, json, name, "pixels_per_texel");
   for (const auto& [field, z] :
        {std::pair<const char*, double>{"camera_in_sample_mm", view.view.camera_in_sample_mm[2]},
         {"light_in_sample_mm", view.view.light_in_sample_mm[2]}}) {
@@ -117,6 +118,9 @@ Json ToJson(const RectifiedSet& set) {
                              {"light_rgb", FromVec(view.view.light_rgb)},
                              {"ambient_rgb", FromVec(view.view.ambient_rgb)},
                              {"exposure", view.view.exposure}});
+    if (view.pixels_per_texel) {
+      data["views"].back()["pixels_per_texel"] = *view.pixels_per_texel;
+    }
   }
   return data;
 }

@@ -137,6 +137,7 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
                       });
     writer.Close();
     Warn(files[i], counts);
+    view.pixels_per_texel = counts.pixels_per_texel;
     exposures.push_back(photo.exposure);
     Json metrics = {{"name", view.name}};
     metrics.update(ToJson(counts));
