@@ -58,7 +58,7 @@ RefineProblem ProblemOf(const PhotographSet& set) {
   problem.convention = set.convention;
   problem.room = set.room;
   for (const Photograph& p : set.photographs) {
-    problem.views.push_back({p.view, p.ldr, p.rgb, p.mask});
+    problem.views.push_back({p.view, p.ldr, p.rgb, p.mask, p.pixels_per_texel});
   }
   return problem;
 }

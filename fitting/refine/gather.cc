@@ -18,11 +18,12 @@ void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps, si
   for (const int v : views) {
     const RefineView& view = problem.views[static_cast<size_t>(v)];
     if (!(view.mask[texel] >= 0.5f)) continue;
+    const std::span<const float> target = view.unmixed.empty() ? view.rgb : view.unmixed;
     double radiance[3];
     bool clipped[3];
     for (int c = 0; c < 3; ++c) {
-      radiance[c] = std::max(static_cast<double>(view.rgb[c * texels + texel]), 0.0);
-      clipped[c] = view.ldr && radiance[c] >= kClipped;
+      radiance[c] = std::max(static_cast<double>(target[c * texels + texel]), 0.0);
+      clipped[c] = view.ldr && static_cast<double>(view.rgb[c * texels + texel]) >= kClipped;
     }
     TexelGeometry<double> geometry =
         TexelGeometryInView<double>(view.view, problem.convention.falloff, x, y);

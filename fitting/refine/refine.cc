@@ -73,6 +73,7 @@ std::string RefineOptions::Check() const {
   if (!(distance_power >= 0.0)) return "the expected power of distance must be at least 0";
   if (!(exposure_spread >= 0.0)) return "the expected exposure spread must be at least 0";
   if (!(light_spread >= 0.0)) return "the expected light spread must be at least 0";
+  if (!(point_spread_px >= 0.0)) return "the point spread must be at least 0";
   if (!(prior >= 0.0)) return "the prior's weight must be at least 0";
   if (!(robust_scale > 0.0)) return "the robust scale must be above 0";
   return "";

@@ -37,6 +37,10 @@ struct RefineView {
   bool ldr = true;              // radiance ≥ 1 means "at least 1"
   std::span<const float> rgb;   // planar, 3·H·W, linear
   std::span<const float> mask;  // H·W; texels of less than ½ are left out
+  double pixels_per_texel = 0;  // side of a texel in the picture that this was; 0: not known
+  // What is solved from; empty: rgb. Refinement itself sets it where the picture mixes texels
+  // (point_spread.h).
+  std::span<const float> unmixed = {};
 };
 
 struct RefineProblem {
@@ -65,7 +69,10 @@ struct RefineOptions {
   double light_spread = 0;
   // Standard deviations expected of all views' light (shared_light.h). 0: as said.
   double flash_beam = 0, distance_power = 0;
-  double prior = 1.0;         // factor on the priors' weight; 0: none
+  double prior = 1.0;  // factor on the priors' weight; 0: none
+  // Standard deviation by which lens, pixel, demosaicking and resampling spread a point of the
+  // picture, pixels (point_spread.h). 0: not at all.
+  double point_spread_px = 0.67;
   double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
 
   // Empty: all is well; otherwise what is wrong.

@@ -11,7 +11,10 @@
 #include "base/resampling/resampling.h"
 #include "fitting/refine/confidence.h"
 #include "fitting/refine/gather.h"
+#include "fitting/refine/point_spread.h"
 #include "fitting/refine/refine_worker.h"
+#include "fitting/render/render_lit.h"
+#include "fitting/render/render_room.h"
 #include "fitting/texel/texel_parameters.h"
 
 namespace glint {
@@ -22,12 +25,33 @@ RefineProblem WithViews(RefineProblem problem, const std::vector<View>& views) {
   return problem;
 }
 
+// How far one Unmixed() looks, of all views.
+int MixedRows(const RefineProblem& problem, const RefineOptions& options) {
+  int most = 0;
+  for (const RefineView& view : problem.views) {
+    most = std::max(most, 2 * PointSpread(view.pixels_per_texel, options.point_spread_px).reach());
+  }
+  return most;
+}
+
+// Rows about those that are asked for which a step must do, for the steps after it.
+struct RowsAbout {
+  RowsAbout(int neighbour_passes, int mixed_rows)
+      : mixed(mixed_rows), starts(1 + neighbour_passes * (2 + mixed_rows)) {}
+  // Of the first and second half pass, passes counting from 0; photographs are unmixed as far.
+  int Half(int pass, int half) const { return starts - (pass + 1) * (2 + mixed) + 2 - half; }
+  int mixed;
+  int starts;
+};
+
 // Some rows of the sample.
 class PartRefiner {
  public:
-  // `said`: views in the estimate's order, as they are said to be; `count`: called by texels done.
+  // `said`: views in the estimate's order, as they are said to be; the first `above` and the last
+  // `below` rows are there for the others' sake. `count`: called by texels done.
   PartRefiner(const SampleEstimate& estimate, const RefineProblem& said, const SvbrdfMaps& start,
-              const RefineOptions& options, int threads, std::function<void(int row)> count);
+              const RefineOptions& options, int above, int below, int threads,
+              std::function<void(int row)> count);
   void Run();
 
   RowRefiner::Rows& result() { return result_; }
@@ -39,22 +63,28 @@ class PartRefiner {
   // Of the row's texels, how many have the flag.
   double Count(int row, Origin flag) const;
   size_t SumColumns() const { return 1 + 2 * problem_.views.size(); }
-  void SolveFromStarts();
-  void SolveFromNeighbours(int half_pass);
+  void Unmix();
+  // Of the rows asked for and of so many about them.
+  void SolveFromStarts(int about);
+  void SolveFromNeighbours(int half_pass, int about);
   void Conclude();
   void ConcludeTexel(size_t texel, RefineWorker* worker);
-  void ForEachTexel(const std::function<void(size_t texel, RefineWorker* worker)>& visit);
+  void ForEachTexel(int about,
+                    const std::function<void(size_t texel, RefineWorker* worker)>& visit);
   TexelPrior PriorOf(size_t texel) const { return model_.PriorOf(texel, result_.maps); }
   void Keep(size_t texel, const TexelSolution& solution);
 
   std::vector<int> all_views_;
   const SamplePart part_;
   const SampleModel model_;
-  const RefineProblem problem_;  // views with their deviations
+  RefineProblem problem_;  // views with their deviations
+  const int mixed_rows_;
+  std::vector<std::vector<float>> unmixed_;  // by view; empty: it mixes nothing
   const SvbrdfMaps& start_;
   const RefineOptions& options_;
   const int threads_;
-  const int first_row_;  // in the whole sample
+  const int first_row_;      // in the whole sample
+  const int above_, below_;  // rows that were not asked for
   const std::function<void(int row)> count_;
   std::vector<std::unique_ptr<RefineWorker>> workers_;
   RowRefiner::Rows result_;
@@ -64,16 +94,20 @@ class PartRefiner {
 };
 
 PartRefiner::PartRefiner(const SampleEstimate& estimate, const RefineProblem& said,
-                         const SvbrdfMaps& start, const RefineOptions& options, int threads,
-                         std::function<void(int row)> count)
+                         const SvbrdfMaps& start, const RefineOptions& options, int above,
+                         int below, int threads, std::function<void(int row)> count)
     : all_views_(said.views.size()),
       part_(said, start, estimate.substances, options.substances),
       model_(estimate.model.On(part_)),
       problem_(WithViews(said, estimate.found)),
+      mixed_rows_(MixedRows(said, options)),
+      unmixed_(said.views.size()),
       start_(start),
       options_(options),
       threads_(threads),
       first_row_(said.plane.whole.first_row),
+      above_(above),
+      below_(below),
       count_(std::move(count)),
       workers_(RefineWorkers(said, options, threads)) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
@@ -87,9 +121,12 @@ PartRefiner::PartRefiner(const SampleEstimate& estimate, const RefineProblem& sa
   sums_.assign(static_cast<size_t>(start.height) * SumColumns(), 0.0);
 }
 
-void PartRefiner::ForEachTexel(const std::function<void(size_t, RefineWorker*)>& visit) {
+void PartRefiner::ForEachTexel(int about, const std::function<void(size_t, RefineWorker*)>& visit) {
   std::mutex mutex;
-  ForEachPieceByWorker(start_.height, threads_, [&](int row, int worker) {
+  const int from = std::max(0, above_ - about);
+  const int end = std::min(start_.height, start_.height - below_ + about);
+  ForEachPieceByWorker(end - from, threads_, [&](int piece, int worker) {
+    const int row = from + piece;
     const size_t width = static_cast<size_t>(start_.width);
     const size_t first = static_cast<size_t>(row) * width;
     for (size_t texel = first; texel < first + width; ++texel) {
@@ -106,8 +143,26 @@ void PartRefiner::Keep(size_t texel, const TexelSolution& solution) {
                                               (solution.converged ? kConverged : 0));
 }
 
-void PartRefiner::SolveFromStarts() {
-  ForEachTexel([&](size_t texel, RefineWorker* worker) {
+// Of all views, by the maps as they are now.
+void PartRefiner::Unmix() {
+  if (mixed_rows_ == 0) return;
+  const int width = start_.width, height = start_.height;
+  ForEachPiece(static_cast<int>(problem_.views.size()), threads_, [&](int v) {
+    RefineView& view = problem_.views[static_cast<size_t>(v)];
+    const PointSpread spread(view.pixels_per_texel, options_.point_spread_px);
+    if (spread.none()) return;
+    std::vector<float> rendering(3 * start_.texels());
+    RenderLit(result_.maps, problem_.plane, view.view, problem_.convention, rendering.data());
+    AddRoomLight(problem_.room, result_.maps, problem_.plane, view.view, problem_.convention,
+                 rendering.data());
+    std::vector<float>& unmixed = unmixed_[static_cast<size_t>(v)];
+    unmixed = Unmixed(spread, view.rgb, view.mask, view.ldr, std::move(rendering), width, height);
+    view.unmixed = unmixed;
+  });
+}
+
+void PartRefiner::SolveFromStarts(int about) {
+  ForEachTexel(about, [&](size_t texel, RefineWorker* worker) {
     GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
     if (worker->observations.views() == 0) {
       origin_[texel] = kConverged | kUnseen;  // the initial values stay
@@ -124,9 +179,9 @@ void PartRefiner::SolveFromStarts() {
 
 // One colour of the checkerboard: the neighbours of a texel all have the other, and stand still.
 // Half passes count from 1.
-void PartRefiner::SolveFromNeighbours(int half_pass) {
+void PartRefiner::SolveFromNeighbours(int half_pass, int about) {
   const int width = start_.width, height = start_.height;
-  ForEachTexel([&](size_t texel, RefineWorker* worker) {
+  ForEachTexel(about, [&](size_t texel, RefineWorker* worker) {
     const int column = static_cast<int>(texel % width);
     const int row = static_cast<int>(texel / width);
     if ((first_row_ + row + column + half_pass) % 2 != 0 || (origin_[texel] & kUnseen)) return;
@@ -186,15 +241,20 @@ void PartRefiner::ConcludeTexel(size_t texel, RefineWorker* worker) {
 }
 
 void PartRefiner::Conclude() {
-  ForEachTexel([&](size_t texel, RefineWorker* worker) {
+  ForEachTexel(0, [&](size_t texel, RefineWorker* worker) {
     GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
     ConcludeTexel(texel, worker);
   });
 }
 
 void PartRefiner::Run() {
-  SolveFromStarts();
-  for (int half = 1; half <= 2 * options_.neighbour_passes; ++half) SolveFromNeighbours(half);
+  const RowsAbout rows(options_.neighbour_passes, mixed_rows_);
+  Unmix();
+  SolveFromStarts(rows.starts);
+  for (int pass = 0; pass < options_.neighbour_passes; ++pass) {
+    Unmix();
+    for (const int half : {1, 2}) SolveFromNeighbours(2 * pass + half, rows.Half(pass, half));
+  }
   Conclude();
 }
 
@@ -213,6 +273,11 @@ std::vector<double> PartRefiner::SumsOf(int row) const {
 }
 
 }  // namespace
+
+int DependentRows(const RefineProblem& problem, const RefineOptions& options) {
+  const RowsAbout rows(options.neighbour_passes, MixedRows(problem, options));
+  return rows.starts + rows.mixed;
+}
 
 RefineSummary Summarise(const SampleEstimate& estimate, const RowSums& rows, int width) {
   RefineSummary summary = estimate.summary;
@@ -250,7 +315,7 @@ RowRefiner::Rows RowRefiner::Refine(const RefineProblem& problem, const SvbrdfMa
   const int first = above, last = start.height - below;
   const std::int64_t visits =
       static_cast<std::int64_t>(rows_) * start.width * (2 + 2 * options_.neighbour_passes);
-  PartRefiner part(estimate_, said, start, options_, threads_, [&](int row) {
+  PartRefiner part(estimate_, said, start, options_, above, below, threads_, [&](int row) {
     if (row < first || row >= last) return;
     done_ += start.width;
     if (progress_) progress_(done_, visits);

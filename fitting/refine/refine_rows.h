@@ -12,9 +12,10 @@
 
 namespace glint {
 
-// Rows above and below that rows depend on: each half pass looks at neighbours, and so does the
-// prior in the end.
-inline int DependentRows(const RefineOptions& options) { return 2 * options.neighbour_passes + 1; }
+// Rows above and below that rows of `problem` depend on: each half pass looks at neighbours, and so
+// does the prior in the end; where photographs mix texels, each pass looks as far as they do, there
+// and back (point_spread.h).
+int DependentRows(const RefineProblem& problem, const RefineOptions& options);
 
 // What is added up over texels, a list a row, so that sums over any parts of the sample are to the
 // bit those over the whole: the cost at the start; how many texels converged, came from another

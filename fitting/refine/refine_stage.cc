@@ -165,9 +165,9 @@ SampleEstimate EstimateFrom(const RefineOptions& options, int threads, SampleSou
 // How many rows are refined at a time: as the memory that they need allows.
 int RowsAtOnce(const SamplePlane& plane, size_t views) {
   constexpr double kMostBytes = 1e9, kShareOfLimit = 0.25;
-  // Of a texel: a photograph's colour and mask, and what is shifted of it or read ahead; maps at
-  // the start and in the end, confidence, substances.
-  const double texel_bytes = 20.0 * static_cast<double>(views) + 200;
+  // Of a texel: a photograph's colour and mask, what is shifted of it or read ahead, its colour
+  // without mixing; maps at the start and in the end, confidence, substances.
+  const double texel_bytes = 32.0 * static_cast<double>(views) + 200;
   const double bytes =
       std::min(kMostBytes, kShareOfLimit * static_cast<double>(MemoryLimit_bytes()));
   return static_cast<int>(std::clamp(bytes / texel_bytes / plane.width, 16.0, 1e9));
@@ -244,7 +244,7 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
   SvbrdfWriter maps(stage->Output(kMapsFile), plane.width, rows, convention);
   ExrWriter confidence(stage->Output(kConfidenceFile), plane.width, rows, kConfidenceChannels,
                        {{"convention", ToString(convention)}}, ExrPrecision::kHalf);
-  const int reached = DependentRows(options);
+  const int reached = DependentRows(ProblemOf(source->Views()), options);
   for (int first = part.first(plane.height); first < end; first += rows_at_once) {
     const int last = std::min(first + rows_at_once, end);
     const int above = std::min(first, reached), below = std::min(plane.height - last, reached);
@@ -332,6 +332,10 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "longer side, in texels, of the grid from which texels are drawn for the estimation; "
       "larger maps are uniformly subsampled to this size");
   set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the weight of the priors; 0: none");
+  set->AddRange("point-spread", &refine->point_spread_px, 0, 100,
+                "standard deviation of a photograph's blur in pixels, of lens, pixel, demosaicking "
+                "and resampling together; where texels are finer than that, maps are solved such "
+                "that their renderings, blurred, match the photographs; 0: no blur");
   set->AddRange(
       "robust-scale", &refine->robust_scale, 1e-3, 100,
       "log-radiance residuals larger than this are penalised linearly instead of quadratically");

@@ -23,9 +23,9 @@ std::vector<float> RowsOf(const std::vector<float>& planes, int first, int rows)
 
 // A scene's rows, which it holds.
 struct Part {
-  Part(const test::SyntheticScene& scene, const SvbrdfMaps& all, int first, int rows)
-      : start(kSize, rows) {
-    problem = scene.Problem();
+  Part(const test::SyntheticScene& scene, const RefineProblem& whole, const SvbrdfMaps& all,
+       int first, int rows)
+      : problem(whole), start(kSize, rows) {
     problem.plane = scene.plane.Rows(first, rows);
     start.planes = RowsOf(all.planes, first, rows);
     for (size_t v = 0; v < scene.views.size(); ++v) {
@@ -52,17 +52,23 @@ class RefineRowsTest : public ::testing::Test {
     std::fill_n(scene_.masks[1].begin(), 3 * kSize, 0.0f);  // a view that does not show all
   }
 
+  RefineProblem Problem() const {
+    RefineProblem problem = scene_.Problem();
+    for (RefineView& view : problem.views) view.pixels_per_texel = pixels_per_texel_;
+    return problem;
+  }
+
   RefineResult ByRows(int at_once, int threads) const {
-    const SampleEstimate estimate = EstimateSample(scene_.Problem(), start_, options_, threads);
+    const SampleEstimate estimate = EstimateSample(Problem(), start_, options_, threads);
     RowRefiner refiner(estimate, options_, kSize, threads, {});
     RefineResult result;
     result.maps = SvbrdfMaps(kSize, kSize);
     result.confidence.resize(kConfidencePlanes * start_.texels());
-    const int reached = DependentRows(options_);
+    const int reached = DependentRows(Problem(), options_);
     for (int first = 0; first < kSize; first += at_once) {
       const int rows = std::min(at_once, kSize - first);
       const int above = std::min(first, reached), below = std::min(kSize - first - rows, reached);
-      const Part part(scene_, start_, first - above, above + rows + below);
+      const Part part(scene_, Problem(), start_, first - above, above + rows + below);
       const RowRefiner::Rows refined = refiner.Refine(part.problem, part.start, above, below);
       Put(refined.maps.planes, first, rows, &result.maps.planes);
       Put(refined.confidence, first, rows, &result.confidence);
@@ -81,6 +87,7 @@ class RefineRowsTest : public ::testing::Test {
   test::SyntheticScene scene_;
   SvbrdfMaps start_;
   RefineOptions options_;
+  double pixels_per_texel_ = 0;  // not known
 };
 
 TEST_F(RefineRowsTest, CutAnywhereTheResultIsTheSame) {
@@ -102,6 +109,21 @@ TEST_F(RefineRowsTest, ATexelDependsOnNoRowsFurtherAwayThanStated) {
     const RefineResult whole = Refine(scene_.Problem(), start_, options_, 1);
     EXPECT_EQ(ByRows(4, 1).maps.planes, whole.maps.planes) << passes;
     EXPECT_EQ(ByRows(4, 1).confidence, whole.confidence) << passes;
+  }
+}
+
+TEST_F(RefineRowsTest, CutAnywhereThePhotographsMixTheSameTexels) {
+  options_.neighbour_passes = 1;
+  pixels_per_texel_ = 1;  // mixes three texels
+  const RefineResult whole = Refine(Problem(), start_, options_, 1);
+  options_.point_spread_px = 0;
+  EXPECT_NE(Refine(Problem(), start_, options_, 1).maps.planes, whole.maps.planes);
+  options_.point_spread_px = 0.67;
+  for (const auto& [at_once, threads] : {std::pair{3, 3}, std::pair{8, 2}}) {
+    const RefineResult cut = ByRows(at_once, threads);
+    EXPECT_EQ(cut.maps.planes, whole.maps.planes) << at_once;
+    EXPECT_EQ(cut.confidence, whole.confidence) << at_once;
+    EXPECT_EQ(cut.summary.view_loss, whole.summary.view_loss) << at_once;
   }
 }
 
