@@ -73,9 +73,9 @@ std::vector<float> PointSpread::Spread(std::span<const float> planes, int width,
     for (int row = 0; row < height; ++row) {
       float* out = &spread[first + static_cast<size_t>(row) * stride];
       std::fill_n(out, width, 0.0f);
-      for (int t = -far; t <= far; ++t) {
-        const float* in = &across[static_cast<size_t>(std::clamp(row + t, 0, height - 1)) * stride];
-        const float tap = taps_[static_cast<size_t>(t + far)];
+      int from = row - far;
+      for (const float tap : taps_) {
+        const float* in = &across[static_cast<size_t>(std::clamp(from++, 0, height - 1)) * stride];
         for (int i = 0; i < width; ++i) out[i] += tap * in[i];
       }
     }

@@ -124,7 +124,7 @@ class Blurred : public ::testing::Test {
   static SvbrdfMaps Relief() {
     SvbrdfMaps maps = test::QuarteredMaps(kSize, 3);
     for (size_t t = 0; t < maps.texels(); ++t) {
-      const double row = static_cast<double>(t / kSize), column = static_cast<double>(t % kSize);
+      const int row = static_cast<int>(t) / kSize, column = static_cast<int>(t) % kSize;
       const double x = 0.2 * std::sin(2 * M_PI * column / 7),
                    y = 0.2 * std::sin(2 * M_PI * row / 9);
       const double length = std::sqrt(1 + x * x + y * y);
