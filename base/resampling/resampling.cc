@@ -20,13 +20,13 @@ void ResamplePlane(const float* from, int width, int height, std::span<const Tap
     }
   }
   for (const Taps& taps : down) {
-    for (size_t x = 0; x < out_width; ++x) {
-      float sum = 0;
-      for (size_t k = 0; k < taps.weights.size(); ++k) {
-        sum += taps.weights[k] * narrow[(taps.first + k) * out_width + x];
-      }
-      *to++ = sum;
+    std::fill_n(to, out_width, 0.0f);
+    for (size_t k = 0; k < taps.weights.size(); ++k) {
+      const float weight = taps.weights[k];
+      const float* row = narrow + (taps.first + k) * out_width;
+      for (size_t x = 0; x < out_width; ++x) to[x] += weight * row[x];
     }
+    to += out_width;
   }
 }
 

@@ -18,7 +18,7 @@ void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps, si
   for (const int v : views) {
     const RefineView& view = problem.views[static_cast<size_t>(v)];
     if (!(view.mask[texel] >= 0.5f)) continue;
-    const std::span<const float> target = view.unmixed.empty() ? view.rgb : view.unmixed;
+    const std::span<const float> target = view.deblurred.empty() ? view.rgb : view.deblurred;
     double radiance[3];
     bool clipped[3];
     for (int c = 0; c < 3; ++c) {

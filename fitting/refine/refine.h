@@ -38,9 +38,9 @@ struct RefineView {
   std::span<const float> rgb;   // planar, 3·H·W, linear
   std::span<const float> mask;  // H·W; texels of less than ½ are left out
   double pixels_per_texel = 0;  // side of a texel in the picture that this was; 0: not known
-  // What is solved from; empty: rgb. Refinement itself sets it where the picture mixes texels
+  // What is solved from; empty: rgb. Refinement itself sets it where the picture is blurred
   // (point_spread.h).
-  std::span<const float> unmixed = {};
+  std::span<const float> deblurred = {};
 };
 
 struct RefineProblem {

@@ -25,8 +25,8 @@ RefineProblem WithViews(RefineProblem problem, const std::vector<View>& views) {
   return problem;
 }
 
-// How far one Unmixed() looks, of all views.
-int MixedRows(const RefineProblem& problem, const RefineOptions& options) {
+// How far one Deblurred() looks, of all views.
+int BlurredRows(const RefineProblem& problem, const RefineOptions& options) {
   int most = 0;
   for (const RefineView& view : problem.views) {
     most = std::max(most, 2 * PointSpread(view.pixels_per_texel, options.point_spread_px).reach());
@@ -36,11 +36,11 @@ int MixedRows(const RefineProblem& problem, const RefineOptions& options) {
 
 // Rows about those that are asked for which a step must do, for the steps after it.
 struct RowsAbout {
-  RowsAbout(int neighbour_passes, int mixed_rows)
-      : mixed(mixed_rows), starts(1 + neighbour_passes * (2 + mixed_rows)) {}
-  // Of the first and second half pass, passes counting from 0; photographs are unmixed as far.
-  int Half(int pass, int half) const { return starts - (pass + 1) * (2 + mixed) + 2 - half; }
-  int mixed;
+  RowsAbout(int neighbour_passes, int blurred_rows)
+      : blurred(blurred_rows), starts(1 + neighbour_passes * (2 + blurred_rows)) {}
+  // Of the first and second half pass, passes counting from 0; photographs are deblurred as far.
+  int Half(int pass, int half) const { return starts - (pass + 1) * (2 + blurred) + 2 - half; }
+  int blurred;
   int starts;
 };
 
@@ -63,7 +63,7 @@ class PartRefiner {
   // Of the row's texels, how many have the flag.
   double Count(int row, Origin flag) const;
   size_t SumColumns() const { return 1 + 2 * problem_.views.size(); }
-  void Unmix();
+  void Deblur();
   // Of the rows asked for and of so many about them.
   void SolveFromStarts(int about);
   void SolveFromNeighbours(int half_pass, int about);
@@ -78,8 +78,8 @@ class PartRefiner {
   const SamplePart part_;
   const SampleModel model_;
   RefineProblem problem_;  // views with their deviations
-  const int mixed_rows_;
-  std::vector<std::vector<float>> unmixed_;  // by view; empty: it mixes nothing
+  const int blurred_rows_;
+  std::vector<std::vector<float>> deblurred_;  // by view; empty: it has no blur
   const SvbrdfMaps& start_;
   const RefineOptions& options_;
   const int threads_;
@@ -100,8 +100,8 @@ PartRefiner::PartRefiner(const SampleEstimate& estimate, const RefineProblem& sa
       part_(said, start, estimate.substances, options.substances),
       model_(estimate.model.On(part_)),
       problem_(WithViews(said, estimate.found)),
-      mixed_rows_(MixedRows(said, options)),
-      unmixed_(said.views.size()),
+      blurred_rows_(BlurredRows(said, options)),
+      deblurred_(said.views.size()),
       start_(start),
       options_(options),
       threads_(threads),
@@ -144,8 +144,8 @@ void PartRefiner::Keep(size_t texel, const TexelSolution& solution) {
 }
 
 // Of all views, by the maps as they are now.
-void PartRefiner::Unmix() {
-  if (mixed_rows_ == 0) return;
+void PartRefiner::Deblur() {
+  if (blurred_rows_ == 0) return;
   const int width = start_.width, height = start_.height;
   ForEachPiece(static_cast<int>(problem_.views.size()), threads_, [&](int v) {
     RefineView& view = problem_.views[static_cast<size_t>(v)];
@@ -155,9 +155,10 @@ void PartRefiner::Unmix() {
     RenderLit(result_.maps, problem_.plane, view.view, problem_.convention, rendering.data());
     AddRoomLight(problem_.room, result_.maps, problem_.plane, view.view, problem_.convention,
                  rendering.data());
-    std::vector<float>& unmixed = unmixed_[static_cast<size_t>(v)];
-    unmixed = Unmixed(spread, view.rgb, view.mask, view.ldr, std::move(rendering), width, height);
-    view.unmixed = unmixed;
+    std::vector<float>& deblurred = deblurred_[static_cast<size_t>(v)];
+    deblurred =
+        Deblurred(spread, view.rgb, view.mask, view.ldr, std::move(rendering), width, height);
+    view.deblurred = deblurred;
   });
 }
 
@@ -248,11 +249,11 @@ void PartRefiner::Conclude() {
 }
 
 void PartRefiner::Run() {
-  const RowsAbout rows(options_.neighbour_passes, mixed_rows_);
-  Unmix();
+  const RowsAbout rows(options_.neighbour_passes, blurred_rows_);
+  Deblur();
   SolveFromStarts(rows.starts);
   for (int pass = 0; pass < options_.neighbour_passes; ++pass) {
-    Unmix();
+    Deblur();
     for (const int half : {1, 2}) SolveFromNeighbours(2 * pass + half, rows.Half(pass, half));
   }
   Conclude();
@@ -275,8 +276,8 @@ std::vector<double> PartRefiner::SumsOf(int row) const {
 }  // namespace
 
 int DependentRows(const RefineProblem& problem, const RefineOptions& options) {
-  const RowsAbout rows(options.neighbour_passes, MixedRows(problem, options));
-  return rows.starts + rows.mixed;
+  const RowsAbout rows(options.neighbour_passes, BlurredRows(problem, options));
+  return rows.starts + rows.blurred;
 }
 
 RefineSummary Summarise(const SampleEstimate& estimate, const RowSums& rows, int width) {

@@ -13,8 +13,8 @@
 namespace glint {
 
 // Rows above and below that rows of `problem` depend on: each half pass looks at neighbours, and so
-// does the prior in the end; where photographs mix texels, each pass looks as far as they do, there
-// and back (point_spread.h).
+// does the prior in the end; where photographs are blurred, each pass looks as far as the blur
+// reaches, there and back (point_spread.h).
 int DependentRows(const RefineProblem& problem, const RefineOptions& options);
 
 // What is added up over texels, a list a row, so that sums over any parts of the sample are to the

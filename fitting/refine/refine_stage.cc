@@ -166,7 +166,7 @@ SampleEstimate EstimateFrom(const RefineOptions& options, int threads, SampleSou
 int RowsAtOnce(const SamplePlane& plane, size_t views) {
   constexpr double kMostBytes = 1e9, kShareOfLimit = 0.25;
   // Of a texel: a photograph's colour and mask, what is shifted of it or read ahead, its colour
-  // without mixing; maps at the start and in the end, confidence, substances.
+  // without blur; maps at the start and in the end, confidence, substances.
   const double texel_bytes = 32.0 * static_cast<double>(views) + 200;
   const double bytes =
       std::min(kMostBytes, kShareOfLimit * static_cast<double>(MemoryLimit_bytes()));

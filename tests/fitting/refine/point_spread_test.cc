@@ -1,4 +1,4 @@
-// What photographs mix of texels is told apart as far as they tell it, and nothing else changes.
+// What photographs blur of texels is told apart as far as they tell it, and nothing else changes.
 #include "fitting/refine/point_spread.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ TEST(PointSpread, HasTheStatedVarianceAndKeepsConstants) {
     ASSERT_FALSE(spread.none());
     std::vector<float> point(kSize * kSize, 0.0f);
     point[kMiddle * kSize + kMiddle] = 1.0f;
-    const std::vector<float> spot = spread.Spread(point, kSize, kSize);
+    const std::vector<float> spot = spread.Blurred(point, kSize, kSize);
     double sum = 0, across = 0, down = 0;
     for (int row = 0; row < kSize; ++row) {
       for (int column = 0; column < kSize; ++column) {
@@ -42,7 +42,7 @@ TEST(PointSpread, HasTheStatedVarianceAndKeepsConstants) {
     EXPECT_NEAR(across, spread.variance(), 1e-4);
     EXPECT_NEAR(down, spread.variance(), 1e-4);
     const std::vector<float> even(kSize * kSize, 0.3f);
-    for (const float value : spread.Spread(even, kSize, kSize)) EXPECT_NEAR(value, 0.3f, 1e-6f);
+    for (const float value : spread.Blurred(even, kSize, kSize)) EXPECT_NEAR(value, 0.3f, 1e-6f);
   }
 }
 
@@ -50,7 +50,7 @@ TEST(PointSpread, HasTheStatedVarianceAndKeepsConstants) {
 TEST(PointSpread, IsWiderTheFinerTexelsAre) {
   EXPECT_TRUE(PointSpread(0, 0.67).none());    // not known
   EXPECT_TRUE(PointSpread(0.5, 0).none());     // none is wanted
-  EXPECT_TRUE(PointSpread(2.0, 0.67).none());  // texels are coarser
+  EXPECT_TRUE(PointSpread(2.3, 0.67).none());  // texels are coarser
   EXPECT_NEAR(std::sqrt(PointSpread(0.49, 0.67).variance()), 1.35, 0.03);
   EXPECT_LT(PointSpread(1.0, 0.67).variance(), PointSpread(0.7, 0.67).variance());
   EXPECT_EQ(PointSpread(0.1, 0.67).variance(), PointSpread(0.01, 0.67).variance());
@@ -70,22 +70,22 @@ TEST(PointSpread, IsItsOwnTransposeAwayFromTheBorder) {
   const auto product = [](const std::vector<float>& x, const std::vector<float>& y) {
     return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
   };
-  EXPECT_NEAR(product(a, spread.Spread(b, kWidth, kHeight)),
-              product(spread.Spread(a, kWidth, kHeight), b), 1e-3);
+  EXPECT_NEAR(product(a, spread.Blurred(b, kWidth, kHeight)),
+              product(spread.Blurred(a, kWidth, kHeight), b), 1e-3);
 }
 
-TEST(Unmixed, OfARenderingThatExplainsThePhotographIsTheRendering) {
+TEST(Deblurred, OfARenderingThatExplainsThePhotographIsTheRendering) {
   constexpr int kSize = 32;
   const PointSpread spread(0.5, 0.67);
   std::vector<float> rendering = RandomPlane(kSize, 3 * kSize, 3);
-  const std::vector<float> photograph = spread.Spread(rendering, kSize, kSize);
+  const std::vector<float> photograph = spread.Blurred(rendering, kSize, kSize);
   const std::vector<float> mask(kSize * kSize, 1.0f);
-  const std::vector<float> unmixed =
-      Unmixed(spread, photograph, mask, false, rendering, kSize, kSize);
-  for (size_t i = 0; i < unmixed.size(); ++i) EXPECT_NEAR(unmixed[i], rendering[i], 1e-5f);
+  const std::vector<float> deblurred =
+      Deblurred(spread, photograph, mask, false, rendering, kSize, kSize);
+  for (size_t i = 0; i < deblurred.size(); ++i) EXPECT_NEAR(deblurred[i], rendering[i], 1e-5f);
 }
 
-TEST(Unmixed, MaskedTexelsSayNothingAndClippedOnesStay) {
+TEST(Deblurred, MaskedTexelsSayNothingAndClippedOnesStay) {
   constexpr int kSize = 24;
   constexpr size_t kTexel = 12 * kSize + 12;
   const PointSpread spread(0.5, 0.67);
@@ -93,14 +93,13 @@ TEST(Unmixed, MaskedTexelsSayNothingAndClippedOnesStay) {
   std::vector<float> photograph = rendering, mask(kSize * kSize, 1.0f);
   mask[kTexel] = 0;
   photograph[kTexel] = NAN;
-  std::vector<float> unmixed = Unmixed(spread, photograph, mask, true, rendering, kSize, kSize);
-  for (const float value : unmixed)
-    EXPECT_TRUE(std::isnan(value) || std::abs(value - 0.5f) < 1e-5f);
+  std::vector<float> deblurred = Deblurred(spread, photograph, mask, true, rendering, kSize, kSize);
+  for (const float value : deblurred) EXPECT_NEAR(value, 0.5f, 1e-5f);
   mask[kTexel] = 1;
   photograph[kTexel] = 1;  // at least 1, for .5
-  unmixed = Unmixed(spread, photograph, mask, true, rendering, kSize, kSize);
-  EXPECT_EQ(unmixed[kTexel], 1);
-  EXPECT_GT(unmixed[kTexel + 1], 0.5f);
+  deblurred = Deblurred(spread, photograph, mask, true, rendering, kSize, kSize);
+  EXPECT_EQ(deblurred[kTexel], 1);
+  EXPECT_GT(deblurred[kTexel + 1], 0.5f);
 }
 
 // Of one material with a fine relief, photographed with half a pixel to a texel.
@@ -112,7 +111,7 @@ class Blurred : public ::testing::Test {
   Blurred() : scene_(test::Photograph(Relief(), 10)), start_(scene_.truth) {
     const PointSpread spread(kPixelsPerTexel, kSpread_px);
     for (std::vector<float>& photograph : scene_.photographs) {
-      photograph = spread.Spread(photograph, kSize, kSize);
+      photograph = spread.Blurred(photograph, kSize, kSize);
     }
     for (size_t t = 0; t < start_.texels(); ++t) {  // an even surface, a little off
       start_.plane(kNormalX)[t] = start_.plane(kNormalY)[t] = 0;
@@ -156,11 +155,11 @@ class Blurred : public ::testing::Test {
   SvbrdfMaps start_;
 };
 
-TEST_F(Blurred, MapsAreFoundThatPhotographsMix) {
+TEST_F(Blurred, MapsAreFoundThatPhotographsBlur) {
   // Every pass takes away b² of what is missing, b = .5 for these slopes.
-  const SvbrdfMaps taken_as_sharp = Refined(0, 8), unmixed = Refined(kPixelsPerTexel, 8);
-  EXPECT_LT(Error(unmixed, kNormalX, kNormalY), 0.5 * Error(taken_as_sharp, kNormalX, kNormalY));
-  EXPECT_LT(Error(unmixed, kRoughness, kRoughness),
+  const SvbrdfMaps taken_as_sharp = Refined(0, 8), deblurred = Refined(kPixelsPerTexel, 8);
+  EXPECT_LT(Error(deblurred, kNormalX, kNormalY), 0.5 * Error(taken_as_sharp, kNormalX, kNormalY));
+  EXPECT_LT(Error(deblurred, kRoughness, kRoughness),
             0.7 * Error(taken_as_sharp, kRoughness, kRoughness));
 }
 

@@ -112,9 +112,9 @@ TEST_F(RefineRowsTest, ATexelDependsOnNoRowsFurtherAwayThanStated) {
   }
 }
 
-TEST_F(RefineRowsTest, CutAnywhereThePhotographsMixTheSameTexels) {
+TEST_F(RefineRowsTest, CutAnywhereBlurredPhotographsGiveTheSame) {
   options_.neighbour_passes = 1;
-  pixels_per_texel_ = 1;  // mixes three texels
+  pixels_per_texel_ = 1;  // a blur over three texels
   const RefineResult whole = Refine(Problem(), start_, options_, 1);
   options_.point_spread_px = 0;
   EXPECT_NE(Refine(Problem(), start_, options_, 1).maps.planes, whole.maps.planes);
