@@ -44,7 +44,8 @@ std::vector<Taps> TapsOf(const std::vector<float>& gaussian, int count) {
     const int first = std::max(0, i - reach), last = std::min(count - 1, i + reach);
     Taps& taps = all[static_cast<size_t>(i)];
     taps.first = first;
-    taps.weights.assign(static_cast<size_t>(last - first + 1), 0.0f);
+    const int inputs = last - first + 1;
+    taps.weights.assign(static_cast<size_t>(inputs), 0.0f);
     int from = i - reach;
     for (const float weight : gaussian) {
       taps.weights[static_cast<size_t>(std::clamp(from++, first, last) - first)] += weight;
