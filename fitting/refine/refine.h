@@ -104,6 +104,7 @@ struct RefineSummary {
   int substances = 0;             // that are told apart
   double roughness_spread = 0;    // of texels about their substance's mean …
   double specular_spread = 0;     // … relative
+  double neighbour_spread = 0;    // between neighbours' departures from those means, in spreads
   double normal_spread = 0;       // of n_x, n_y about 0, and between neighbours
   SharedLight shared_light;       // of all views
   // What single views deviate by: added to the lights beside `shared_light`, factors on

@@ -11,6 +11,7 @@
 #include "base/resampling/resampling.h"
 #include "fitting/refine/confidence.h"
 #include "fitting/refine/gather.h"
+#include "fitting/refine/neighbours.h"
 #include "fitting/refine/point_spread.h"
 #include "fitting/refine/refine_worker.h"
 #include "fitting/render/render_lit.h"
@@ -188,14 +189,9 @@ void PartRefiner::SolveFromNeighbours(int half_pass, int about) {
     if ((first_row_ + row + column + half_pass) % 2 != 0 || (origin_[texel] & kUnseen)) return;
     std::array<TexelValues, 4> neighbours;
     size_t count = 0;
-    const auto add = [&](int r, int c) {
-      if (r < 0 || r >= height || c < 0 || c >= width) return;
-      neighbours[count++] = ReadTexel(result_.maps, static_cast<size_t>(r) * width + c);
-    };
-    add(row - 1, column);
-    add(row, column - 1);
-    add(row, column + 1);
-    add(row + 1, column);
+    ForEachNeighbour(texel, width, height, [&](size_t neighbour) {
+      neighbours[count++] = ReadTexel(result_.maps, neighbour);
+    });
     GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
     const TexelPrior prior = PriorOf(texel);
     // The prior is no longer the one it was solved with.

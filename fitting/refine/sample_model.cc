@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/parallel/parallel.h"
+#include "fitting/refine/neighbours.h"
 #include "fitting/texel/texel_cholesky.h"
 #include "fitting/texel/texel_parameters.h"
 
@@ -15,7 +16,6 @@ namespace glint {
 namespace {
 
 constexpr size_t kSampled = 2048, kCrossValidated = 512;
-constexpr int kMostFolds = 7, kFoldRounds = 2;
 constexpr int kLeastValidatedViews = 3;  // of two, one would have to predict the other
 // Of the albedos' errors, where fitting has seen the same photographs.
 constexpr double kSeenAlready = 3;
@@ -23,9 +23,6 @@ constexpr double kSeenAlready = 3;
 // part is what fitting made of its photographs.
 constexpr double kNormalSpread = 0.05;
 constexpr double kNormalTexels = 20;  // that this belief is worth, of a substance
-
-// By which spreads are tried.
-constexpr std::array<double, 4> kSpreadFactors = {0.25, 0.5, 1.0, 2.0};
 
 // What nothing is known of, without a prior.
 constexpr double kUnknownInformation = 1e-9;
@@ -91,13 +88,6 @@ std::vector<SharedValues> InitialMeans(const SamplePart& part) {
 
 }  // namespace
 
-struct SampleModel::Sampling {
-  std::vector<size_t> texels;
-  std::vector<SampledTexel> solved;
-  const SampleSolver* solver;
-  int threads;
-};
-
 SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
     : part_(&part),
       options_(options),
@@ -132,37 +122,28 @@ TexelGaussian SampleModel::Knowledge(size_t texel) const {
   return gaussian;
 }
 
-// Neighbours are expected to differ by as much as texels from their substance, or from level.
-void SampleModel::MultiplyNeighbours(size_t texel, const SvbrdfMaps& maps,
+void SampleModel::MultiplyNeighbours(size_t texel, std::span<const Neighbour> neighbours,
                                      TexelGaussian* gaussian) const {
-  const int width = maps.width, height = maps.height;
-  const int row = static_cast<int>(texel / static_cast<size_t>(width));
-  const int column = static_cast<int>(texel % static_cast<size_t>(width));
+  if (neighbours.empty()) return;
   double normal[2] = {0, 0};
   SharedValues departure{};  // of the neighbours from their own substances
-  int count = 0;
-  const auto add = [&](int r, int c) {
-    if (r < 0 || r >= height || c < 0 || c >= width) return;
-    const size_t i = static_cast<size_t>(r) * static_cast<size_t>(width) + static_cast<size_t>(c);
-    normal[0] += maps.plane(kNormalX)[i];
-    normal[1] += maps.plane(kNormalY)[i];
-    const SharedValues shared = SharedOf(ReadTexel(maps, i));
-    const SharedValues mean = means_.Of(part_->shares(i));
+  const double count = static_cast<double>(neighbours.size());
+  for (const Neighbour& neighbour : neighbours) {
+    double of_neighbour[2];
+    NormalOfSlopes(neighbour.values[kSlopeX], neighbour.values[kSlopeY], of_neighbour);
+    for (int i = 0; i < 2; ++i) normal[i] += of_neighbour[i];
+    const SharedValues shared = SharedOf(neighbour.values);
+    const SharedValues mean = means_.Of(part_->shares(neighbour.texel));
     for (size_t p = 0; p < 4; ++p) departure[p] += shared[p] - mean[p];
-    ++count;
-  };
-  add(row - 1, column);
-  add(row, column - 1);
-  add(row, column + 1);
-  add(row + 1, column);
-  if (count == 0) return;
+  }
   for (int i = 0; i < 2; ++i) {
     gaussian->Multiply(kSlopeX + i, normal[i] / count, count * NormalPrecision(texel));
   }
   const SharedValues mean = means_.Of(part_->shares(texel));
   const SharedValues variances = means_.Variances(mean);
   for (size_t p = 0; p < 4; ++p) {
-    gaussian->Multiply(kSharedParameters[p], mean[p] + departure[p] / count, count / variances[p]);
+    gaussian->Multiply(kSharedParameters[p], mean[p] + departure[p] / count,
+                       count / (neighbour_spread_ * neighbour_spread_ * variances[p]));
   }
 }
 
@@ -173,8 +154,13 @@ TexelPrior SampleModel::Scaled(const TexelGaussian& gaussian) const {
 TexelPrior SampleModel::PriorOf(size_t texel) const { return Scaled(Knowledge(texel)); }
 
 TexelPrior SampleModel::PriorOf(size_t texel, const SvbrdfMaps& maps) const {
+  std::array<Neighbour, 4> neighbours;
+  size_t count = 0;
+  ForEachNeighbour(texel, maps.width, maps.height, [&](size_t neighbour) {
+    neighbours[count++] = {neighbour, ReadTexel(maps, neighbour)};
+  });
   TexelGaussian gaussian = Knowledge(texel);
-  MultiplyNeighbours(texel, maps, &gaussian);
+  MultiplyNeighbours(texel, std::span(neighbours).first(count), &gaussian);
   return Scaled(gaussian);
 }
 
@@ -355,75 +341,6 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
   sampling.solver->deviate(deviations_);
 }
 
-double SampleModel::CrossValidate(const Sampling& sampling) const {
-  const int views = static_cast<int>(all_views_.size()), folds = std::min(views, kMostFolds);
-  Prediction sum;
-  for (int fold = 0; fold < folds; ++fold) {
-    std::vector<int> fitted, held_out;
-    for (int v = 0; v < views; ++v) (v % folds == fold ? held_out : fitted).push_back(v);
-    SampleModel model(*this);
-    Sampling part = sampling;
-    // From what all texels share: solutions of all views remember those held out.
-    for (size_t k = 0; k < part.texels.size(); ++k) {
-      part.solved[k].values = PriorOf(part.texels[k]).mean();
-    }
-    model.Fit(fitted, kFoldRounds, false, &part);
-    std::vector<Prediction> predictions(part.texels.size());
-    ForEachPieceByWorker(
-        static_cast<int>(predictions.size()), part.threads, [&](int i, int worker) {
-          const size_t k = static_cast<size_t>(i);
-          predictions[k] =
-              part.solver->predict(part.texels[k], part.solved[k].values, held_out, worker);
-        });
-    for (const Prediction& p : predictions) {
-      sum.squares += p.squares;
-      sum.residuals += p.residuals;
-    }
-  }
-  return sum.squares / std::max(sum.residuals, 1);
-}
-
-// The mean variance over what cross-validation leaves possible: a spread that predicts nearly as
-// well as the best one is nearly as likely, and to take the best alone would state deviations that
-// are too small.
-void SampleModel::ChooseSpreads(const Sampling& sampling) {
-  const double independent = CrossValidatedResiduals(sampling);
-  const auto choose = [&](const auto& scale) {
-    std::array<double, kSpreadFactors.size()> error{};
-    for (size_t i = 0; i < kSpreadFactors.size(); ++i) {
-      SampleModel tried(*this);
-      scale(kSpreadFactors[i], &tried);
-      error[i] = tried.CrossValidate(sampling);
-    }
-    const double least = *std::min_element(error.begin(), error.end());
-    double weights = 0, squares = 0;
-    for (size_t i = 0; i < kSpreadFactors.size(); ++i) {
-      // Gauss's likelihood of as many residuals, their variance the least that is found.
-      const double weight = std::exp(-0.5 * independent * (error[i] / least - 1));
-      weights += weight;
-      squares += weight * kSpreadFactors[i] * kSpreadFactors[i];
-    }
-    scale(std::sqrt(squares / weights), this);
-  };
-  choose([](double factor, SampleModel* model) {
-    model->means_.roughness_spread *= factor;
-    model->means_.specular_spread *= factor;
-  });
-  choose([](double factor, SampleModel* model) {
-    for (double& spread : model->normal_spreads_) spread *= factor;
-  });
-}
-
-// Residuals that are worth something of their own: those that are not discrepancy, and of
-// discrepancy as many as there are half vectors to be told apart, each once and not by channel.
-double SampleModel::CrossValidatedResiduals(const Sampling& sampling) const {
-  const double texels = static_cast<double>(sampling.texels.size());
-  const double views = static_cast<double>(all_views_.size());
-  const double channels =
-      3 / (1 + 2 * residuals_.options().channel_correlation * residuals_.discrepancy_share());
-  return SampleWorth(sampling.texels) * texels * views * channels;
-}
-
 void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   Sampling sampling = Sample(kSampled, solver, threads);
   learns_normals_ = true;
@@ -431,6 +348,7 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   learns_normals_ = false;
   if (static_cast<int>(all_views_.size()) < kLeastValidatedViews) return;
   ChooseSpreads(Sample(kCrossValidated, solver, threads));
+  ChooseNeighbourSpread(kCrossValidated, solver, threads);
   Fit(all_views_, options_.estimation_rounds, true, &sampling);
 }
 
@@ -443,6 +361,7 @@ void SampleModel::Describe(RefineSummary* summary) const {
   summary->substances = part_->substances().count();
   summary->roughness_spread = means_.roughness_spread;
   summary->specular_spread = means_.specular_spread;
+  summary->neighbour_spread = neighbour_spread_;
   summary->exposure_spread = deviations_.spreads()[kLogExposure];
   summary->light_spread = deviations_.spreads()[kLightAcrossX];
   double squares = 0;

@@ -2,6 +2,7 @@
 // for each of them: docs/model.md.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <span>
@@ -31,6 +32,12 @@ struct SampledTexel {
 struct Prediction {
   double squares = 0;  // of residuals, g²
   int residuals = 0;
+
+  void operator+=(const Prediction& other) {
+    squares += other.squares;
+    residuals += other.residuals;
+  }
+  double MeanSquare() const { return squares / std::max(residuals, 1); }
 };
 
 // What SampleModel asks of the texels' solver; called from several threads, `worker` below their
@@ -74,7 +81,12 @@ class SampleModel {
   void Describe(RefineSummary* summary) const;
 
  private:
-  struct Sampling;  // sampled texels and what solves them
+  struct Sampling {  // sampled texels and what solves them
+    std::vector<size_t> texels;
+    std::vector<SampledTexel> solved;
+    const SampleSolver* solver;
+    int threads;
+  };
   Sampling Sample(size_t most, const SampleSolver& solver, int threads) const;
   // Rounds of solving the sampled texels by `views` and updating the substances and, where asked
   // for, the residuals' variance.
@@ -85,13 +97,27 @@ class SampleModel {
   double NormalPrecision(size_t texel) const;
   void UpdateDeviations(const Sampling& sampling);
   double SampleWorth(const std::vector<size_t>& texels) const;
+  // By cross-validation, sample_spreads.cc.
+  // visit(model, sampling, fitted, held_out) with what is found of the sampled texels without the
+  // views held out, one fold after the other.
+  template <class Visit>
+  void ForEachFold(const Sampling& sampling, const Visit& visit) const;
   // Mean squared residual of held-out views.
   double CrossValidate(const Sampling& sampling) const;
   void ChooseSpreads(const Sampling& sampling);
-  double CrossValidatedResiduals(const Sampling& sampling) const;
+  // Of texels and their neighbours, about `most` in all.
+  void ChooseNeighbourSpread(size_t most, const SampleSolver& solver, int threads);
+  double CrossValidatedResiduals(const std::vector<size_t>& texels) const;
 
   TexelGaussian Knowledge(size_t texel) const;
-  void MultiplyNeighbours(size_t texel, const SvbrdfMaps& maps, TexelGaussian* gaussian) const;
+  struct Neighbour {
+    size_t texel;
+    TexelValues values;
+  };
+  // Neighbours are expected to differ in their normals by as much as those differ from level, and
+  // in their departures from their substances by `neighbour_spread_`.
+  void MultiplyNeighbours(size_t texel, std::span<const Neighbour> neighbours,
+                          TexelGaussian* gaussian) const;
   TexelPrior Scaled(const TexelGaussian& gaussian) const;
 
   const SamplePart* part_;
@@ -102,6 +128,8 @@ class SampleModel {
   SubstanceMeans means_;
   // Of n_x, n_y about 0, and about their neighbours' mean, by substance.
   std::vector<double> normal_spreads_;
+  // By how much neighbours' departures from their substances differ, in spreads of departures.
+  double neighbour_spread_ = 1;
   bool learns_normals_ = false;  // whether Fit estimates them
   ViewDeviations deviations_;
 };

@@ -313,6 +313,50 @@ TEST(Refine, OneSubstanceBecomesNearlyHomogeneous) {
             0.05 * MeanSquare(start, truth, kSpecularR, kSpecularB));
 }
 
+// One level substance; roughness and specular albedo of texel t: .3 + roughness(t), .05 · (1 +
+// specular(t)).
+template <class Roughness, class Specular>
+RefineSummary SummaryOf(const Roughness& roughness, const Specular& specular) {
+  SvbrdfMaps truth(32, 32);
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    truth.plane(kNormalZ)[t] = 1;
+    truth.plane(kRoughness)[t] = 0.3f + static_cast<float>(roughness(t));
+    for (int c = 0; c < 3; ++c) {
+      truth.plane(kDiffuseR + c)[t] = 0.1f;
+      truth.plane(kSpecularR + c)[t] = 0.05f * (1 + static_cast<float>(specular(t)));
+    }
+  }
+  SvbrdfMaps start = truth;
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    start.plane(kRoughness)[t] = 0.35f;
+    for (int c = 0; c < 3; ++c) start.plane(kSpecularR + c)[t] = 0.06f;
+  }
+  return Refine(Photograph(truth, 10, 8).Problem(), start, {}, 1).summary;
+}
+
+double Wave(size_t texel) { return std::sin(0.4 * static_cast<double>(texel % 32 + texel / 32)); }
+double Scatter(size_t texel) { return Wave(texel * 7919 % 1024); }  // the same values elsewhere
+double Nothing(size_t) { return 0; }
+
+// What neighbours tell of a texel is estimated, not assumed.
+TEST(Refine, NeighboursAgreeAsFarAsTheSamplesDo) {
+  const auto smooth = [](size_t t) { return 0.1 * Wave(t); };
+  const auto rough = [](size_t t) { return 0.1 * Scatter(t); };
+  EXPECT_LT(SummaryOf(smooth, Nothing).neighbour_spread,
+            0.6 * SummaryOf(rough, Nothing).neighbour_spread);
+}
+
+// Roughness may vary within a substance where specular albedo does not, and is then no reason to
+// expect that it does.
+TEST(Refine, SpecularAlbedoVariesByItsOwnMeasure) {
+  const auto roughness = [](size_t t) { return 0.1 * Scatter(t); };
+  const RefineSummary constant = SummaryOf(roughness, Nothing);
+  const RefineSummary varying =
+      SummaryOf(roughness, [](size_t t) { return 0.6 * Scatter(t + 500); });
+  EXPECT_LT(constant.specular_spread / constant.roughness_spread,
+            0.6 * varying.specular_spread / varying.roughness_spread);
+}
+
 // A flash that stands beside where all views say it does: highlights of a level sample tell.
 TEST(Refine, FindsWhereTheFlashStands) {
   SvbrdfMaps truth(32, 32);
