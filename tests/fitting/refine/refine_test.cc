@@ -334,7 +334,10 @@ RefineSummary SummaryOf(const Roughness& roughness, const Specular& specular) {
   return Refine(Photograph(truth, 10, 8).Problem(), start, {}, 1).summary;
 }
 
-double Wave(size_t texel) { return std::sin(0.4 * static_cast<double>(texel % 32 + texel / 32)); }
+double Wave(size_t texel) {
+  const size_t row = texel / 32, column = texel % 32;
+  return std::sin(0.4 * static_cast<double>(row + column));
+}
 double Scatter(size_t texel) { return Wave(texel * 7919 % 1024); }  // the same values elsewhere
 double Nothing(size_t) { return 0; }
 
