@@ -177,7 +177,7 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
   }
   information *= worth;
   gradient *= worth;
-  // Where texels of one substance hardly differ, nor do substances.
+  // Means are expected within a wide range of their common mean.
   SharedValues common{};
   for (const SharedValues& m : means->mean) {
     for (size_t p = 0; p < 4; ++p) common[p] += m[p] / static_cast<double>(count);
@@ -186,8 +186,8 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
     for (Eigen::Index p = 0; p < 4; ++p) {
       const auto q = static_cast<size_t>(p);
       const double width =
-          kBetweenToWithin * (p == 3 ? means->roughness_spread
-                                     : means->specular_spread * (common[q] + kSpecularOffset));
+          kBetweenToWithin * (p == 3 ? kExpectedRoughnessSpread
+                                     : kExpectedSpecularSpread * (common[q] + kSpecularOffset));
       const double precision = 1 / (width * width);
       information(4 * k + p, 4 * k + p) += precision;
       gradient[4 * k + p] += precision * (common[q] - means->mean[static_cast<size_t>(k)][q]);
