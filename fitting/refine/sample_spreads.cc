@@ -19,19 +19,37 @@ constexpr size_t kCross = 5;  // a texel and its neighbours
 constexpr std::array<double, 4> kSpreadFactors = {0.25, 0.5, 1.0, 2.0};
 using SpreadErrors = std::array<double, kSpreadFactors.size()>;
 
-// The mean variance over what cross-validation leaves possible: a spread that predicts nearly as
-// well as the best one is nearly as likely, and to take the best alone would state deviations that
-// are too small.
-double MeanFactor(const SpreadErrors& error, double independent) {
+// How likely each factor is after cross-validation, sum 1: one that predicts nearly as well as the
+// best is nearly as likely. `independent`: residuals in each mean square.
+SpreadErrors Likelihoods(const SpreadErrors& error, double independent) {
   const double least = *std::min_element(error.begin(), error.end());
-  double weights = 0, squares = 0;
-  for (size_t i = 0; i < kSpreadFactors.size(); ++i) {
+  SpreadErrors likelihoods;
+  double sum = 0;
+  for (size_t i = 0; i < error.size(); ++i) {
     // Gauss's likelihood of as many residuals, their variance the least that is found.
-    const double weight = std::exp(-0.5 * independent * (error[i] / least - 1));
-    weights += weight;
-    squares += weight * kSpreadFactors[i] * kSpreadFactors[i];
+    sum += likelihoods[i] = std::exp(-0.5 * independent * (error[i] / least - 1));
   }
-  return std::sqrt(squares / weights);
+  for (double& likelihood : likelihoods) likelihood /= sum;
+  return likelihoods;
+}
+
+// For a spread of texels: to take the likeliest alone would state deviations that are too small.
+double FactorOfMeanVariance(const SpreadErrors& likelihoods) {
+  double sum = 0;
+  for (size_t i = 0; i < likelihoods.size(); ++i) {
+    sum += likelihoods[i] * kSpreadFactors[i] * kSpreadFactors[i];
+  }
+  return std::sqrt(sum);
+}
+
+// For what neighbours tell: it is information beside all else that is known of a texel, and
+// information is taken at its mean.
+double FactorOfMeanPrecision(const SpreadErrors& likelihoods) {
+  double sum = 0;
+  for (size_t i = 0; i < likelihoods.size(); ++i) {
+    sum += likelihoods[i] / (kSpreadFactors[i] * kSpreadFactors[i]);
+  }
+  return 1 / std::sqrt(sum);
 }
 
 }  // namespace
@@ -78,7 +96,7 @@ void SampleModel::ChooseSpreads(const Sampling& sampling) {
       scale(kSpreadFactors[i], &tried);
       error[i] = tried.CrossValidate(sampling);
     }
-    scale(MeanFactor(error, independent), this);
+    scale(FactorOfMeanVariance(Likelihoods(error, independent)), this);
   };
   choose([](double factor, SampleModel* model) {
     model->means_.roughness_spread *= factor;
@@ -97,7 +115,7 @@ void SampleModel::ChooseSpreads(const Sampling& sampling) {
 void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver, int threads) {
   Sampling crosses{{}, {}, &solver, threads};
   std::vector<size_t> centres;  // in crosses.texels, each followed by its neighbours
-  for (const size_t texel : Sample(most / 5, solver, threads).texels) {
+  for (const size_t texel : Sample(most / kCross, solver, threads).texels) {
     centres.push_back(crosses.texels.size());
     crosses.texels.push_back(texel);
     ForEachNeighbour(texel, part_->initial().width, part_->initial().height,
@@ -108,6 +126,8 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
   std::array<Prediction, kSpreadFactors.size()> sums{};
   ForEachFold(crosses, [&](const SampleModel& model, const Sampling& part,
                            const std::vector<int>& fitted, const std::vector<int>& held_out) {
+    std::vector<SampleModel> tried(kSpreadFactors.size(), model);
+    for (size_t f = 0; f < tried.size(); ++f) tried[f].neighbour_spread_ *= kSpreadFactors[f];
     std::vector<std::array<Prediction, kSpreadFactors.size()>> predictions(centres.size() - 1);
     ForEachPieceByWorker(static_cast<int>(predictions.size()), threads, [&](int i, int worker) {
       const size_t k = static_cast<size_t>(i), texel = part.texels[centres[k]];
@@ -116,11 +136,9 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
         neighbours.push_back({part.texels[n], part.solved[n].values});
       }
       for (size_t f = 0; f < kSpreadFactors.size(); ++f) {
-        SampleModel tried(model);
-        tried.neighbour_spread_ *= kSpreadFactors[f];
-        TexelGaussian gaussian = tried.Knowledge(texel);
-        tried.MultiplyNeighbours(texel, neighbours, &gaussian);
-        const SampledTexel solved = solver.solve(texel, tried.Scaled(gaussian),
+        TexelGaussian gaussian = tried[f].Knowledge(texel);
+        tried[f].MultiplyNeighbours(texel, neighbours, &gaussian);
+        const SampledTexel solved = solver.solve(texel, tried[f].Scaled(gaussian),
                                                  part.solved[centres[k]].values, fitted, worker);
         predictions[k][f] = solver.predict(texel, solved.values, held_out, worker);
       }
@@ -133,7 +151,7 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
   for (size_t f = 0; f < kSpreadFactors.size(); ++f) error[f] = sums[f].MeanSquare();
   centres.pop_back();
   for (size_t& centre : centres) centre = crosses.texels[centre];
-  neighbour_spread_ *= MeanFactor(error, CrossValidatedResiduals(centres));
+  neighbour_spread_ *= FactorOfMeanPrecision(Likelihoods(error, CrossValidatedResiduals(centres)));
 }
 
 // Residuals that are worth something of their own: those that are not discrepancy, and of
