@@ -76,16 +76,20 @@ class Estimator {
 void Estimator::Run() {
   SampleSolver solver;
   solver.solve = [&](size_t texel, const TexelPrior& prior, const TexelValues& from,
-                     std::span<const int> views, int worker) {
+                     const SampleRequest& request, int worker) {
     RefineWorker& w = *workers_[static_cast<size_t>(worker)];
-    GatherObservations(problem_, start_, texel, views, &w.observations);
+    GatherObservations(problem_, start_, texel, request.views, &w.observations);
     SampledTexel sampled;
     sampled.values = from;
     sampled.views = w.observations.views();
     if (sampled.views == 0) return sampled;
-    sampled.values = w.search.FromStart(w.observations, prior, from).solution.values;
+    sampled.values = request.near_minimum
+                         ? w.search.Improved(w.observations, prior, from, true).values
+                         : w.search.FromStart(w.observations, prior, from).solution.values;
     TexelGram& gram = sampled.gram;
-    if (!nudged_.empty()) sampled.of_views = OfViews(texel, sampled.values, views, &w);
+    if (request.of_views && !nudged_.empty()) {
+      sampled.of_views = OfViews(texel, sampled.values, request.views, &w);
+    }
     w.search.solver().Gram(w.observations, TexelPrior(), sampled.values, &gram);
     sampled.squares = gram[kTexelParameters][kTexelParameters];
     for (int i = 0; i < kTexelParameters; ++i) sampled.prior_diagonal[i] = -gram[i][i];

@@ -54,8 +54,8 @@ struct RefineOptions {
   int iterations = 40;        // most Levenberg–Marquardt steps of one solve
   int starts = 2;             // solves per texel: 1: the start alone; more: so many roughnesses
   int neighbour_passes = 2;   // how often a texel tries its neighbours' solutions
-  int substances = 8;         // at most, that share their roughness and specular albedo
-  int estimation_rounds = 8;  // of variances and substances, on sampled texels
+  int substances = 8;         // at most, that share their roughness and albedos
+  int estimation_rounds = 8;  // of variances and substances, on sampled texels, up to three times
   // Texels along the longer side among which those are sampled, at most; the sample as a whole is
   // estimated from no others. A million texels: the few thousand that are solved are picked of
   // them.
@@ -97,16 +97,18 @@ enum ConfidencePlane : int {
 struct RefineSummary {
   double start_cost = 0;  // means over texels
   double final_cost = 0;
-  double residual_sigma = 0;      // scale σ of residuals, log units (docs/model.md) …
-  double residual_deviation = 0;  // … and their standard deviation, which long tails raise
-  double discrepancy = 0;         // of it, what the reflectance model does not express
-  double effective_views = 0;     // how many views say something of their own
-  int substances = 0;             // that are told apart
-  double roughness_spread = 0;    // of texels about their substance's mean …
-  double specular_spread = 0;     // … relative
-  double neighbour_spread = 0;    // between neighbours' departures from those means, in spreads
-  double normal_spread = 0;       // of n_x, n_y about 0, and between neighbours
-  SharedLight shared_light;       // of all views
+  double residual_sigma = 0;        // scale σ of residuals, log units (docs/model.md) …
+  double residual_deviation = 0;    // … and their standard deviation, which long tails raise
+  double discrepancy = 0;           // of it, what the reflectance model does not express
+  double effective_views = 0;       // how many views say something of their own
+  int substances = 0;               // that are told apart
+  double roughness_spread = 0;      // of texels about their substance's mean …
+  double specular_spread = 0;       // … relative
+  double diffuse_spread = 0;        // likewise; ∞ from one or two photographs
+  double initialisation_error = 0;  // of its albedos, in expected ones of one photograph
+  double neighbour_spread = 0;      // between neighbours' departures from those means, in spreads
+  double normal_spread = 0;         // of n_x, n_y about 0, and between neighbours
+  SharedLight shared_light;         // of all views
   // What single views deviate by: added to the lights beside `shared_light`, factors on
   // exposures; and the spreads of both, estimated.
   std::vector<Vec3d> light_offsets_mm;

@@ -42,6 +42,8 @@ std::vector<RectifiedView> ChooseViews(const RectifiedSet& set, const RefineStar
   return SelectViews(set, only, options.exclude);
 }
 
+Json KnownOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
 Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& views) {
   Json losses = Json::array();
   double sum = 0.0;
@@ -70,6 +72,8 @@ Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& vie
           {"substances", summary.substances},
           {"roughness_spread", summary.roughness_spread},
           {"specular_spread", summary.specular_spread},
+          {"diffuse_spread", KnownOrNull(summary.diffuse_spread)},
+          {"initialisation_error", summary.initialisation_error},
           {"neighbour_spread", summary.neighbour_spread},
           {"normal_spread", summary.normal_spread},
           {"exposure_spread", summary.exposure_spread},
@@ -274,6 +278,8 @@ std::string EstimateHash(const Sample& sample) {
                {"residual_deviation", summary.residual_deviation},
                {"roughness_spread", summary.roughness_spread},
                {"specular_spread", summary.specular_spread},
+               {"diffuse_spread", KnownOrNull(summary.diffuse_spread)},
+               {"initialisation_error", summary.initialisation_error},
                {"neighbour_spread", summary.neighbour_spread},
                {"normal_spread", summary.normal_spread},
                {"exposure_spread", summary.exposure_spread},
@@ -326,9 +332,10 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "how many times a texel tries its neighbours' solutions");
   set->AddRange("substances", &refine->substances, 1, kMostSubstances,
                 "maximum number of substances (clusters of texels of one material); the texels of "
-                "a substance share roughness and specular albedo");
+                "a substance share roughness and albedos");
   set->AddRange("estimation-rounds", &refine->estimation_rounds, 0, 100,
-                "rounds of estimating variances and substances from sampled texels");
+                "rounds of estimating variances and substances from sampled texels; repeated once "
+                "spreads are chosen");
   set->AddRange(
       "estimation-size", &refine->estimation_size, 16, 1 << 20,
       "longer side, in texels, of the grid from which texels are drawn for the estimation; "

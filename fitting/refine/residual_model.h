@@ -24,7 +24,7 @@ struct ResidualModelOptions {
   // own (registration, exposure).
   double smooth_share = 0.8;
   // What residuals are expected to be before any is seen, and how many per texel that belief is
-  // worth.
+  // worth while views are being found.
   double expected_sigma = 0.05;
   double expected_residuals = 1;
 };

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "base/parallel/parallel.h"
 #include "fitting/refine/neighbours.h"
@@ -15,13 +16,13 @@
 namespace glint {
 namespace {
 
-constexpr size_t kSampled = 2048, kCrossValidated = 512;
+constexpr size_t kSampled = 2048;
 constexpr int kLeastValidatedViews = 3;  // of two, one would have to predict the other
 // Of the albedos' errors, where fitting has seen the same photographs.
 constexpr double kSeenAlready = 3;
 // Scatter of normals to begin with; cross-validation changes it. Of what initial maps say of it a
 // part is what fitting made of its photographs.
-constexpr double kNormalSpread = 0.05;
+constexpr double kExpectedNormalSpread = 0.05;
 constexpr double kNormalTexels = 20;  // that this belief is worth, of a substance
 
 // What nothing is known of, without a prior.
@@ -50,7 +51,9 @@ std::array<double, 2> PlaceOf(const SamplePlane& plane, size_t texel) {
 
 SharedValues SharedOf(const TexelValues& values) {
   SharedValues shared;
-  for (size_t p = 0; p < 4; ++p) shared[p] = values[static_cast<size_t>(kSharedParameters[p])];
+  for (size_t p = 0; p < kShared; ++p) {
+    shared[p] = values[static_cast<size_t>(kSharedParameters[p])];
+  }
   return shared;
 }
 
@@ -60,30 +63,52 @@ SharedValues SharedOf(const TexelValues& values) {
 InitialisationErrors ErrorsOfInitialisation(const RefineProblem& problem) {
   InitialisationErrors errors;
   if (problem.views.size() == 1) return errors;
-  for (double* error :
-       {&errors.diffuse, &errors.diffuse_relative, &errors.specular, &errors.specular_relative}) {
-    *error *= kSeenAlready;
-  }
+  errors.ScaleAlbedos(kSeenAlready);
   errors.normal = errors.roughness = std::numeric_limits<double>::infinity();
   return errors;
 }
 
-// What each substance is in the mean of the initial maps.
-std::vector<SharedValues> InitialMeans(const SamplePart& part) {
-  std::vector<SharedValues> means(static_cast<size_t>(part.substances().count()), SharedValues{});
-  std::vector<double> weights(means.size(), 1e-9);
-  for (size_t t = 0; t < part.texels(); ++t) {
-    const SharedValues shared = SharedOf(ReadTexel(part.initial(), t));
-    for (size_t k = 0; k < means.size(); ++k) {
-      const double share = part.shares(t)[k];
-      weights[k] += share;
-      for (size_t p = 0; p < 4; ++p) means[k][p] += share * shared[p];
+// What each substance is in the mean of some texels, and of what is expected as if of one more.
+class MeanBySubstance {
+ public:
+  explicit MeanBySubstance(const std::vector<SharedValues>& expected)
+      : sums_(expected), weights_(expected.size(), 1) {}
+
+  void Add(const float* shares, const TexelValues& values) {
+    const SharedValues shared = SharedOf(values);
+    for (size_t k = 0; k < sums_.size(); ++k) {
+      weights_[k] += shares[k];
+      for (size_t p = 0; p < kShared; ++p) sums_[k][p] += shares[k] * shared[p];
     }
   }
-  for (size_t k = 0; k < means.size(); ++k) {
-    for (double& value : means[k]) value /= weights[k];
+
+  std::vector<SharedValues> means() const {
+    std::vector<SharedValues> means(sums_);
+    for (size_t k = 0; k < means.size(); ++k) {
+      for (double& value : means[k]) value /= weights_[k];
+    }
+    return means;
   }
-  return means;
+
+ private:
+  std::vector<SharedValues> sums_;
+  std::vector<double> weights_;
+};
+
+std::vector<SharedValues> InitialMeans(const SamplePart& part) {
+  SharedValues whole{};
+  for (size_t t = 0; t < part.texels(); ++t) {
+    const SharedValues shared = SharedOf(ReadTexel(part.initial(), t));
+    for (size_t p = 0; p < kShared; ++p) {
+      whole[p] += shared[p] / static_cast<double>(part.texels());
+    }
+  }
+  MeanBySubstance mean(
+      std::vector<SharedValues>(static_cast<size_t>(part.substances().count()), whole));
+  for (size_t t = 0; t < part.texels(); ++t) {
+    mean.Add(part.shares(t), ReadTexel(part.initial(), t));
+  }
+  return mean.means();
 }
 
 }  // namespace
@@ -94,7 +119,7 @@ SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
       all_views_(part.problem().views.size()),
       initial_errors_(ErrorsOfInitialisation(part.problem())),
       residuals_(part.problem(), {}),
-      normal_spreads_(static_cast<size_t>(part.substances().count()), kNormalSpread),
+      normal_spreads_(static_cast<size_t>(part.substances().count()), kExpectedNormalSpread),
       deviations_(static_cast<int>(part.problem().views.size()),
                   {options.exposure_spread, options.light_spread, options.light_spread},
                   {options.flash_offset, options.flash_offset, options.flash_beam,
@@ -113,7 +138,7 @@ TexelGaussian SampleModel::Knowledge(size_t texel) const {
   TexelGaussian gaussian(ReadTexel(part_->initial(), texel), initial_errors_);
   const SharedValues mean = means_.Of(part_->shares(texel));
   const SharedValues variances = means_.Variances(mean);
-  for (size_t p = 0; p < 4; ++p) {
+  for (size_t p = 0; p < kShared; ++p) {
     gaussian.Multiply(kSharedParameters[p], mean[p], 1 / variances[p]);
   }
   const double precision = NormalPrecision(texel);
@@ -134,14 +159,14 @@ void SampleModel::MultiplyNeighbours(size_t texel, std::span<const Neighbour> ne
     for (int i = 0; i < 2; ++i) normal[i] += of_neighbour[i];
     const SharedValues shared = SharedOf(neighbour.values);
     const SharedValues mean = means_.Of(part_->shares(neighbour.texel));
-    for (size_t p = 0; p < 4; ++p) departure[p] += shared[p] - mean[p];
+    for (size_t p = 0; p < kAlikeNearby; ++p) departure[p] += shared[p] - mean[p];
   }
   for (int i = 0; i < 2; ++i) {
     gaussian->Multiply(kSlopeX + i, normal[i] / count, count * NormalPrecision(texel));
   }
   const SharedValues mean = means_.Of(part_->shares(texel));
   const SharedValues variances = means_.Variances(mean);
-  for (size_t p = 0; p < 4; ++p) {
+  for (size_t p = 0; p < kAlikeNearby; ++p) {
     gaussian->Multiply(kSharedParameters[p], mean[p] + departure[p] / count,
                        count / (neighbour_spread_ * neighbour_spread_ * variances[p]));
   }
@@ -166,12 +191,19 @@ TexelPrior SampleModel::PriorOf(size_t texel, const SvbrdfMaps& maps) const {
 
 SampleModel::Sampling SampleModel::Sample(size_t most, const SampleSolver& solver,
                                           int threads) const {
-  Sampling sampling{{}, {}, &solver, threads};
   const size_t texels = part_->texels(), count = std::min(most, texels);
-  for (size_t i = 0; i < count; ++i) {
-    sampling.texels.push_back((2 * i + 1) * texels / (2 * count));
-    sampling.solved.emplace_back().values = ReadTexel(part_->initial(), sampling.texels.back());
+  std::vector<size_t> sampled;
+  for (size_t i = 0; i < count; ++i) sampled.push_back((2 * i + 1) * texels / (2 * count));
+  return SamplingOf(std::move(sampled), solver, threads);
+}
+
+SampleModel::Sampling SampleModel::SamplingOf(std::vector<size_t> texels,
+                                              const SampleSolver& solver, int threads) const {
+  Sampling sampling{std::move(texels), {}, 0, &solver, threads};
+  for (const size_t texel : sampling.texels) {
+    sampling.solved.emplace_back().values = ReadTexel(part_->initial(), texel);
   }
+  sampling.half_vectors = HalfVectors(sampling.texels);
   return sampling;
 }
 
@@ -179,13 +211,15 @@ void SampleModel::Fit(std::span<const int> views, int rounds, bool update_residu
                       Sampling* sampling) {
   const int count = static_cast<int>(sampling->texels.size());
   for (int round = 0; round < rounds; ++round) {
+    const SampleRequest request{views, !update_residuals && round > 0,
+                                update_residuals && finds_views_};
     ForEachPieceByWorker(count, sampling->threads, [&](int i, int worker) {
       const size_t k = static_cast<size_t>(i), texel = sampling->texels[k];
-      sampling->solved[k] =
-          sampling->solver->solve(texel, PriorOf(texel), sampling->solved[k].values, views, worker);
+      sampling->solved[k] = sampling->solver->solve(texel, PriorOf(texel),
+                                                    sampling->solved[k].values, request, worker);
     });
     UpdateSubstances(*sampling);
-    if (update_residuals) UpdateDeviations(*sampling);
+    if (update_residuals && finds_views_) UpdateDeviations(*sampling);
     if (update_residuals && learns_normals_) UpdateNormalSpreads(*sampling);
     if (update_residuals) UpdateResiduals(*sampling);
   }
@@ -201,21 +235,19 @@ void SampleModel::UpdateSubstances(const Sampling& sampling) {
     SubstanceSample sample;
     sample.shares = part_->shares(sampling.texels[i]);
     sample.value = SharedOf(solved.values);
-    for (size_t p = 0; p < 4; ++p) {
-      for (size_t q = 0; q < 4; ++q) {
-        sample.covariance[4 * p + q] =
+    for (size_t p = 0; p < kShared; ++p) {
+      for (size_t q = 0; q < kShared; ++q) {
+        sample.covariance[kShared * p + q] =
             variance * inverse(kSharedParameters[p], kSharedParameters[q]);
       }
     }
     samples.push_back(sample);
   }
-  UpdateMeans(samples, SampleWorth(sampling.texels), &means_);
+  UpdateMeans(samples, SampleWorth(sampling), &means_);
 }
 
-// Discrepancy is a function of the half vector, common to a substance: a mean over n texels and
-// views has variance q²/n + d²/cells, with as many cells as half vectors differ by half the length
-// scale of its likeness.
-double SampleModel::SampleWorth(const std::vector<size_t>& texels) const {
+// Cells of half the length scale over which discrepancy stays alike.
+size_t SampleModel::HalfVectors(const std::vector<size_t>& texels) const {
   const double cell = 0.5 * residuals_.options().half_vector_deg * std::numbers::pi / 180;
   std::vector<std::pair<int, int>> cells;
   for (const size_t t : texels) {
@@ -231,9 +263,15 @@ double SampleModel::SampleWorth(const std::vector<size_t>& texels) const {
   }
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  const double n = static_cast<double>(texels.size()) * residuals_.effective_views();
+  return cells.size();
+}
+
+// Discrepancy is a function of the half vector, common to a substance: a mean over n texels and
+// views has variance q²/n + d²/cells.
+double SampleModel::SampleWorth(const Sampling& sampling) const {
+  const double n = static_cast<double>(sampling.texels.size()) * residuals_.effective_views();
   const double d = residuals_.discrepancy_share();
-  return 1 / ((1 - d) + d * std::max(1.0, n / static_cast<double>(cells.size())));
+  return 1 / ((1 - d) + d * std::max(1.0, n / static_cast<double>(sampling.half_vectors)));
 }
 
 // MacKay's fixed point ("Bayesian interpolation", Neural Computation 1992): squares over residuals
@@ -269,18 +307,18 @@ TexelCovariance SampleModel::CommonCovariance(size_t texel, const TexelValues& v
   const TexelCholesky information(gram, nothing);
   const float* shares = part_->shares(texel);
   const SharedValues variances = means_.Variances(means_.Of(shares));
-  double moved[4][kTexelParameters];  // by each of the means
-  for (size_t p = 0; p < 4; ++p) {
+  double moved[kShared][kTexelParameters];  // by each of the means
+  for (size_t p = 0; p < kShared; ++p) {
     double pull[kTexelParameters] = {};
     pull[kSharedParameters[p]] = residuals_.scale() * residuals_.scale() / variances[p];
     information.Solve(pull, &moved[p]);
   }
-  const std::array<double, 16> means = means_.CovarianceOf(shares);
+  const SharedCovariance means = means_.CovarianceOf(shares);
   TexelCovariance common{};
-  for (size_t p = 0; p < 4; ++p) {
+  for (size_t p = 0; p < kShared; ++p) {
     double with[kTexelParameters] = {};
-    for (size_t q = 0; q < 4; ++q) {
-      for (size_t j = 0; j < kTexelParameters; ++j) with[j] += means[4 * p + q] * moved[q][j];
+    for (size_t q = 0; q < kShared; ++q) {
+      for (size_t j = 0; j < kTexelParameters; ++j) with[j] += means[kShared * p + q] * moved[q][j];
     }
     for (size_t i = 0; i < kTexelParameters; ++i) {
       for (size_t j = 0; j < kTexelParameters; ++j) {
@@ -303,7 +341,7 @@ double SampleModel::NormalPrecision(size_t texel) const {
 void SampleModel::UpdateNormalSpreads(const Sampling& sampling) {
   const double variance = residuals_.scale() * residuals_.scale();
   const size_t count = normal_spreads_.size();
-  std::vector<double> squares(count, kNormalSpread * kNormalSpread * kNormalTexels);
+  std::vector<double> squares(count, kExpectedNormalSpread * kExpectedNormalSpread * kNormalTexels);
   std::vector<double> weights(count, kNormalTexels);
   for (size_t i = 0; i < sampling.solved.size(); ++i) {
     const SampledTexel& solved = sampling.solved[i];
@@ -337,7 +375,7 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
     texel.products = &solved.of_views;
   }
   const double scale = residuals_.scale();
-  deviations_.Update(texels, SampleWorth(sampling.texels) / (scale * scale));
+  deviations_.Update(texels, SampleWorth(sampling) / (scale * scale));
   sampling.solver->deviate(deviations_);
 }
 
@@ -347,9 +385,32 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   Fit(all_views_, options_.estimation_rounds, true, &sampling);
   learns_normals_ = false;
   if (static_cast<int>(all_views_.size()) < kLeastValidatedViews) return;
-  ChooseSpreads(Sample(kCrossValidated, solver, threads));
-  ChooseNeighbourSpread(kCrossValidated, solver, threads);
+  HoldViews(kExpectedDiffuseSpread, sampling);
+  ChooseSpreads(Sample(kSampled, solver, threads));
+  ChooseNeighbourSpread(kSampled, solver, threads);
+  if (deviations_.any()) {
+    // Views are found while nothing is known of how far diffuse albedo departs from its substances:
+    // its departures are alike in neighbouring texels, and views would be moved to make them even.
+    const double chosen = std::exchange(means_.diffuse_spread, kUnknownSpread);
+    finds_views_ = true;
+    Fit(all_views_, options_.estimation_rounds, true, &sampling);
+    HoldViews(chosen, sampling);
+  }
   Fit(all_views_, options_.estimation_rounds, true, &sampling);
+}
+
+void SampleModel::HoldViews(double diffuse_spread, const Sampling& sampling) {
+  finds_views_ = false;
+  MeanBySubstance mean(InitialMeans(*part_));
+  for (size_t k = 0; k < sampling.texels.size(); ++k) {
+    if (sampling.solved[k].views == 0) continue;
+    mean.Add(part_->shares(sampling.texels[k]), sampling.solved[k].values);
+  }
+  const std::vector<SharedValues> means = mean.means();
+  for (size_t k = 0; k < means.size(); ++k) {
+    for (size_t p = kAlikeNearby; p < kShared; ++p) means_.mean[k][p] = means[k][p];
+  }
+  means_.diffuse_spread = diffuse_spread;
 }
 
 void SampleModel::Describe(RefineSummary* summary) const {
@@ -361,6 +422,8 @@ void SampleModel::Describe(RefineSummary* summary) const {
   summary->substances = part_->substances().count();
   summary->roughness_spread = means_.roughness_spread;
   summary->specular_spread = means_.specular_spread;
+  summary->diffuse_spread = means_.diffuse_spread;
+  summary->initialisation_error = initial_errors_.diffuse / InitialisationErrors().diffuse;
   summary->neighbour_spread = neighbour_spread_;
   summary->exposure_spread = deviations_.spreads()[kLogExposure];
   summary->light_spread = deviations_.spreads()[kLightAcrossX];

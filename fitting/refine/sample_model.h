@@ -12,6 +12,7 @@
 #include "fitting/refine/refine.h"
 #include "fitting/refine/residual_model.h"
 #include "fitting/refine/sample_part.h"
+#include "fitting/refine/spread_search.h"
 #include "fitting/refine/substances.h"
 #include "fitting/refine/view_deviations.h"
 #include "fitting/texel/texel_prior.h"
@@ -40,11 +41,18 @@ struct Prediction {
   double MeanSquare() const { return squares / std::max(residuals, 1); }
 };
 
+// How a sampled texel is to be solved.
+struct SampleRequest {
+  std::span<const int> views;  // those to take
+  bool near_minimum = false;   // `from` is next to one: no other starts
+  bool of_views = false;       // SampledTexel::of_views are wanted
+};
+
 // What SampleModel asks of the texels' solver; called from several threads, `worker` below their
-// number. `views`: those to take.
+// number.
 struct SampleSolver {
   std::function<SampledTexel(size_t texel, const TexelPrior& prior, const TexelValues& from,
-                             std::span<const int> views, int worker)>
+                             const SampleRequest& request, int worker)>
       solve;
   std::function<Prediction(size_t texel, const TexelValues& values, std::span<const int> views,
                            int worker)>
@@ -84,19 +92,26 @@ class SampleModel {
   struct Sampling {  // sampled texels and what solves them
     std::vector<size_t> texels;
     std::vector<SampledTexel> solved;
+    size_t half_vectors;  // that can be told apart, of all views
     const SampleSolver* solver;
     int threads;
   };
   Sampling Sample(size_t most, const SampleSolver& solver, int threads) const;
-  // Rounds of solving the sampled texels by `views` and updating the substances and, where asked
-  // for, the residuals' variance.
+  Sampling SamplingOf(std::vector<size_t> texels, const SampleSolver& solver, int threads) const;
+  size_t HalfVectors(const std::vector<size_t>& texels) const;
+  // Rounds of solving the sampled texels by `views` and updating the substances. In the folds of
+  // cross-validation no more than that (`update_residuals` false), and from the second round on
+  // without other starts; else the residuals' variance and what else is being learned too.
   void Fit(std::span<const int> views, int rounds, bool update_residuals, Sampling* sampling);
   void UpdateSubstances(const Sampling& sampling);
   void UpdateResiduals(const Sampling& sampling);
   void UpdateNormalSpreads(const Sampling& sampling);
   double NormalPrecision(size_t texel) const;
   void UpdateDeviations(const Sampling& sampling);
-  double SampleWorth(const std::vector<size_t>& texels) const;
+  // From now on views stay as they are, the residuals' variance is measured rather than believed,
+  // and diffuse albedo is shared too, from what was found of it without.
+  void HoldViews(double diffuse_spread, const Sampling& sampling);
+  double SampleWorth(const Sampling& sampling) const;
   // By cross-validation, sample_spreads.cc.
   // visit(model, sampling, fitted, held_out) with what is found of the sampled texels without the
   // views held out, one fold after the other.
@@ -104,10 +119,11 @@ class SampleModel {
   void ForEachFold(const Sampling& sampling, const Visit& visit) const;
   // Mean squared residual of held-out views.
   double CrossValidate(const Sampling& sampling) const;
+  SampleModel ScaledBy(const SpreadFactors& factors) const;
   void ChooseSpreads(const Sampling& sampling);
   // Of texels and their neighbours, about `most` in all.
   void ChooseNeighbourSpread(size_t most, const SampleSolver& solver, int threads);
-  double CrossValidatedResiduals(const std::vector<size_t>& texels) const;
+  double CrossValidatedResiduals(const Sampling& sampling) const;
 
   TexelGaussian Knowledge(size_t texel) const;
   struct Neighbour {
@@ -130,7 +146,8 @@ class SampleModel {
   std::vector<double> normal_spreads_;
   // By how much neighbours' departures from their substances differ, in spreads of departures.
   double neighbour_spread_ = 1;
-  bool learns_normals_ = false;  // whether Fit estimates them
+  bool learns_normals_ = false;  // whether Fit estimates them …
+  bool finds_views_ = true;      // … and views' deviations
   ViewDeviations deviations_;
 };
 

@@ -3,11 +3,13 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/parallel/parallel.h"
 #include "fitting/refine/neighbours.h"
 #include "fitting/refine/sample_model.h"
+#include "fitting/refine/spread_search.h"
 
 namespace glint {
 namespace {
@@ -15,42 +17,8 @@ namespace {
 constexpr int kMostFolds = 7, kFoldRounds = 2;
 constexpr size_t kCross = 5;  // a texel and its neighbours
 
-// By which spreads are tried.
-constexpr std::array<double, 4> kSpreadFactors = {0.25, 0.5, 1.0, 2.0};
-using SpreadErrors = std::array<double, kSpreadFactors.size()>;
-
-// How likely each factor is after cross-validation, sum 1: one that predicts nearly as well as the
-// best is nearly as likely. `independent`: residuals in each mean square.
-SpreadErrors Likelihoods(const SpreadErrors& error, double independent) {
-  const double least = *std::min_element(error.begin(), error.end());
-  SpreadErrors likelihoods;
-  double sum = 0;
-  for (size_t i = 0; i < error.size(); ++i) {
-    // Gauss's likelihood of as many residuals, their variance the least that is found.
-    sum += likelihoods[i] = std::exp(-0.5 * independent * (error[i] / least - 1));
-  }
-  for (double& likelihood : likelihoods) likelihood /= sum;
-  return likelihoods;
-}
-
-// For a spread of texels: to take the likeliest alone would state deviations that are too small.
-double FactorOfMeanVariance(const SpreadErrors& likelihoods) {
-  double sum = 0;
-  for (size_t i = 0; i < likelihoods.size(); ++i) {
-    sum += likelihoods[i] * kSpreadFactors[i] * kSpreadFactors[i];
-  }
-  return std::sqrt(sum);
-}
-
-// For what neighbours tell: it is information beside all else that is known of a texel, and
-// information is taken at its mean.
-double FactorOfMeanPrecision(const SpreadErrors& likelihoods) {
-  double sum = 0;
-  for (size_t i = 0; i < likelihoods.size(); ++i) {
-    sum += likelihoods[i] / (kSpreadFactors[i] * kSpreadFactors[i]);
-  }
-  return 1 / std::sqrt(sum);
-}
+// By which what neighbours differ by is tried.
+constexpr std::array<double, 4> kNeighbourFactors = {0.25, 0.5, 1.0, 2.0};
 
 }  // namespace
 
@@ -87,80 +55,78 @@ double SampleModel::CrossValidate(const Sampling& sampling) const {
   return sum.MeanSquare();
 }
 
+SampleModel SampleModel::ScaledBy(const SpreadFactors& factors) const {
+  SampleModel model(*this);
+  model.means_.roughness_spread *= factors[kRoughnessSpread];
+  model.means_.specular_spread *= factors[kSpecularSpread];
+  model.means_.diffuse_spread *= factors[kDiffuseSpread];
+  for (double& spread : model.normal_spreads_) spread *= factors[kNormalSpread];
+  model.initial_errors_.ScaleAlbedos(factors[kInitialisationError]);
+  return model;
+}
+
 void SampleModel::ChooseSpreads(const Sampling& sampling) {
-  const double independent = CrossValidatedResiduals(sampling.texels);
-  const auto choose = [&](const auto& scale) {
-    SpreadErrors error{};
-    for (size_t i = 0; i < kSpreadFactors.size(); ++i) {
-      SampleModel tried(*this);
-      scale(kSpreadFactors[i], &tried);
-      error[i] = tried.CrossValidate(sampling);
-    }
-    scale(FactorOfMeanVariance(Likelihoods(error, independent)), this);
-  };
-  choose([](double factor, SampleModel* model) {
-    model->means_.roughness_spread *= factor;
-    model->means_.specular_spread *= factor;
+  const std::vector<TriedSpreads> tried = SearchSpreads([&](const SpreadPowers& powers) {
+    SpreadFactors factors;
+    for (size_t i = 0; i < kSpreadKinds; ++i) factors[i] = std::exp2(powers[i]);
+    return ScaledBy(factors).CrossValidate(sampling);
   });
-  choose([](double factor, SampleModel* model) {
-    for (double& spread : model->normal_spreads_) spread *= factor;
-  });
-  // Specular albedo once more alone: roughness varies within a substance, and the specular albedo
-  // of dielectrics hardly does.
-  choose([](double factor, SampleModel* model) { model->means_.specular_spread *= factor; });
+  *this = ScaledBy(LikelyFactors(tried, CrossValidatedResiduals(sampling)));
 }
 
 // Texels are solved once without their neighbours, and the one in the middle of each cross by them
 // once more.
 void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver, int threads) {
-  Sampling crosses{{}, {}, &solver, threads};
-  std::vector<size_t> centres;  // in crosses.texels, each followed by its neighbours
-  for (const size_t texel : Sample(most / kCross, solver, threads).texels) {
-    centres.push_back(crosses.texels.size());
-    crosses.texels.push_back(texel);
+  const Sampling middles = Sample(most / kCross, solver, threads);
+  std::vector<size_t> texels, centres;  // of texels, each followed by its neighbours
+  for (const size_t texel : middles.texels) {
+    centres.push_back(texels.size());
+    texels.push_back(texel);
     ForEachNeighbour(texel, part_->initial().width, part_->initial().height,
-                     [&](size_t neighbour) { crosses.texels.push_back(neighbour); });
+                     [&](size_t neighbour) { texels.push_back(neighbour); });
   }
-  centres.push_back(crosses.texels.size());
-  crosses.solved.resize(crosses.texels.size());
-  std::array<Prediction, kSpreadFactors.size()> sums{};
+  centres.push_back(texels.size());
+  const Sampling crosses = SamplingOf(std::move(texels), solver, threads);
+  const size_t count = kNeighbourFactors.size();
+  std::vector<Prediction> sums(count);
   ForEachFold(crosses, [&](const SampleModel& model, const Sampling& part,
                            const std::vector<int>& fitted, const std::vector<int>& held_out) {
-    std::vector<SampleModel> tried(kSpreadFactors.size(), model);
-    for (size_t f = 0; f < tried.size(); ++f) tried[f].neighbour_spread_ *= kSpreadFactors[f];
-    std::vector<std::array<Prediction, kSpreadFactors.size()>> predictions(centres.size() - 1);
+    std::vector<SampleModel> tried(count, model);
+    for (size_t f = 0; f < count; ++f) tried[f].neighbour_spread_ *= kNeighbourFactors[f];
+    std::vector<std::vector<Prediction>> predictions(centres.size() - 1);
     ForEachPieceByWorker(static_cast<int>(predictions.size()), threads, [&](int i, int worker) {
       const size_t k = static_cast<size_t>(i), texel = part.texels[centres[k]];
       std::vector<Neighbour> neighbours;
       for (size_t n = centres[k] + 1; n < centres[k + 1]; ++n) {
         neighbours.push_back({part.texels[n], part.solved[n].values});
       }
-      for (size_t f = 0; f < kSpreadFactors.size(); ++f) {
-        TexelGaussian gaussian = tried[f].Knowledge(texel);
-        tried[f].MultiplyNeighbours(texel, neighbours, &gaussian);
-        const SampledTexel solved = solver.solve(texel, tried[f].Scaled(gaussian),
-                                                 part.solved[centres[k]].values, fitted, worker);
-        predictions[k][f] = solver.predict(texel, solved.values, held_out, worker);
+      for (const SampleModel& one : tried) {
+        TexelGaussian gaussian = one.Knowledge(texel);
+        one.MultiplyNeighbours(texel, neighbours, &gaussian);
+        const SampledTexel solved =
+            solver.solve(texel, one.Scaled(gaussian), part.solved[centres[k]].values,
+                         {.views = fitted, .near_minimum = true, .of_views = false}, worker);
+        predictions[k].push_back(solver.predict(texel, solved.values, held_out, worker));
       }
     });
     for (const auto& p : predictions) {
-      for (size_t f = 0; f < kSpreadFactors.size(); ++f) sums[f] += p[f];
+      for (size_t f = 0; f < count; ++f) sums[f] += p[f];
     }
   });
-  SpreadErrors error;
-  for (size_t f = 0; f < kSpreadFactors.size(); ++f) error[f] = sums[f].MeanSquare();
-  centres.pop_back();
-  for (size_t& centre : centres) centre = crosses.texels[centre];
-  neighbour_spread_ *= FactorOfMeanPrecision(Likelihoods(error, CrossValidatedResiduals(centres)));
+  std::vector<double> errors;
+  for (const Prediction& sum : sums) errors.push_back(sum.MeanSquare());
+  // Information beside all else that is known of a texel is taken at its mean.
+  neighbour_spread_ *=
+      FactorOfMeanPrecision(kNeighbourFactors, errors, CrossValidatedResiduals(middles));
 }
 
 // Residuals that are worth something of their own: those that are not discrepancy, and of
 // discrepancy as many as there are half vectors to be told apart, each once and not by channel.
-double SampleModel::CrossValidatedResiduals(const std::vector<size_t>& texels) const {
+double SampleModel::CrossValidatedResiduals(const Sampling& sampling) const {
   const double views = static_cast<double>(all_views_.size());
   const double channels =
       3 / (1 + 2 * residuals_.options().channel_correlation * residuals_.discrepancy_share());
-  return SampleWorth(texels) * static_cast<double>(texels.size()) * views * channels;
+  return SampleWorth(sampling) * static_cast<double>(sampling.texels.size()) * views * channels;
 }
 
 }  // namespace glint

@@ -114,22 +114,22 @@ std::vector<float> Substances::SharesOf(const std::vector<float>& colour) const 
 SharedValues SubstanceMeans::Of(const float* shares) const {
   SharedValues value{};
   for (size_t k = 0; k < mean.size(); ++k) {
-    for (size_t p = 0; p < 4; ++p) value[p] += shares[k] * mean[k][p];
+    for (size_t p = 0; p < kShared; ++p) value[p] += shares[k] * mean[k][p];
   }
   return value;
 }
 
-std::array<double, 16> SubstanceMeans::CovarianceOf(const float* shares) const {
-  std::array<double, 16> sum{};
+SharedCovariance SubstanceMeans::CovarianceOf(const float* shares) const {
+  SharedCovariance sum{};
   if (covariance.empty()) return sum;
   const size_t count = mean.size();
   for (size_t k = 0; k < count; ++k) {
     for (size_t l = 0; l < count; ++l) {
       const double share = static_cast<double>(shares[k]) * shares[l];
       if (share < 1e-6) continue;
-      for (size_t p = 0; p < 4; ++p) {
-        const double* row = covariance.data() + (4 * k + p) * 4 * count + 4 * l;
-        for (size_t q = 0; q < 4; ++q) sum[4 * p + q] += share * row[q];
+      for (size_t p = 0; p < kShared; ++p) {
+        const double* row = covariance.data() + (kShared * k + p) * kShared * count + kShared * l;
+        for (size_t q = 0; q < kShared; ++q) sum[kShared * p + q] += share * row[q];
       }
     }
   }
@@ -143,35 +143,40 @@ SharedValues SubstanceMeans::Variances(const SharedValues& of) const {
     variances[p] = spread * spread;
   }
   variances[3] = roughness_spread * roughness_spread;
+  for (size_t p = 4; p < kShared; ++p) {
+    const double spread = diffuse_spread * (of[p] + kSpecularOffset);
+    variances[p] = spread * spread;
+  }
   return variances;
 }
 
 void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, SubstanceMeans* means) {
-  using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  using Vector4 = Eigen::Vector4d;
+  constexpr int kN = static_cast<int>(kShared);
+  using MatrixS = Eigen::Matrix<double, kN, kN, Eigen::RowMajor>;
+  using VectorS = Eigen::Matrix<double, kN, 1>;
   const auto count = static_cast<Eigen::Index>(means->mean.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(4 * count, 4 * count);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(4 * count);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(kN * count, kN * count);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(kN * count);
   for (const SubstanceSample& sample : samples) {
     const SharedValues mean = means->Of(sample.shares);
     const SharedValues variances = means->Variances(mean);
-    const Vector4 precision(1 / variances[0], 1 / variances[1], 1 / variances[2], 1 / variances[3]);
-    const Matrix4 covariance = Eigen::Map<const Matrix4>(sample.covariance.data());
-    Vector4 departure;
-    for (int p = 0; p < 4; ++p) {
+    const VectorS precision = Eigen::Map<const VectorS>(variances.data()).cwiseInverse();
+    const MatrixS covariance = Eigen::Map<const MatrixS>(sample.covariance.data());
+    VectorS departure;
+    for (int p = 0; p < kN; ++p) {
       departure[p] = sample.value[static_cast<size_t>(p)] - mean[static_cast<size_t>(p)];
     }
     // The texel's own marginal information about its mean: P − P·C·P.
-    Matrix4 own = -(precision.asDiagonal() * covariance * precision.asDiagonal());
+    MatrixS own = -(precision.asDiagonal() * covariance * precision.asDiagonal());
     own.diagonal() += precision;
-    const Vector4 pull = precision.cwiseProduct(departure);
+    const VectorS pull = precision.cwiseProduct(departure);
     for (Eigen::Index k = 0; k < count; ++k) {
       const double share = sample.shares[k];
       if (share < 1e-3) continue;
-      gradient.segment<4>(4 * k) += share * pull;
+      gradient.segment<kN>(kN * k) += share * pull;
       for (Eigen::Index l = 0; l < count; ++l) {
         const double other = sample.shares[l];
-        if (other >= 1e-3) information.block<4, 4>(4 * k, 4 * l) += share * other * own;
+        if (other >= 1e-3) information.block<kN, kN>(kN * k, kN * l) += share * other * own;
       }
     }
   }
@@ -180,17 +185,18 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
   // Means are expected within a wide range of their common mean.
   SharedValues common{};
   for (const SharedValues& m : means->mean) {
-    for (size_t p = 0; p < 4; ++p) common[p] += m[p] / static_cast<double>(count);
+    for (size_t p = 0; p < kShared; ++p) common[p] += m[p] / static_cast<double>(count);
   }
   for (Eigen::Index k = 0; k < count; ++k) {
-    for (Eigen::Index p = 0; p < 4; ++p) {
+    for (Eigen::Index p = 0; p < kN; ++p) {
       const auto q = static_cast<size_t>(p);
       const double width =
-          kBetweenToWithin * (p == 3 ? kExpectedRoughnessSpread
-                                     : kExpectedSpecularSpread * (common[q] + kSpecularOffset));
+          kBetweenToWithin * (p == 3  ? kExpectedRoughnessSpread
+                              : p > 3 ? kExpectedDiffuseSpread * (common[q] + kSpecularOffset)
+                                      : kExpectedSpecularSpread * (common[q] + kSpecularOffset));
       const double precision = 1 / (width * width);
-      information(4 * k + p, 4 * k + p) += precision;
-      gradient[4 * k + p] += precision * (common[q] - means->mean[static_cast<size_t>(k)][q]);
+      information(kN * k + p, kN * k + p) += precision;
+      gradient[kN * k + p] += precision * (common[q] - means->mean[static_cast<size_t>(k)][q]);
     }
   }
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -199,24 +205,24 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
     const double width = kChroma * (grey + kSpecularOffset);
     for (Eigen::Index p = 0; p < 3; ++p) {
       for (Eigen::Index q = 0; q < 3; ++q) {
-        information(4 * k + p, 4 * k + q) += ((p == q ? 1.0 : 0.0) - 1.0 / 3) / (width * width);
+        information(kN * k + p, kN * k + q) += ((p == q ? 1.0 : 0.0) - 1.0 / 3) / (width * width);
       }
-      gradient[4 * k + p] += (grey - m[static_cast<size_t>(p)]) / (width * width);
+      gradient[kN * k + p] += (grey - m[static_cast<size_t>(p)]) / (width * width);
     }
   }
-  Eigen::VectorXd least(4 * count), most(4 * count);
-  for (Eigen::Index i = 0; i < 4 * count; ++i) {
-    const double mean = means->mean[static_cast<size_t>(i / 4)][static_cast<size_t>(i % 4)];
+  Eigen::VectorXd least(kN * count), most(kN * count);
+  for (Eigen::Index i = 0; i < kN * count; ++i) {
+    const double mean = means->mean[static_cast<size_t>(i / kN)][static_cast<size_t>(i % kN)];
     const double farthest = kMostMeanStep * (mean + kSpecularOffset);
-    least[i] = std::max(-farthest, (i % 4 == 3 ? kRoughnessBounds.low : 0.0) - mean);
+    least[i] = std::max(-farthest, (i % kN == 3 ? kRoughnessBounds.low : 0.0) - mean);
     most[i] = std::min(farthest, 1.0 - mean);
   }
   const Eigen::VectorXd step = StepWithin(information, gradient, least, most);
-  for (Eigen::Index i = 0; i < 4 * count; ++i) {
-    means->mean[static_cast<size_t>(i / 4)][static_cast<size_t>(i % 4)] += step[i];
+  for (Eigen::Index i = 0; i < kN * count; ++i) {
+    means->mean[static_cast<size_t>(i / kN)][static_cast<size_t>(i % kN)] += step[i];
   }
   const Eigen::MatrixXd covariance =
-      information.ldlt().solve(Eigen::MatrixXd::Identity(4 * count, 4 * count));
+      information.ldlt().solve(Eigen::MatrixXd::Identity(kN * count, kN * count));
   means->covariance.assign(covariance.data(), covariance.data() + covariance.size());
 }
 

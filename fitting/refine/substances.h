@@ -1,12 +1,13 @@
 // Substances: places of one reflectance, wherever they lie in the sample (docs/model.md,
-// "Reflectance sharing").
+// "What is known of a texel beforehand").
 //
-// A texel belongs to a few substances, by its colour. Its roughness and specular albedo are those
-// of its substances, in the mean, and depart from them by a spread that all substances share. Means
-// are found from sampled texels by type-II maximum likelihood.
+// A texel belongs to a few substances, by its colour. Its roughness and albedos are those of its
+// substances, in the mean, and depart from them by a spread that all substances share. Means are
+// found from sampled texels by type-II maximum likelihood.
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "fitting/reflectance/svbrdf_maps.h"
@@ -15,10 +16,14 @@
 namespace glint {
 
 inline constexpr int kMostSubstances = 8;
-// Shared values, by their place among a texel's parameters.
-inline constexpr std::array<int, 4> kSharedParameters = {SpecularParameter(0), SpecularParameter(1),
-                                                         SpecularParameter(2), kRough};
-using SharedValues = std::array<double, 4>;
+// Shared values, by their place among a texel's parameters; the first of them are also expected to
+// depart from their substances as their neighbours' do.
+inline constexpr size_t kShared = 7, kAlikeNearby = 4;
+inline constexpr std::array<int, kShared> kSharedParameters = {
+    SpecularParameter(0), SpecularParameter(1), SpecularParameter(2), kRough,
+    DiffuseParameter(0),  DiffuseParameter(1),  DiffuseParameter(2)};
+using SharedValues = std::array<double, kShared>;
+using SharedCovariance = std::array<double, kShared * kShared>;  // row-major
 
 // Which substances there are, by colour.
 class Substances {
@@ -36,6 +41,9 @@ class Substances {
 };
 
 inline constexpr double kExpectedRoughnessSpread = 0.1, kExpectedSpecularSpread = 0.8;
+// Diffuse albedo's, relative; it is unknown before cross-validation, and from too few photographs.
+inline constexpr double kExpectedDiffuseSpread = 1.0;
+inline constexpr double kUnknownSpread = std::numeric_limits<double>::infinity();
 // Substances are expected to differ from their common mean by so many times what texels of one
 // differ from each other.
 inline constexpr double kBetweenToWithin = 2;
@@ -43,16 +51,17 @@ inline constexpr double kBetweenToWithin = 2;
 // What has been learned of them.
 struct SubstanceMeans {
   std::vector<SharedValues> mean;
-  // Standard deviation of texels about their substance's mean: of roughness, and of specular albedo
+  // Standard deviation of texels about their substance's mean: of roughness, and of albedos
   // relative to mean + kSpecularOffset.
   double roughness_spread = kExpectedRoughnessSpread, specular_spread = kExpectedSpecularSpread;
+  double diffuse_spread = kUnknownSpread;
 
   // Posterior covariance of all means, row-major by substance and value; empty: they are certain.
   std::vector<double> covariance;
 
   SharedValues Of(const float* shares) const;
   // Covariance of that, row-major.
-  std::array<double, 16> CovarianceOf(const float* shares) const;
+  SharedCovariance CovarianceOf(const float* shares) const;
   // Variances of a texel's values about that.
   SharedValues Variances(const SharedValues& mean) const;
 };
@@ -65,7 +74,7 @@ struct SubstanceSample {
   const float* shares = nullptr;
   SharedValues value{};
   // Posterior covariance of the values, row-major.
-  std::array<double, 16> covariance{};
+  SharedCovariance covariance{};
 };
 
 // One Newton step of the means on the marginal likelihood, and their covariance. `worth`: of a

@@ -22,6 +22,12 @@ struct InitialisationErrors {
   double diffuse_relative = 0.1;
   double specular = 0.02;
   double specular_relative = 0.2;
+
+  void ScaleAlbedos(double factor) {
+    for (double* error : {&diffuse, &diffuse_relative, &specular, &specular_relative}) {
+      *error *= factor;
+    }
+  }
 };
 
 // In the parameters' order; n_x and n_y in the slopes' places.

@@ -360,6 +360,25 @@ TEST(Refine, SpecularAlbedoVariesByItsOwnMeasure) {
             0.6 * varying.specular_spread / varying.roughness_spread);
 }
 
+// Few colours, so that substances have one diffuse albedo each, or colours of all kinds.
+TEST(Refine, DiffuseAlbedoIsSharedAsFarAsSubstancesHaveOne) {
+  const auto spread_of = [](const auto& value) {
+    SvbrdfMaps truth = QuarteredMaps(32, 41);
+    for (size_t t = 0; t < truth.texels(); ++t) {
+      for (size_t c = 0; c < 3; ++c) {
+        truth.plane(kDiffuseR + static_cast<int>(c))[t] =
+            0.3f + 0.25f * value(Scatter(t + 300 * c));
+      }
+    }
+    const RefineSummary s =
+        Refine(Photograph(truth, 4, 8).Problem(), DisturbedMaps(truth, 0.5f, 33), {}, 1).summary;
+    return s.diffuse_spread;
+  };
+  const auto either = [](double wave) { return wave > 0 ? 1.0f : -1.0f; };
+  const auto any = [](double wave) { return static_cast<float>(wave); };
+  EXPECT_LT(spread_of(either), 0.7 * spread_of(any));
+}
+
 // A flash that stands beside where all views say it does: highlights of a level sample tell.
 TEST(Refine, FindsWhereTheFlashStands) {
   SvbrdfMaps truth(32, 32);

@@ -62,14 +62,15 @@ std::vector<SubstanceSample> Samples(const std::vector<float>& shares, double no
     SubstanceSample sample;
     sample.shares = shares.data() + 2 * t;
     const SharedValues mean = prior.Of(sample.shares), variances = prior.Variances(mean);
-    const SharedValues truth =
-        first ? SharedValues{0.3, 0.2, 0.1, 0.3} : SharedValues{0.04, 0.04, 0.04, 0.6};
-    for (size_t p = 0; p < 4; ++p) {
+    const SharedValues truth = first ? SharedValues{0.3, 0.2, 0.1, 0.3, 0.1, 0.1, 0.1}
+                                     : SharedValues{0.04, 0.04, 0.04, 0.6, 0.5, 0.4, 0.3};
+    for (size_t p = 0; p < kShared; ++p) {
+      if (!std::isfinite(variances[p])) continue;  // not shared
       // The posterior mean and covariance of an observation under the prior.
       const double seen = truth[p] + noise * normal(random);
       const double weight = variances[p] / (variances[p] + noise * noise);
       sample.value[p] = mean[p] + weight * (seen - mean[p]);
-      sample.covariance[5 * p] = weight * noise * noise;
+      sample.covariance[(kShared + 1) * p] = weight * noise * noise;
     }
     samples.push_back(sample);
   }
@@ -80,7 +81,8 @@ TEST(UpdateMeans, FindsEachSubstanceHoweverLittleATexelKnows) {
   const std::vector<float> shares = Substances(Stripes(1000), 2).SharesOf(Stripes(1000));
   for (const double noise : {0.02, 0.3}) {
     SubstanceMeans means;
-    means.mean.assign(2, {0.1, 0.1, 0.1, 0.45});
+    means.diffuse_spread = kExpectedDiffuseSpread;
+    means.mean.assign(2, {0.1, 0.1, 0.1, 0.45, 0.2, 0.2, 0.2});
     for (int round = 0; round < 12; ++round) {
       UpdateMeans(Samples(shares, noise, means), 1, &means);
     }
@@ -90,6 +92,8 @@ TEST(UpdateMeans, FindsEachSubstanceHoweverLittleATexelKnows) {
     EXPECT_NEAR(second[3], 0.6, 0.05) << noise;
     EXPECT_NEAR(first[0], 0.3, 0.06) << noise;
     EXPECT_NEAR(second[0], 0.04, 0.04) << noise;
+    EXPECT_NEAR(first[4], 0.1, 0.06) << noise;
+    EXPECT_NEAR(second[4], 0.5, 0.06) << noise;
   }
 }
 
@@ -112,9 +116,9 @@ std::vector<SubstanceSample> MixedSamples(const std::vector<float>& shares,
     sample.shares = shares.data() + 2 * t;
     const SharedValues mean = prior.Of(sample.shares), variances = prior.Variances(mean);
     sample.value = mean;
-    for (size_t p = 0; p < 3; ++p) sample.covariance[5 * p] = variances[p];
+    for (size_t p = 0; p < 3; ++p) sample.covariance[(kShared + 1) * p] = variances[p];
     sample.value[3] = 0.055 - 0.5 * (sample.shares[0] - 0.575);  // as if the first had −.16
-    sample.covariance[15] = 1e-6;
+    sample.covariance[(kShared + 1) * 3] = 1e-6;
     samples.push_back(sample);
   }
   return samples;
@@ -145,7 +149,7 @@ TEST(UpdateMeans, MeansAreOffByAsMuchAsTheirCovarianceSays) {
       UpdateMeans(Samples(shares, 0.3, means, static_cast<unsigned>(seed)), 1, &means);
     }
     const double error = means.Of(shares.data())[3] - 0.3;
-    squares += error * error / means.CovarianceOf(shares.data())[15];
+    squares += error * error / means.CovarianceOf(shares.data())[(kShared + 1) * 3];
   }
   EXPECT_GT(squares / kSeeds, 0.6);
   EXPECT_LT(squares / kSeeds, 1.4);
