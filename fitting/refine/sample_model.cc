@@ -275,7 +275,9 @@ double SampleModel::SampleWorth(const Sampling& sampling) const {
 }
 
 // MacKay's fixed point ("Bayesian interpolation", Neural Computation 1992): squares over residuals
-// less the values that they determine.
+// less the values that they determine. The belief beside them keeps maps from absorbing what is
+// wrong with views while those are found. Once they are, it counts only as far as texels' values
+// explain their residuals: wholly where there is one photograph, hardly where there are twenty.
 void SampleModel::UpdateResiduals(const Sampling& sampling) {
   const ResidualModelOptions& model = residuals_.options();
   double squares = 0, free = 0;
@@ -287,9 +289,11 @@ void SampleModel::UpdateResiduals(const Sampling& sampling) {
       determined -= inverse(i, i) * solved.prior_diagonal[static_cast<size_t>(i)];
     }
     determined = std::clamp(determined, 0.0, static_cast<double>(kTexelParameters));
-    squares +=
-        solved.squares + model.expected_residuals * model.expected_sigma * model.expected_sigma;
-    free += std::max(3.0 * solved.views - determined, 0.0) + model.expected_residuals;
+    const double seen = 3.0 * solved.views;
+    const double belief =
+        model.expected_residuals * (finds_views_ ? 1 : std::min(determined / seen, 1.0));
+    squares += solved.squares + belief * model.expected_sigma * model.expected_sigma;
+    free += std::max(seen - determined, 0.0) + belief;
   }
   if (free > 0) {
     residuals_.SetVariance(HyperbolicVariance(squares / free, options_.robust_scale));
@@ -401,6 +405,7 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
 
 void SampleModel::HoldViews(double diffuse_spread, const Sampling& sampling) {
   finds_views_ = false;
+  UpdateResiduals(sampling);
   MeanBySubstance mean(InitialMeans(*part_));
   for (size_t k = 0; k < sampling.texels.size(); ++k) {
     if (sampling.solved[k].views == 0) continue;
