@@ -51,11 +51,11 @@ struct RefineProblem {
 };
 
 struct RefineOptions {
-  int iterations = 40;        // most Levenberg–Marquardt steps of one solve
-  int starts = 2;             // solves per texel: 1: the start alone; more: so many roughnesses
-  int neighbour_passes = 2;   // how often a texel tries its neighbours' solutions
-  int substances = 8;         // at most, that share their roughness and albedos
-  int estimation_rounds = 8;  // of variances and substances, on sampled texels, up to three times
+  int iterations = 40;         // most Levenberg–Marquardt steps of one solve
+  int starts = 2;              // solves per texel: 1: the start alone; more: so many roughnesses
+  int neighbour_passes = 2;    // how often a texel tries its neighbours' solutions
+  int substances = 8;          // at most, that share their roughness and albedos
+  int estimation_rounds = 16;  // of variances and substances, on sampled texels, up to three times
   // Texels along the longer side among which those are sampled, at most; the sample as a whole is
   // estimated from no others. A million texels: the few thousand that are solved are picked of
   // them.

@@ -395,10 +395,15 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   if (deviations_.any()) {
     // Views are found while nothing is known of how far diffuse albedo departs from its substances:
     // its departures are alike in neighbouring texels, and views would be moved to make them even.
-    const double chosen = std::exchange(means_.diffuse_spread, kUnknownSpread);
+    // And the initialisation is believed as before, since albedos and exposures make up for each
+    // other.
+    const double spread = std::exchange(means_.diffuse_spread, kUnknownSpread);
+    const InitialisationErrors errors =
+        std::exchange(initial_errors_, ErrorsOfInitialisation(part_->problem()));
     finds_views_ = true;
     Fit(all_views_, options_.estimation_rounds, true, &sampling);
-    HoldViews(chosen, sampling);
+    initial_errors_ = errors;
+    HoldViews(spread, sampling);
   }
   Fit(all_views_, options_.estimation_rounds, true, &sampling);
 }

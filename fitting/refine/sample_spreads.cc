@@ -113,8 +113,8 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
       for (size_t f = 0; f < count; ++f) sums[f] += p[f];
     }
   });
-  std::vector<double> errors;
-  for (const Prediction& sum : sums) errors.push_back(sum.MeanSquare());
+  std::vector<double> errors(count);
+  for (size_t f = 0; f < count; ++f) errors[f] = sums[f].MeanSquare();
   // Information beside all else that is known of a texel is taken at its mean.
   neighbour_spread_ *=
       FactorOfMeanPrecision(kNeighbourFactors, errors, CrossValidatedResiduals(middles));

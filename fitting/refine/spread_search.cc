@@ -88,8 +88,8 @@ std::vector<TriedSpreads> SearchSpreads(
 }
 
 SpreadFactors LikelyFactors(const std::vector<TriedSpreads>& tried, double independent) {
-  std::vector<double> errors;
-  for (const TriedSpreads& t : tried) errors.push_back(t.error);
+  std::vector<double> errors(tried.size());
+  for (size_t t = 0; t < tried.size(); ++t) errors[t] = tried[t].error;
   const std::vector<double> likelihoods = Likelihoods(errors, independent);
   SpreadFactors variances{}, logarithms{}, factors;
   for (size_t t = 0; t < tried.size(); ++t) {
