@@ -11,7 +11,7 @@ constexpr StageKind kStages[] = {
      "rectified top views of the sample in linear radiance",
      {0.4, 0, 0.016, 0, 0.21, 170, 8, 0, 5, 70}},
     {"fit", "material maps by latent or classic fitting", {1, 6, 0, 1.3, 0, 330, 0, 60, 0, 190}},
-    {"refine", "material maps per texel", {1, 0, 0, 9, 0.45, 140, 0, 226, 16, 1300}, true},
+    {"refine", "material maps per texel", {3, 0, 0, 8.5, 0.45, 140, 0, 226, 16, 1300}, true},
     {"tile",
      "seamlessly tiling maps ([tile] section in capture.toml)",
      {0.2, 0, 0, 3.2, 0, 140, 0, 300, 0, 0}},
