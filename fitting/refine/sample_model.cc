@@ -395,15 +395,10 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   if (deviations_.any()) {
     // Views are found while nothing is known of how far diffuse albedo departs from its substances:
     // its departures are alike in neighbouring texels, and views would be moved to make them even.
-    // And the initialisation is believed as before, since albedos and exposures make up for each
-    // other.
-    const double spread = std::exchange(means_.diffuse_spread, kUnknownSpread);
-    const InitialisationErrors errors =
-        std::exchange(initial_errors_, ErrorsOfInitialisation(part_->problem()));
+    const double chosen = std::exchange(means_.diffuse_spread, kUnknownSpread);
     finds_views_ = true;
     Fit(all_views_, options_.estimation_rounds, true, &sampling);
-    initial_errors_ = errors;
-    HoldViews(spread, sampling);
+    HoldViews(chosen, sampling);
   }
   Fit(all_views_, options_.estimation_rounds, true, &sampling);
 }
