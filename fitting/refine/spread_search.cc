@@ -63,7 +63,7 @@ class Search {
 
 // Gauss's likelihoods of as many residuals, their variance the least that is found; sum 1.
 std::vector<double> Likelihoods(const std::vector<double>& errors, double independent) {
-  // Not 0, which is what nothing that is seen predicts.
+  // 0 where all photographs that were held out are masked.
   const double least = std::max(*std::min_element(errors.begin(), errors.end()), 1e-300);
   std::vector<double> likelihoods;
   double sum = 0;
