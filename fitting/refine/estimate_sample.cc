@@ -83,6 +83,7 @@ void Estimator::Run() {
     sampled.values = from;
     sampled.views = w.observations.views();
     if (sampled.views == 0) return sampled;
+    w.search.SetExplained(request.explained_sigma);
     sampled.values = request.near_minimum
                          ? w.search.Improved(w.observations, prior, from, true).values
                          : w.search.FromStart(w.observations, prior, from).solution.values;

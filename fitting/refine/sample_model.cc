@@ -212,6 +212,7 @@ void SampleModel::Fit(std::span<const int> views, int rounds, bool update_residu
   const int count = static_cast<int>(sampling->texels.size());
   for (int round = 0; round < rounds; ++round) {
     const SampleRequest request{views, !update_residuals && round > 0,
+                                update_residuals ? 0 : std::sqrt(residuals_.variance()),
                                 update_residuals && finds_views_};
     ForEachPieceByWorker(count, sampling->threads, [&](int i, int worker) {
       const size_t k = static_cast<size_t>(i), texel = sampling->texels[k];

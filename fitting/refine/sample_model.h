@@ -45,6 +45,7 @@ struct Prediction {
 struct SampleRequest {
   std::span<const int> views;  // those to take
   bool near_minimum = false;   // `from` is next to one: no other starts
+  double explained_sigma = 0;  // other starts where residuals are larger
   bool of_views = false;       // SampledTexel::of_views are wanted
 };
 

@@ -105,7 +105,7 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
         one.MultiplyNeighbours(texel, neighbours, &gaussian);
         const SampledTexel solved =
             solver.solve(texel, one.Scaled(gaussian), part.solved[centres[k]].values,
-                         {.views = fitted, .near_minimum = true, .of_views = false}, worker);
+                         {.views = fitted, .near_minimum = true}, worker);
         predictions[k].push_back(solver.predict(texel, solved.values, held_out, worker));
       }
     });

@@ -57,7 +57,7 @@ TexelSearch::TexelSearch(const KernelOptions& options, int most_iterations, int 
       rows_(most_views) {}
 
 void TexelSearch::SetNoise(double residual_sigma) {
-  variance_ = residual_sigma * residual_sigma;
+  SetExplained(residual_sigma);
   solver_.SetTolerance(std::max(kWorthStep * variance_, 1e-9));
 }
 

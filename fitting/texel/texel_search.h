@@ -13,8 +13,9 @@ class TexelSearch {
  public:
   TexelSearch(const KernelOptions& options, int most_iterations, int most_views, int starts);
 
-  // Squared residuals of a texel expected from noise alone, per residual. Solves end when they gain
-  // a small part of it, and texels that fit so well are not searched further.
+  // Texels whose residuals are no larger are not searched further; 0 to begin with.
+  void SetExplained(double residual_sigma) { variance_ = residual_sigma * residual_sigma; }
+  // The same, and solves end when they gain a small part of such a residual's square.
   void SetNoise(double residual_sigma);
 
   // Whether the cost of a texel seen in `views` leaves room for a better minimum.
