@@ -66,12 +66,13 @@ SampleModel SampleModel::ScaledBy(const SpreadFactors& factors) const {
 }
 
 void SampleModel::ChooseSpreads(const Sampling& sampling) {
-  const std::vector<TriedSpreads> tried = SearchSpreads([&](const SpreadPowers& powers) {
+  const double independent = CrossValidatedResiduals(sampling);
+  const auto error = [&](const SpreadPowers& powers) {
     SpreadFactors factors;
     for (size_t i = 0; i < kSpreadKinds; ++i) factors[i] = std::exp2(powers[i]);
     return ScaledBy(factors).CrossValidate(sampling);
-  });
-  *this = ScaledBy(LikelyFactors(tried, CrossValidatedResiduals(sampling)));
+  };
+  *this = ScaledBy(ProbableFactors(SearchSpreads(error, independent), independent));
 }
 
 // Texels are solved once without their neighbours, and the one in the middle of each cross by them

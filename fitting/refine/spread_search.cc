@@ -11,18 +11,33 @@ namespace {
 // roughness's, with which it is scaled first and then alone. The initialisation has seen the
 // photographs that are held out, so that its errors would be thought smaller than they are.
 constexpr SpreadPowers kLeast = {-2, -4, -2, -3, 0}, kMost = {1, 2, 1, 1, 4};
+// Standard deviation of log₂ of the factor on the initialisation's errors. Photographs that hardly
+// tell a rough specular lobe from diffuse light say nothing of it, and what is said of them does.
+constexpr double kInitialisationOctaves = 1;
 // Roughness varies within many substances whose specular albedo does not.
 constexpr std::array<SpreadPowers, 5> kDirections = {
     {{1, 1, 0, 0, 0}, {0, 0, 1, 0, 0}, {0, 1, 0, 0, 0}, {0, 0, 0, 1, 0}, {0, 0, 0, 0, 1}}};
 constexpr int kPasses = 3;
 
+// Negative logarithm of Gauss's likelihood of `independent` residuals of unknown variance, whose
+// mean square is `error` (0 where all photographs that were held out are masked).
+double LikelihoodEnergy(double error, double independent) {
+  return 0.5 * independent * std::log(std::max(error, 1e-300));
+}
+
+double Energy(const TriedSpreads& tried, double independent) {
+  const double octaves = tried.powers[kInitialisationError] / kInitialisationOctaves;
+  return LikelihoodEnergy(tried.error, independent) + 0.5 * octaves * octaves;
+}
+
 class Search {
  public:
-  explicit Search(const std::function<double(const SpreadPowers&)>& error) : error_(error) {
-    least_ = ErrorAt(at_);
+  Search(const std::function<double(const SpreadPowers&)>& error, double independent)
+      : error_(error), independent_(independent) {
+    least_ = EnergyAt(at_);
   }
 
-  // As far along a direction as errors fall, one way or the other; false: nowhere.
+  // As far along a direction as energies fall, one way or the other; false: nowhere.
   bool Descend(const SpreadPowers& direction) {
     return DescendBy(direction, -1) || DescendBy(direction, 1);
   }
@@ -34,10 +49,10 @@ class Search {
   }
 
  private:
-  double ErrorAt(const SpreadPowers& powers) {
-    const auto known = errors_.find(powers);
-    if (known != errors_.end()) return known->second;
-    return errors_[powers] = error_(powers);
+  double EnergyAt(const SpreadPowers& powers) {
+    auto known = errors_.find(powers);
+    if (known == errors_.end()) known = errors_.emplace(powers, error_(powers)).first;
+    return Energy({powers, known->second}, independent_);
   }
 
   bool DescendBy(const SpreadPowers& direction, int sign) {
@@ -48,37 +63,37 @@ class Search {
         next[i] += sign * direction[i];
         if (next[i] < kLeast[i] || next[i] > kMost[i]) return moved;
       }
-      const double error = ErrorAt(next);
-      if (!(error < least_)) return moved;
+      const double energy = EnergyAt(next);
+      if (!(energy < least_)) return moved;
       at_ = next;
-      least_ = error;
+      least_ = energy;
     }
   }
 
   const std::function<double(const SpreadPowers&)>& error_;
+  const double independent_;
   std::map<SpreadPowers, double> errors_;
   SpreadPowers at_{};
   double least_ = 0;
 };
 
-// Gauss's likelihoods of as many residuals, their variance the least that is found; sum 1.
-std::vector<double> Likelihoods(const std::vector<double>& errors, double independent) {
-  // 0 where all photographs that were held out are masked.
-  const double least = std::max(*std::min_element(errors.begin(), errors.end()), 1e-300);
-  std::vector<double> likelihoods;
+// Of such negative logarithms; sum 1.
+std::vector<double> Probabilities(const std::vector<double>& energies) {
+  const double least = *std::min_element(energies.begin(), energies.end());
+  std::vector<double> probabilities;
   double sum = 0;
-  for (const double error : errors) {
-    sum += likelihoods.emplace_back(std::exp(-0.5 * independent * (error / least - 1)));
+  for (const double energy : energies) {
+    sum += probabilities.emplace_back(std::exp(least - energy));
   }
-  for (double& likelihood : likelihoods) likelihood /= sum;
-  return likelihoods;
+  for (double& probability : probabilities) probability /= sum;
+  return probabilities;
 }
 
 }  // namespace
 
 std::vector<TriedSpreads> SearchSpreads(
-    const std::function<double(const SpreadPowers& powers)>& error) {
-  Search search(error);
+    const std::function<double(const SpreadPowers& powers)>& error, double independent) {
+  Search search(error, independent);
   for (int pass = 0; pass < kPasses; ++pass) {
     bool moved = false;
     for (const SpreadPowers& direction : kDirections) moved |= search.Descend(direction);
@@ -87,15 +102,15 @@ std::vector<TriedSpreads> SearchSpreads(
   return search.tried();
 }
 
-SpreadFactors LikelyFactors(const std::vector<TriedSpreads>& tried, double independent) {
-  std::vector<double> errors(tried.size());
-  for (size_t t = 0; t < tried.size(); ++t) errors[t] = tried[t].error;
-  const std::vector<double> likelihoods = Likelihoods(errors, independent);
+SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried, double independent) {
+  std::vector<double> energies;
+  for (const TriedSpreads& one : tried) energies.push_back(Energy(one, independent));
+  const std::vector<double> probabilities = Probabilities(energies);
   SpreadFactors variances{}, logarithms{}, factors;
   for (size_t t = 0; t < tried.size(); ++t) {
     for (size_t i = 0; i < kSpreadKinds; ++i) {
-      variances[i] += likelihoods[t] * std::exp2(2 * tried[t].powers[i]);
-      logarithms[i] += likelihoods[t] * tried[t].powers[i];
+      variances[i] += probabilities[t] * std::exp2(2 * tried[t].powers[i]);
+      logarithms[i] += probabilities[t] * tried[t].powers[i];
     }
   }
   for (size_t i = 0; i < kSpreadKinds; ++i) {
@@ -109,10 +124,12 @@ SpreadFactors LikelyFactors(const std::vector<TriedSpreads>& tried, double indep
 
 double FactorOfMeanPrecision(std::span<const double> factors, const std::vector<double>& errors,
                              double independent) {
-  const std::vector<double> likelihoods = Likelihoods(errors, independent);
+  std::vector<double> energies;
+  for (const double error : errors) energies.push_back(LikelihoodEnergy(error, independent));
+  const std::vector<double> probabilities = Probabilities(energies);
   double precision = 0;
   for (size_t i = 0; i < factors.size(); ++i) {
-    precision += likelihoods[i] / (factors[i] * factors[i]);
+    precision += probabilities[i] / (factors[i] * factors[i]);
   }
   return 1 / std::sqrt(precision);
 }

@@ -27,17 +27,17 @@ struct TriedSpreads {
   double error;  // mean square of what is predicted
 };
 
-// Coordinate descent from factors of 1: roughness and specular albedo together, normals, specular
-// albedo alone, diffuse albedo, the initialisation; then again until nothing is better, at most
-// three times. Returns all that were tried, each once: the best and, nearly always, those next to
-// it.
+// Coordinate descent on the negative log posterior, from factors of 1: roughness and specular albedo
+// together, normals, specular albedo alone, diffuse albedo, the initialisation; then again until
+// nothing is better, at most three times. Returns all that were tried, each once: the best and,
+// nearly always, those next to it. `independent`: residuals in each mean square. The initialisation
+// is expected to err by as much as is said, within a factor of two.
 std::vector<TriedSpreads> SearchSpreads(
-    const std::function<double(const SpreadPowers& powers)>& error);
+    const std::function<double(const SpreadPowers& powers)>& error, double independent);
 
-// Factors over all that were tried, by how likely each is: what predicts nearly as well as the best
-// is nearly as likely, and to take the best alone would state deviations that are too small.
-// `independent`: residuals in each mean square.
-SpreadFactors LikelyFactors(const std::vector<TriedSpreads>& tried, double independent);
+// Factors over all that were tried, by how probable each is: what predicts nearly as well as the
+// best is nearly as probable, and to take the best alone would state deviations that are too small.
+SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried, double independent);
 
 // The factor for `errors[i]`, a mean square that was found with factors[i], at its mean precision.
 double FactorOfMeanPrecision(std::span<const double> factors, const std::vector<double>& errors,
