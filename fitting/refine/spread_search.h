@@ -27,11 +27,11 @@ struct TriedSpreads {
   double error;  // mean square of what is predicted
 };
 
-// Coordinate descent on the negative log posterior, from factors of 1: roughness and specular albedo
-// together, normals, specular albedo alone, diffuse albedo, the initialisation; then again until
-// nothing is better, at most three times. Returns all that were tried, each once: the best and,
-// nearly always, those next to it. `independent`: residuals in each mean square. The initialisation
-// is expected to err by as much as is said, within a factor of two.
+// Coordinate descent on the negative log posterior, from factors of 1: roughness and specular
+// albedo together, normals, specular albedo alone, diffuse albedo, the initialisation; then again
+// until nothing is better, at most three times. Returns all that were tried, each once: the best
+// and, nearly always, those next to it. `independent`: residuals in each mean square. The
+// initialisation is expected to err by as much as is said, within a factor of two.
 std::vector<TriedSpreads> SearchSpreads(
     const std::function<double(const SpreadPowers& powers)>& error, double independent);
 

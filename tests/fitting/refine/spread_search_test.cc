@@ -31,8 +31,8 @@ TriedSpreads Best(const std::vector<TriedSpreads>& tried) {
       [](const TriedSpreads& a, const TriedSpreads& b) { return a.error < b.error; });
 }
 
-// With diffuse albedo's spread as it is at first, narrower ones of roughness and specular albedo are
-// better than those that are best beside a narrow one: directions are tried again.
+// With diffuse albedo's spread as it is at first, narrower ones of roughness and specular albedo
+// are better than those that are best beside a narrow one: directions are tried again.
 TEST(SpreadSearch, FindsSpreadsThatStandInForEachOther) {
   const SpreadPowers lowest = {0, -1, 1, -2, 3};
   const auto error = [&](const SpreadPowers& p) { return Bowl(p, lowest, 0.08); };
@@ -100,14 +100,16 @@ TEST(SpreadSearch, WhereNothingIsPredictedAllAreAsLikely) {
 }
 
 TEST(SpreadSearch, OneThatPredictsFarBetterIsTaken) {
-  const SpreadFactors factors = ProbableFactors({{{0, 0, 0, 0, 0}, 1}, {{1, -2, 0, -3, 2}, .5}}, 1e3);
+  const SpreadFactors factors =
+      ProbableFactors({{{0, 0, 0, 0, 0}, 1}, {{1, -2, 0, -3, 2}, .5}}, 1e3);
   const SpreadFactors expected = {2, 0.25, 1, 0.125, 4};
   for (size_t i = 0; i < kSpreadKinds; ++i) EXPECT_NEAR(factors[i], expected[i], 1e-9) << i;
 }
 
 // What is as likely widens a spread more than it narrows one.
 TEST(SpreadSearch, WhatIsAsLikelyCountsByItsVariance) {
-  const SpreadFactors factors = ProbableFactors({{{-1, 0, 0, -1, 0}, 1}, {{1, 0, 0, 1, 0}, 1}}, 1e3);
+  const SpreadFactors factors =
+      ProbableFactors({{{-1, 0, 0, -1, 0}, 1}, {{1, 0, 0, 1, 0}, 1}}, 1e3);
   EXPECT_NEAR(factors[kRoughnessSpread], std::sqrt((0.25 + 4) / 2), 1e-12);
   EXPECT_NEAR(factors[kDiffuseSpread], 1, 1e-12);
   EXPECT_NEAR(FactorOfMeanPrecision(std::array{0.5, 2.0}, {1, 1}, 1e3),
