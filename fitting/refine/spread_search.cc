@@ -103,8 +103,9 @@ std::vector<TriedSpreads> SearchSpreads(
 }
 
 SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried, double independent) {
-  std::vector<double> energies;
-  for (const TriedSpreads& one : tried) energies.push_back(Energy(one, independent));
+  std::vector<double> energies(tried.size());
+  std::transform(tried.begin(), tried.end(), energies.begin(),
+                 [&](const TriedSpreads& one) { return Energy(one, independent); });
   const std::vector<double> probabilities = Probabilities(energies);
   SpreadFactors variances{}, logarithms{}, factors;
   for (size_t t = 0; t < tried.size(); ++t) {
@@ -124,8 +125,9 @@ SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried, double ind
 
 double FactorOfMeanPrecision(std::span<const double> factors, const std::vector<double>& errors,
                              double independent) {
-  std::vector<double> energies;
-  for (const double error : errors) energies.push_back(LikelihoodEnergy(error, independent));
+  std::vector<double> energies(errors.size());
+  std::transform(errors.begin(), errors.end(), energies.begin(),
+                 [&](double error) { return LikelihoodEnergy(error, independent); });
   const std::vector<double> probabilities = Probabilities(energies);
   double precision = 0;
   for (size_t i = 0; i < factors.size(); ++i) {
