@@ -115,8 +115,8 @@ SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried, double ind
     }
   }
   for (size_t i = 0; i < kSpreadKinds; ++i) {
-    // Where photographs say nearly all, large factors are as likely as larger ones, and a mean
-    // variance is the largest one's.
+    // Where photographs say nearly all, large factors predict as well as larger ones, and a mean
+    // variance is nearly the largest one's.
     const bool open = i == kDiffuseSpread || i == kInitialisationError;
     factors[i] = open ? std::exp2(logarithms[i]) : std::sqrt(variances[i]);
   }

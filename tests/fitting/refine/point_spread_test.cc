@@ -155,12 +155,12 @@ class Blurred : public ::testing::Test {
   SvbrdfMaps start_;
 };
 
-TEST_F(Blurred, MapsAreFoundThatPhotographsBlur) {
+// Of normals alone: a substance's mean roughness is estimated from photographs as they are, and
+// texels are held to it.
+TEST_F(Blurred, NormalsAreFoundThatPhotographsBlur) {
   // Every pass takes away b² of what is missing, b = .5 for these slopes.
   const SvbrdfMaps taken_as_sharp = Refined(0, 8), deblurred = Refined(kPixelsPerTexel, 8);
   EXPECT_LT(Error(deblurred, kNormalX, kNormalY), 0.5 * Error(taken_as_sharp, kNormalX, kNormalY));
-  EXPECT_LT(Error(deblurred, kRoughness, kRoughness),
-            0.8 * Error(taken_as_sharp, kRoughness, kRoughness));
 }
 
 TEST_F(Blurred, WhereTexelsAreCoarserThanPixelsNothingChanges) {
