@@ -88,6 +88,30 @@ TEST(AmbientOcclusion, AgreesWithCastRays) {
   EXPECT_LT(y / n, 0.95);  // there is something to see
 }
 
+// Cut elsewhere, a relief that repeats is the same relief.
+TEST(AmbientOcclusion, OfARepeatingReliefDependsOnNoBorder) {
+  HeightField field = Bumps(32, 7);
+  field.repeats = true;
+  HeightField cut = field;
+  const auto elsewhere = [](int row, int column) {
+    return static_cast<size_t>((row + 11) % 32 * 32 + (column + 23) % 32);
+  };
+  for (int row = 0; row < 32; ++row) {
+    for (int column = 0; column < 32; ++column) {
+      cut.height_mm[elsewhere(row, column)] = field.at(row, column);
+    }
+  }
+  OcclusionOptions options;
+  options.reach_mm = 30;  // further than the relief is wide
+  const std::vector<float> open = AmbientOcclusion(field, options, 1);
+  const std::vector<float> open_of_cut = AmbientOcclusion(cut, options, 1);
+  for (int row = 0; row < 32; ++row) {
+    for (int column = 0; column < 32; ++column) {
+      EXPECT_EQ(open[static_cast<size_t>(row * 32 + column)], open_of_cut[elsewhere(row, column)]);
+    }
+  }
+}
+
 TEST(AmbientOcclusion, DoesNotDependOnTheNumberOfThreads) {
   const HeightField field = Bumps(40, 5);
   EXPECT_EQ(AmbientOcclusion(field, {}, 1), AmbientOcclusion(field, {}, 3));
