@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/parallel/parallel.h"
 #include "fitting/relief/torus_poisson.h"
 
 namespace glint {
@@ -66,52 +67,85 @@ struct Grid {
   std::vector<double> across_trust, down_trust;  // … and their weights; 0 over the border
   double screening;                              // weight of a value's own square
 
+  static constexpr int kRowsAtOnce = 32;
   size_t index(int row, int column) const { return static_cast<size_t>(row) * width + column; }
   size_t size() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
 
-  // Half the gradient by the values of Σ w·(difference − target)²: −div(w·(∇u − target)).
-  template <class Difference>
-  std::vector<double> Gradient(const Difference& difference) const {
-    std::vector<double> gradient(size(), 0.0);
-    const auto add = [&](size_t from, size_t to, double weight, double target) {
-      const double flow = weight * difference(from, to, target);
-      gradient[from] -= flow;
-      gradient[to] += flow;
-    };
-    for (int row = 0; row < height; ++row) {
-      for (int column = 0; column < width; ++column) {
-        const size_t i = index(row, column);
-        if (column + 1 < width) add(i, i + 1, across_trust[i], across[i]);
-        if (row + 1 < height) add(i, i + static_cast<size_t>(width), down_trust[i], down[i]);
-      }
-    }
-    return gradient;
+  // −div(w·∇u) + screening·u: half the gradient by u of Σ w·difference² + screening·u².
+  std::vector<double> Applied(const std::vector<double>& u, int threads) const {
+    return ByRow(threads, [&](int row, int column, size_t i) {
+      double sum = screening * u[i];
+      if (column > 0) sum += across_trust[i - 1] * (u[i] - u[i - 1]);
+      if (column + 1 < width) sum -= across_trust[i] * (u[i + 1] - u[i]);
+      if (row > 0) sum += down_trust[Above(i)] * (u[i] - u[Above(i)]);
+      if (row + 1 < height) sum -= down_trust[i] * (u[Below(i)] - u[i]);
+      return sum;
+    });
   }
 
-  std::vector<double> Applied(const std::vector<double>& u) const {
-    std::vector<double> result =
-        Gradient([&](size_t from, size_t to, double) { return u[to] - u[from]; });
-    for (size_t i = 0; i < size(); ++i) result[i] += screening * u[i];
-    return result;
-  }
-
-  std::vector<double> RightSide() const {
-    return Gradient([](size_t, size_t, double target) { return target; });
+  // −div(w·target).
+  std::vector<double> RightSide(int threads) const {
+    return ByRow(threads, [&](int row, int column, size_t i) {
+      double sum = 0;
+      if (column > 0) sum += across_trust[i - 1] * across[i - 1];
+      if (column + 1 < width) sum -= across_trust[i] * across[i];
+      if (row > 0) sum += down_trust[Above(i)] * down[Above(i)];
+      if (row + 1 < height) sum -= down_trust[i] * down[i];
+      return sum;
+    });
   }
 
   // Of all weights 1, exactly, mean 0: cosines are the equation's eigenvectors.
-  std::vector<double> SolvedEvenly(std::vector<double> values) const {
-    cv::Mat grid(height, width, CV_64F, values.data()), spectrum;
-    cv::dct(grid, spectrum);
-    for (int row = 0; row < height; ++row) {
-      for (int column = 0; column < width; ++column) {
-        const double eigenvalue = 4 - 2 * std::cos(std::numbers::pi * column / width) -
-                                  2 * std::cos(std::numbers::pi * row / height);
-        double& value = spectrum.at<double>(row, column);
+  std::vector<double> SolvedEvenly(std::vector<double> values, int threads) const {
+    cv::Mat grid(height, width, CV_64F, values.data());
+    cv::Mat spectrum = TransformedRows(TransformedRows(grid, 0, threads).t(), 0, threads);
+    const std::vector<double> by_column = Eigenvalues(width), by_row = Eigenvalues(height);
+    for (int column = 0; column < width; ++column) {
+      for (int row = 0; row < height; ++row) {
+        double& value = spectrum.at<double>(column, row);
+        const double eigenvalue =
+            by_column[static_cast<size_t>(column)] + by_row[static_cast<size_t>(row)];
         value = row + column > 0 ? value / (eigenvalue + screening) : 0.0;
       }
     }
-    cv::idct(spectrum, grid);
+    TransformedRows(TransformedRows(spectrum, cv::DCT_INVERSE, threads).t(), cv::DCT_INVERSE,
+                    threads)
+        .copyTo(grid);
+    return values;
+  }
+
+ private:
+  size_t Above(size_t i) const { return i - static_cast<size_t>(width); }
+  size_t Below(size_t i) const { return i + static_cast<size_t>(width); }
+
+  template <class Value>
+  std::vector<double> ByRow(int threads, const Value& value) const {
+    std::vector<double> values(size());
+    ForEachBlock(height, kRowsAtOnce, threads, [&](int begin, int end) {
+      for (int row = begin; row < end; ++row) {
+        for (int column = 0; column < width; ++column) {
+          values[index(row, column)] = value(row, column, index(row, column));
+        }
+      }
+    });
+    return values;
+  }
+
+  // Each row's cosine transform, or its inverse.
+  static cv::Mat TransformedRows(const cv::Mat& grid, int direction, int threads) {
+    cv::Mat transformed(grid.size(), grid.type());
+    ForEachBlock(grid.rows, kRowsAtOnce, threads, [&](int begin, int end) {
+      cv::Mat rows = transformed.rowRange(begin, end);
+      cv::dct(grid.rowRange(begin, end), rows, direction | cv::DCT_ROWS);
+    });
+    return transformed;
+  }
+
+  // Of the second difference with free ends.
+  static std::vector<double> Eigenvalues(int count) {
+    std::vector<double> values;
+    for (int i = 0; i < count; ++i)
+      values.push_back(2 - 2 * std::cos(std::numbers::pi * i / count));
     return values;
   }
 };
@@ -121,22 +155,22 @@ double Dot(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 // Preconditioned conjugate gradients (Saad, "Iterative methods for sparse linear systems", 9.2).
-std::vector<double> SolvedWithTrust(const Grid& grid) {
+std::vector<double> SolvedWithTrust(const Grid& grid, int threads) {
   constexpr int kMostSteps = 100;
   constexpr double kResidualLeft = 1e-3;
-  std::vector<double> residual = grid.RightSide();
+  std::vector<double> residual = grid.RightSide(threads);
   std::vector<double> heights(grid.size(), 0.0);
-  std::vector<double> even = grid.SolvedEvenly(residual), direction = even;
+  std::vector<double> even = grid.SolvedEvenly(residual, threads), direction = even;
   double square = Dot(residual, even);
   const double enough = kResidualLeft * kResidualLeft * square;
   for (int step = 0; step < kMostSteps && square > enough; ++step) {
-    const std::vector<double> applied = grid.Applied(direction);
+    const std::vector<double> applied = grid.Applied(direction, threads);
     const double length = square / Dot(direction, applied);
     for (size_t i = 0; i < heights.size(); ++i) {
       heights[i] += length * direction[i];
       residual[i] -= length * applied[i];
     }
-    even = grid.SolvedEvenly(residual);
+    even = grid.SolvedEvenly(residual, threads);
     const double before = std::exchange(square, Dot(residual, even));
     for (size_t i = 0; i < heights.size(); ++i) {
       direction[i] = even[i] + square / before * direction[i];
@@ -148,7 +182,7 @@ std::vector<double> SolvedWithTrust(const Grid& grid) {
 }  // namespace
 
 HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane, double longest_mm,
-                             std::span<const float> trust) {
+                             std::span<const float> trust, int threads) {
   if (!trust.empty() && trust.size() != maps.texels()) {
     throw std::invalid_argument("IntegrateNormals: not as many weights as texels");
   }
@@ -182,8 +216,9 @@ HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane, d
       grid.down_trust.push_back(between(here, below));
     }
   }
-  const std::vector<double> solved =
-      trust.empty() ? grid.SolvedEvenly(grid.RightSide()) : SolvedWithTrust(grid);
+  const std::vector<double> solved = trust.empty()
+                                         ? grid.SolvedEvenly(grid.RightSide(threads), threads)
+                                         : SolvedWithTrust(grid, threads);
   double mean = 0;
   for (int row = 0; row < maps.height; ++row) {
     for (int column = 0; column < maps.width; ++column) mean += solved[grid.index(row, column)];

@@ -39,10 +39,11 @@ struct HeightField {
 // `trust`: by texel, H·W, what its normal is worth against others', above 0 (TrustOfNormals());
 // empty: all the same. The equation is then solved by conjugate gradients, preconditioned with the
 // cosine transforms, to a thousandth of the first residual. Throws std::invalid_argument where
-// there are not as many as texels.
+// there are not as many as texels. The same for any number of threads.
 inline constexpr double kMostReliefSlope = 5;  // 79°: a normal beyond says little about height
 HeightField IntegrateNormals(const SvbrdfMaps& maps, const SamplePlane& plane,
-                             double longest_mm = 0, std::span<const float> trust = {});
+                             double longest_mm = 0, std::span<const float> trust = {},
+                             int threads = 1);
 // The same of maps that repeat (fitting/tiling): so do the heights.
 HeightField IntegrateRepeatingNormals(const SvbrdfMaps& maps, const SamplePlane& plane,
                                       double longest_mm = 0);

@@ -114,6 +114,22 @@ TEST(HeightField, NormalsThatAreNotTrustedBendLessOfTheRelief) {
                std::invalid_argument);
 }
 
+TEST(HeightField, DoesNotDependOnTheNumberOfThreads) {
+  SvbrdfMaps maps(50, 70);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> uniform(-0.3f, 0.3f);
+  for (size_t i = 0; i < maps.texels(); ++i) {
+    maps.plane(kNormalX)[i] = uniform(random);
+    maps.plane(kNormalY)[i] = uniform(random);
+    maps.plane(kNormalZ)[i] = 0.9f;
+  }
+  std::vector<float> trust(maps.texels());
+  for (float& t : trust) t = 1 + uniform(random);
+  const SamplePlane plane{50, 70, 50, 70, TexelSampling::kPixelCentres};
+  EXPECT_EQ(IntegrateNormals(maps, plane, 9, trust, 1).height_mm,
+            IntegrateNormals(maps, plane, 9, trust, 3).height_mm);
+}
+
 TEST(HeightField, AFlatSampleIsFlat) {
   SvbrdfMaps maps(9, 7);
   for (float& z : maps.plane(kNormalZ)) z = 1;
