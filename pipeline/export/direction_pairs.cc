@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
+#include "base/parallel/parallel.h"
 #include "fitting/reflectance/log_radiance.h"
 
 namespace glint {
 namespace {
 
 constexpr double kMostTilt_deg = 70;
-constexpr int kPairs = 36, kErrorPairs = 100;
+constexpr int kErrorPairs = 100;
 constexpr size_t kErrorTexels = 4096;
 
 using Direction = std::array<double, 3>;
@@ -88,32 +90,50 @@ double SmithSpecular(const DirectionPair& pair, double roughness) {
 
 double SchlickWeight(double cosine) { return std::pow(1 - std::clamp(cosine, 0.0, 1.0), 5); }
 
-std::vector<DirectionPair> PairsForRoughness(double roughness) { return Pairs(roughness, kPairs); }
+std::vector<DirectionPair> PairsForRoughness(double roughness) {
+  return Pairs(roughness, kPairsOfRoughness);
+}
 
-double ShadingError(
-    const SvbrdfMaps& maps, DiffuseWeight weight,
-    const std::function<std::array<double, 3>(size_t texel, const DirectionPair& pair)>& target) {
-  const size_t count = std::min(maps.texels(), kErrorTexels);
-  double sum = 0;
-  for (size_t k = 0; k < count; ++k) {
-    const size_t i = (2 * k + 1) * maps.texels() / (2 * count);
-    TexelSvbrdf<double> texel{{0, 0, 1}, {}, {}, maps.plane(kRoughness)[i]};
-    for (int c = 0; c < 3; ++c) {
-      texel.diffuse[c] = maps.plane(kDiffuseR + c)[i];
-      texel.specular[c] = maps.plane(kSpecularR + c)[i];
-    }
-    for (const DirectionPair& pair : Pairs(texel.roughness, kErrorPairs)) {
-      double ours[3];
-      EvaluateBrdf(texel, pair.geometry, weight, ours);
-      const std::array<double, 3> theirs = target(i, pair);
-      const double received = std::numbers::pi * pair.light[2];
-      for (size_t c = 0; c < 3; ++c) {
-        sum += std::abs(std::log(received * std::max(theirs[c], 0.0) + kLogOffset) -
-                        std::log(received * ours[c] + kLogOffset));
-      }
+namespace {
+
+double LogRadiance(double brdf, const DirectionPair& pair) {
+  return std::log(std::numbers::pi * pair.light[2] * std::max(brdf, 0.0) + kLogOffset);
+}
+
+// Adds up the texel's errors of each shading.
+void AddErrors(const SvbrdfMaps& maps, DiffuseWeight weight, size_t i,
+               const std::vector<Shading>& shadings, std::span<double> sums) {
+  TexelSvbrdf<double> texel{{0, 0, 1}, {}, {}, maps.plane(kRoughness)[i]};
+  for (int c = 0; c < 3; ++c) {
+    texel.diffuse[c] = maps.plane(kDiffuseR + c)[i];
+    texel.specular[c] = maps.plane(kSpecularR + c)[i];
+  }
+  for (const DirectionPair& pair : Pairs(texel.roughness, kErrorPairs)) {
+    double ours[3];
+    EvaluateBrdf(texel, pair.geometry, weight, ours);
+    for (double& value : ours) value = LogRadiance(value, pair);
+    for (size_t s = 0; s < shadings.size(); ++s) {
+      const std::array<double, 3> theirs = shadings[s](i, pair);
+      for (size_t c = 0; c < 3; ++c) sums[s] += std::abs(LogRadiance(theirs[c], pair) - ours[c]);
     }
   }
-  return sum / static_cast<double>(3 * kErrorPairs * count);
+}
+
+}  // namespace
+
+std::vector<double> ShadingErrors(const SvbrdfMaps& maps, DiffuseWeight weight,
+                                  const std::vector<Shading>& shadings, int threads) {
+  const size_t count = std::min(maps.texels(), kErrorTexels), kinds = shadings.size();
+  std::vector<double> by_texel(count * kinds, 0.0), errors(kinds, 0.0);
+  ForEachBlock(static_cast<int>(count), 64, threads, [&](int begin, int end) {
+    for (size_t k = static_cast<size_t>(begin); k < static_cast<size_t>(end); ++k) {
+      const size_t texel = (2 * k + 1) * maps.texels() / (2 * count);
+      AddErrors(maps, weight, texel, shadings, std::span(by_texel).subspan(k * kinds, kinds));
+    }
+  });
+  for (size_t i = 0; i < by_texel.size(); ++i) errors[i % kinds] += by_texel[i];
+  for (double& error : errors) error /= static_cast<double>(3 * kErrorPairs * count);
+  return errors;
 }
 
 }  // namespace glint

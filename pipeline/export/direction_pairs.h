@@ -27,13 +27,16 @@ double SchlickWeight(double cosine);
 
 // Half of them on the highlight of that roughness (half vectors distributed as its normals are),
 // half anywhere within 70° of the normal.
+inline constexpr int kPairsOfRoughness = 48;
 std::vector<DirectionPair> PairsForRoughness(double roughness);
 
-// How far a shading model is from ours: mean over channels, a hundred pairs (fifty of each kind)
-// and up to 4,096 texels of |log(target + 0.01) − log(ours + 0.01)|, in radiance of which a white
-// matte texel under perpendicular light has 1. `target`: its f of a texel and pair.
-double ShadingError(
-    const SvbrdfMaps& maps, DiffuseWeight weight,
-    const std::function<std::array<double, 3>(size_t texel, const DirectionPair& pair)>& target);
+// f [1/sr] of a texel under a pair of directions, per channel.
+using Shading = std::function<std::array<double, 3>(size_t texel, const DirectionPair& pair)>;
+
+// How far shading models are from ours: for each the mean over channels, a hundred pairs (fifty of
+// each kind) and up to 4,096 texels of |log(theirs + 0.01) − log(ours + 0.01)|, in radiance of
+// which a white matte texel under perpendicular light has 1. The same for any number of threads.
+std::vector<double> ShadingErrors(const SvbrdfMaps& maps, DiffuseWeight weight,
+                                  const std::vector<Shading>& shadings, int threads);
 
 }  // namespace glint

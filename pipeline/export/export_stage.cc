@@ -28,21 +28,26 @@ std::string FileOfMap(const Json& files, const std::string& map) {
   throw std::logic_error("no picture of " + map);
 }
 
-// Writes the material files; data.materials.
-Json WriteMaterials(const ExportedMaterial& material, const std::vector<MaterialFormat>& formats,
-                    const Json& maps, Stage* stage) {
+// Writes the material files; data.materials, data.metal_roughness.
+std::pair<Json, Json> WriteMaterials(const ExportedMaterial& material,
+                                     const std::vector<MaterialFormat>& formats, const Json& maps,
+                                     int threads, Stage* stage) {
   const auto file_of = [&](const std::string& map) { return FileOfMap(maps, map); };
-  Json files = Json::array();
+  std::vector<Shading> shadings = {MetalRoughnessShading(material.metal, material.maps)};
   for (const MaterialFormat& format : formats) {
-    const std::string file = material.name + format.suffix;
-    WriteFileAtomically(stage->Output(file), format.write(material, file_of));
-    const double error = ShadingError(material.maps, material.diffuse_weight,
-                                      [&](size_t texel, const DirectionPair& pair) {
-                                        return format.brdf(material, texel, pair);
-                                      });
-    files.push_back({{"file", file}, {"format", format.name}, {"log_l1", error}});
+    shadings.push_back([&](size_t texel, const DirectionPair& pair) {
+      return format.brdf(material, texel, pair);
+    });
   }
-  return files;
+  const std::vector<double> errors =
+      ShadingErrors(material.maps, material.diffuse_weight, shadings, threads);
+  Json files = Json::array();
+  for (size_t i = 0; i < formats.size(); ++i) {
+    const std::string file = material.name + formats[i].suffix;
+    WriteFileAtomically(stage->Output(file), formats[i].write(material, file_of, threads));
+    files.push_back({{"file", file}, {"format", formats[i].name}, {"log_l1", errors[i + 1]}});
+  }
+  return {files, {{"log_l1", errors[0]}}};
 }
 
 // Of the normals, from the confidence that is stated beside the maps; empty where none is.
@@ -183,20 +188,21 @@ Json ExportMaterial(const ExportTask& task, const ExportOptions& options,
   const HeightField relief =
       task.repeats ? IntegrateRepeatingNormals(material.maps, plane, longest_mm)
                    : IntegrateNormals(material.maps, plane, longest_mm,
-                                      TrustOf(task.maps_manifest, source, material.maps));
+                                      TrustOf(task.maps_manifest, source, material.maps), threads);
   material.height_range_mm = HeightRange(relief);
   OcclusionOptions occlusion;
   occlusion.reach_mm = options.occlusion_reach * shorter_mm;
   const Json files = WriteMapsByRows(material, relief, AmbientOcclusion(relief, occlusion, threads),
                                      options, task.rows_at_once, threads, &source, &metal, stage);
-  const double error = MetalRoughnessError(material.metal, material.maps, material.diffuse_weight);
+  const auto [materials, metal_roughness] =
+      WriteMaterials(material, formats, files, threads, stage);
   return {{"convention", ToString(convention)},
           {"name", material.name},
           {"size_mm", task.size_mm},
           {"repeats", task.repeats},
           {"maps", files},
-          {"metal_roughness", {{"log_l1", error}}},
-          {"materials", WriteMaterials(material, formats, files, stage)}};
+          {"metal_roughness", metal_roughness},
+          {"materials", materials}};
 }
 
 }  // namespace glint

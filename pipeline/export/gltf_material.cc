@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <vector>
 
 #include "base/colour/srgb.h"
+#include "base/parallel/parallel.h"
 #include "pipeline/export/export_maps.h"
 #include "pipeline/files/json.h"
 #include "pipeline/images/image.h"
@@ -145,7 +147,7 @@ std::array<double, 3> GltfBaseColor(const ExportedMaterial& material, size_t tex
   return base;
 }
 
-std::string GlbOf(const ExportedMaterial& material) {
+std::string GlbOf(const ExportedMaterial& material, int threads) {
   const SvbrdfMaps& maps = material.maps;
   float largest = static_cast<float>(kGltfF0);
   for (int c = 0; c < 3; ++c) {
@@ -154,16 +156,26 @@ std::string GlbOf(const ExportedMaterial& material) {
   Buffer buffer;
   const Json accessors =
       PlaneAccessors(material.width_mm / 1000, material.height_mm / 1000, &buffer);
+  struct Texture {
+    const char* name;
+    std::function<Image()> image;
+    std::string png;
+  };
+  std::array<Texture, 4> of_material = {
+      {{"basecolor", [&] { return BaseColor(material); }, {}},
+       {"occlusion_roughness_metallic", [&] { return OcclusionRoughnessMetallic(maps); }, {}},
+       {"normal", [&] { return Normal(maps); }, {}},
+       {"specularcolor", [&] { return SpecularColor(maps, largest); }, {}}}};
+  ForEachPiece(static_cast<int>(of_material.size()), threads, [&](int i) {
+    Texture& texture = of_material[static_cast<size_t>(i)];
+    texture.png = EncodePng(texture.image());
+  });
   Json images = Json::array(), textures = Json::array();
-  for (const auto& [name, image] :
-       {std::pair{"basecolor", BaseColor(material)},
-        std::pair{"occlusion_roughness_metallic", OcclusionRoughnessMetallic(maps)},
-        std::pair{"normal", Normal(maps)},
-        std::pair{"specularcolor", SpecularColor(maps, largest)}}) {
+  for (const Texture& texture : of_material) {
     textures.push_back({{"source", images.size()}, {"sampler", 0}});
-    images.push_back({{"name", material.name + "_" + name},
+    images.push_back({{"name", material.name + "_" + texture.name},
                       {"mimeType", "image/png"},
-                      {"bufferView", buffer.Add(EncodePng(image))}});
+                      {"bufferView", buffer.Add(texture.png)}});
   }
   constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kRepeat = 10497;
   const Json json = {

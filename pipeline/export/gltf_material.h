@@ -16,8 +16,9 @@ namespace glint {
 
 inline constexpr double kGltfF0 = 0.04;  // of glTF's default index of refraction, 1.5
 
-// The file's bytes. The plane lies in x and y about the origin and looks along +z; metres.
-std::string GlbOf(const ExportedMaterial& material);
+// The file's bytes, the same for any number of threads. The plane lies in x and y about the origin
+// and looks along +z; metres.
+std::string GlbOf(const ExportedMaterial& material, int threads);
 
 // The texel's base colour there, linear, up to 1.
 std::array<double, 3> GltfBaseColor(const ExportedMaterial& material, size_t texel);

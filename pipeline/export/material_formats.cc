@@ -70,18 +70,28 @@ Rgb UsdBrdf(const ExportedMaterial& material, size_t texel, const DirectionPair&
                  material.maps.plane(kRoughness)[texel], pair, false);
 }
 
+// A file that only refers to maps takes no time.
+template <auto kTextOf>
+std::string Text(const ExportedMaterial& material,
+                 const std::function<std::string(const std::string& map)>& file_of, int) {
+  return kTextOf(material, file_of);
+}
+
 }  // namespace
 
 const std::vector<MaterialFormat>& MaterialFormats() {
   static const std::vector<MaterialFormat> formats = {
       {"gltf", ".glb",
-       [](const ExportedMaterial& material, const auto&) { return GlbOf(material); }, GltfBrdf},
-      {"materialx", ".mtlx", MaterialXOf,
+       [](const ExportedMaterial& material, const auto&, int threads) {
+         return GlbOf(material, threads);
+       },
+       GltfBrdf},
+      {"materialx", ".mtlx", Text<MaterialXOf>,
        [](const ExportedMaterial& material, size_t texel, const DirectionPair& pair) {
          return Added(material, texel, pair, pair.v_dot_h);
        }},
-      {"usd", ".usda", UsdOf, UsdBrdf},
-      {"blender", "_blender.py", BlenderScriptOf,
+      {"usd", ".usda", Text<UsdOf>, UsdBrdf},
+      {"blender", "_blender.py", Text<BlenderScriptOf>,
        [](const ExportedMaterial& material, size_t texel, const DirectionPair& pair) {
          return Added(material, texel, pair, pair.camera[2]);
        }},

@@ -16,9 +16,10 @@ struct MaterialFormat {
   std::string name;    // as --formats says: "gltf"
   std::string suffix;  // of the file beside the maps, after the material's name: ".glb"
   // The file's bytes. `files`: where each map lies (its 8-bit picture, else the 16-bit one),
-  // relative to the file.
+  // relative to the file. The same for any number of threads.
   std::function<std::string(const ExportedMaterial& material,
-                            const std::function<std::string(const std::string& map)>& file_of)>
+                            const std::function<std::string(const std::string& map)>& file_of,
+                            int threads)>
       write;
   // How that format's own shading reflects (direction_pairs.h); what is stated of its fidelity.
   std::function<std::array<double, 3>(const ExportedMaterial& material, size_t texel,

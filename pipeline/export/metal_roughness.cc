@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 
+#include "base/cpu/vector_clones.h"
 #include "base/parallel/parallel.h"
-#include "fitting/reflectance/brdf.h"
-#include "fitting/reflectance/log_radiance.h"
+#include "pipeline/export/best_base_color.h"
 #include "pipeline/export/direction_pairs.h"
 
 namespace glint {
@@ -19,7 +18,6 @@ namespace metal_tables {
 constexpr int kMetalnesses = 17;
 constexpr double kLeastRoughness = 0.03;
 constexpr int kRoughnessBins = 64;
-constexpr size_t kMostPairs = 64;
 
 // Of a label, or of a place between two.
 double Metalness(double label) {
@@ -27,123 +25,36 @@ double Metalness(double label) {
   return t * t * (3 - 2 * t);
 }
 
-// One pair's part of the target that does not depend on the texel's colour.
-struct PairTerms {
-  double ours = 0;         // our D·G/(4·NoL·NoV) …
-  double our_fresnel = 0;  // … and the power in our F
-  double specular = 0;     // the target's
-  double fresnel = 0;
-  double received = 0;  // π·NoL: radiance of f under unit irradiance, white matte 1
-};
-
-// The target as slope·base + rest.
-struct Linear {
-  double slope = 0, rest = 0;
-};
-
-Linear TargetOf(const PairTerms& pair, double metallic) {
-  const double dielectric = kDielectricF0 + (1 - kDielectricF0) * pair.fresnel;
-  return {(1 - metallic) * (1 - dielectric) / std::numbers::pi +
-              metallic * pair.specular * (1 - pair.fresnel),
-          pair.specular * ((1 - metallic) * dielectric + metallic * pair.fresnel)};
+size_t BinOf(double roughness) {
+  return static_cast<size_t>(
+      std::clamp(static_cast<int>(roughness * kRoughnessBins), 0, kRoughnessBins - 1));
 }
 
-PairTerms TermsOf(const DirectionPair& pair, double roughness) {
-  TexelSvbrdf<double> texel{{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, roughness};
-  return {SpecularFactor(texel, pair.geometry), pair.geometry.fresnel,
-          SmithSpecular(pair, roughness), SchlickWeight(pair.v_dot_h),
-          std::numbers::pi * pair.light[2]};
-}
+using TermsTable = std::vector<PairTerms>;  // by roughness
 
-// By roughness: the terms of its pairs.
-std::vector<std::vector<PairTerms>> TermsByRoughness() {
-  std::vector<std::vector<PairTerms>> table;
+TermsTable TermsByRoughness() {
+  TermsTable table;
   for (int bin = 0; bin < kRoughnessBins; ++bin) {
-    const double roughness = std::max(kLeastRoughness, (bin + 0.5) / kRoughnessBins);
-    std::vector<PairTerms>& terms = table.emplace_back();
-    for (const DirectionPair& pair : PairsForRoughness(roughness)) {
-      terms.push_back(TermsOf(pair, roughness));
-    }
+    table.push_back(TermsOf(std::max(kLeastRoughness, (bin + 0.5) / kRoughnessBins)));
   }
   return table;
 }
 
 struct Texel {
-  std::array<double, 3> diffuse, specular;  // diffuse with its lobe's weight
-  double roughness = 0;
+  std::array<float, 3> diffuse, specular;  // diffuse with its lobe's weight
+  float roughness = 0;
 };
 
 Texel TexelOf(const SvbrdfMaps& maps, DiffuseWeight weight, size_t i) {
   Texel texel;
   for (int c = 0; c < 3; ++c) {
-    const double specular = maps.plane(kSpecularR + c)[i];
-    const double left = weight == DiffuseWeight::kOne ? 1 : 1 - specular;
+    const float specular = maps.plane(kSpecularR + c)[i];
+    const float left = weight == DiffuseWeight::kOne ? 1 : 1 - specular;
     texel.specular[static_cast<size_t>(c)] = specular;
     texel.diffuse[static_cast<size_t>(c)] = maps.plane(kDiffuseR + c)[i] * left;
   }
   texel.roughness = maps.plane(kRoughness)[i];
   return texel;
-}
-
-// The best base colour of a channel, and the mean error that it leaves.
-struct Best {
-  double base = 0, error = 0;
-};
-
-// Of log radiance; errors below count as squares, larger ones as they are: a highlight that the
-// target cannot have is not to spoil what it can.
-constexpr double kRobustScale = 0.05;
-constexpr int kReweightings = 4;
-
-Best BestBase(const std::vector<PairTerms>& pairs, double metallic, double diffuse,
-              double specular) {
-  std::array<double, kMostPairs> ours, slopes, rests, weights;  // radiances, 0.01 added to ours
-  const size_t count = std::min(pairs.size(), ours.size());
-  for (size_t i = 0; i < count; ++i) {
-    const PairTerms& pair = pairs[i];
-    const double brdf =
-        diffuse / std::numbers::pi + pair.ours * (specular + (1 - specular) * pair.our_fresnel);
-    const Linear target = TargetOf(pair, metallic);
-    ours[i] = pair.received * brdf + kLogOffset;
-    slopes[i] = pair.received * target.slope;
-    rests[i] = pair.received * target.rest + kLogOffset;
-    weights[i] = 1 / (ours[i] * ours[i]);
-  }
-  Best best;
-  for (int round = 0; round < kReweightings; ++round) {
-    double squares = 1e-12, products = 0;
-    for (size_t i = 0; i < count; ++i) {
-      squares += weights[i] * slopes[i] * slopes[i];
-      products += weights[i] * slopes[i] * (ours[i] - rests[i]);
-    }
-    best.base = std::clamp(products / squares, 0.0, 1.0);
-    best.error = 0;
-    for (size_t i = 0; i < count; ++i) {
-      // 2(x − 1)/(x + 1) is log x to third order.
-      const double theirs = best.base * slopes[i] + rests[i], mean = 0.5 * (theirs + ours[i]);
-      const double off = (theirs - ours[i]) / mean;
-      const double size = std::sqrt(off * off + kRobustScale * kRobustScale);
-      weights[i] = 1 / (size * mean * mean);
-      best.error += (size - kRobustScale) / static_cast<double>(count);
-    }
-  }
-  return best;
-}
-
-const std::vector<PairTerms>& PairsOf(const std::vector<std::vector<PairTerms>>& table,
-                                      double roughness) {
-  const int bin = std::clamp(static_cast<int>(roughness * kRoughnessBins), 0, kRoughnessBins - 1);
-  return table[static_cast<size_t>(bin)];
-}
-
-// √ of albedos, in which steps look alike.
-std::array<float, 6> ColourOf(const SvbrdfMaps& maps, size_t i) {
-  std::array<float, 6> colour;
-  for (int c = 0; c < 3; ++c) {
-    colour[static_cast<size_t>(c)] = std::sqrt(std::max(0.0f, maps.plane(kDiffuseR + c)[i]));
-    colour[static_cast<size_t>(3 + c)] = std::sqrt(std::max(0.0f, maps.plane(kSpecularR + c)[i]));
-  }
-  return colour;
 }
 
 using Costs = std::array<float, kMetalnesses>;
@@ -155,8 +66,7 @@ class CostTable {
   CostTable() : index_(kCells, kNone) {}
 
   // Computes what these cells cost and the table does not hold yet.
-  void Add(const std::vector<std::vector<PairTerms>>& terms,
-           const std::vector<std::uint32_t>& cells, int threads) {
+  void Add(const TermsTable& terms, const std::vector<std::uint32_t>& cells, int threads) {
     const size_t known = used_.size();
     for (const std::uint32_t cell : cells) {
       if (index_[cell] != kNone) continue;
@@ -172,8 +82,8 @@ class CostTable {
     });
   }
 
-  static std::uint32_t CellOf(double diffuse, double specular, double roughness) {
-    return static_cast<std::uint32_t>((Bin(roughness) * kSteps + StepOf(diffuse)) * kSteps +
+  static std::uint32_t CellOf(float diffuse, float specular, float roughness) {
+    return static_cast<std::uint32_t>((BinOf(roughness) * kSteps + StepOf(diffuse)) * kSteps +
                                       StepOf(specular));
   }
   const Costs& at(std::uint32_t cell) const { return costs_[index_[cell]]; }
@@ -183,24 +93,20 @@ class CostTable {
   static constexpr size_t kCells = kRoughnessBins * kSteps * kSteps;
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  static size_t Bin(double roughness) {
-    return static_cast<size_t>(
-        std::clamp(static_cast<int>(roughness * kRoughnessBins), 0, kRoughnessBins - 1));
+  static size_t StepOf(float albedo) {
+    return static_cast<size_t>(0.5f + std::sqrt(std::clamp(albedo, 0.0f, 1.0f)) * (kSteps - 1));
   }
-  static size_t StepOf(double albedo) {
-    return static_cast<size_t>(std::lround(std::sqrt(std::clamp(albedo, 0.0, 1.0)) * (kSteps - 1)));
-  }
-  static double AlbedoOf(size_t step) {
-    const double root = static_cast<double>(step) / (kSteps - 1);
+  static float AlbedoOf(size_t step) {
+    const float root = static_cast<float>(step) / (kSteps - 1);
     return root * root;
   }
-  static Costs CostsOf(const std::vector<std::vector<PairTerms>>& terms, size_t cell) {
-    const double specular = AlbedoOf(cell % kSteps), diffuse = AlbedoOf(cell / kSteps % kSteps);
-    const std::vector<PairTerms>& pairs = terms[cell / (kSteps * kSteps)];
+  static Costs CostsOf(const TermsTable& terms, size_t cell) {
+    const float specular = AlbedoOf(cell % kSteps), diffuse = AlbedoOf(cell / kSteps % kSteps);
+    const PairTerms& pairs = terms[cell / (kSteps * kSteps)];
     Costs costs;
     for (int label = 0; label < kMetalnesses; ++label) {
-      costs[static_cast<size_t>(label)] =
-          static_cast<float>(BestBase(pairs, Metalness(label), diffuse, specular).error);
+      const auto metallic = static_cast<float>(Metalness(label));
+      costs[static_cast<size_t>(label)] = BestBaseColor(pairs, metallic, diffuse, specular).error;
     }
     return costs;
   }
@@ -217,6 +123,121 @@ std::array<std::uint32_t, 3> CellsOf(const Texel& texel) {
     cells[c] = CostTable::CellOf(texel.diffuse[c], texel.specular[c], texel.roughness);
   }
   return cells;
+}
+
+constexpr int kColours = 6;
+
+// What the texels of some rows look like and what each metalness costs them, in planes.
+struct Rows {
+  Rows(int columns, int rows)
+      : width(columns),
+        height(rows),
+        texels(static_cast<size_t>(columns) * static_cast<size_t>(rows)),
+        colours(kColours * texels),
+        costs(kMetalnesses * texels) {}
+  const float* Colour(int k, int row, int column) const {
+    return colours.data() + At(k, row, column);
+  }
+  const float* Cost(int label, int row, int column) const {
+    return costs.data() + At(label, row, column);
+  }
+
+  int width, height;
+  size_t texels;
+  std::vector<float> colours;  // √ of albedos, in which steps look alike
+  std::vector<float> costs;    // means over channels
+
+ private:
+  size_t At(int plane, int row, int column) const {
+    return static_cast<size_t>(plane) * texels +
+           static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column);
+  }
+};
+
+void SetColours(const SvbrdfMaps& maps, size_t begin, size_t end, Rows* rows) {
+  for (int k = 0; k < kColours; ++k) {
+    const auto plane = maps.plane(k < 3 ? kDiffuseR + k : kSpecularR + k - 3);
+    float* to = rows->colours.data() + static_cast<size_t>(k) * rows->texels;
+    for (size_t i = begin; i < end; ++i) to[i] = std::sqrt(std::max(0.0f, plane[i]));
+  }
+}
+
+void SetCosts(const CostTable& table, const std::vector<std::uint32_t>& cells, double blend_cost,
+              size_t begin, size_t end, Rows* rows) {
+  Costs blend;
+  for (size_t label = 0; label < kMetalnesses; ++label) {
+    const double m = Metalness(static_cast<double>(label));
+    blend[label] = static_cast<float>(4 * blend_cost * m * (1 - m));
+  }
+  for (size_t i = begin; i < end; ++i) {
+    const Costs &red = table.at(cells[3 * i]), &green = table.at(cells[3 * i + 1]),
+                &blue = table.at(cells[3 * i + 2]);
+    for (size_t label = 0; label < kMetalnesses; ++label) {
+      rows->costs[label * rows->texels + i] =
+          blend[label] + (red[label] + green[label] + blue[label]) / 3;
+    }
+  }
+}
+
+// Columns that are averaged together: what is summed of them stays in the nearest cache.
+constexpr int kColumnsAtOnce = 128;
+struct Sums {
+  alignas(64) std::array<std::array<float, kColumnsAtOnce>, kMetalnesses> of{};
+};
+
+// How much each column's neighbour counts: Tukey's biweight of their colours' difference, near 0 a
+// Gaussian of the deviation whose squared inverse is given, none from twice that deviation on.
+GLINT_VECTOR_CLONES
+void SharesOf(const std::array<const float*, kColours>& here,
+              const std::array<const float*, kColours>& there, int count, float per_square,
+              float* shares) {
+  for (int c = 0; c < count; ++c) {
+    float square = 0;
+    for (size_t k = 0; k < kColours; ++k) {
+      const float d = there[k][c] - here[k][c];
+      square += d * d;
+    }
+    const float left = std::max(0.0f, 1 - 0.25f * per_square * square);
+    shares[c] = left * left;
+  }
+}
+
+GLINT_VECTOR_CLONES
+void AddShares(const float* shares, const float* costs, int count, float* sum) {
+  for (int c = 0; c < count; ++c) sum[c] += shares[c] * costs[c];
+}
+
+// Adds to the sums of `count` columns from `first` what their neighbours in row `other`, `offset`
+// columns away, cost.
+void AddNeighbours(const Rows& rows, int row, int other, int offset, int first, int count,
+                   float per_square, Sums* sums) {
+  const int begin = std::max(first, -offset);  // those whose neighbour is in the sample
+  const int end = std::min(first + count, rows.width - offset);
+  if (begin >= end) return;
+  std::array<const float*, kColours> here, there;
+  for (int k = 0; k < kColours; ++k) {
+    here[static_cast<size_t>(k)] = rows.Colour(k, row, begin);
+    there[static_cast<size_t>(k)] = rows.Colour(k, other, begin + offset);
+  }
+  alignas(64) std::array<float, kColumnsAtOnce> shares;
+  SharesOf(here, there, end - begin, per_square, shares.data());
+  for (int label = 0; label < kMetalnesses; ++label) {
+    AddShares(shares.data(), rows.Cost(label, other, begin + offset), end - begin,
+              sums->of[static_cast<size_t>(label)].data() + (begin - first));
+  }
+}
+
+// What each metalness costs the neighbourhoods of `count` columns from `first`.
+Sums SumsOfNeighbours(const Rows& rows, int row, int first, int count, int radius,
+                      float per_square) {
+  Sums sums;
+  for (int other = std::max(0, row - radius); other <= std::min(rows.height - 1, row + radius);
+       ++other) {
+    for (int offset = -radius; offset <= radius; ++offset) {
+      AddNeighbours(rows, row, other, offset, first, count, per_square, &sums);
+    }
+  }
+  return sums;
 }
 
 // Where a parabola through the least cost and its neighbours is least.
@@ -240,7 +261,7 @@ std::array<float, 3> MetalRoughness::ColorAt(size_t texel) const {
 }
 
 struct MetalConverter::Tables {
-  std::vector<std::vector<PairTerms>> terms = TermsByRoughness();
+  TermsTable terms = TermsByRoughness();
   CostTable costs;
 };
 
@@ -251,70 +272,53 @@ MetalConverter::MetalConverter(DiffuseWeight weight, const MetalRoughnessOptions
 MetalConverter::~MetalConverter() = default;
 
 MetalRoughness MetalConverter::Convert(const SvbrdfMaps& maps, int above, int below) {
-  const size_t texels = maps.texels();
-  std::vector<std::array<float, 6>> colours(texels);
-  std::vector<std::uint32_t> cells(3 * texels);
-  ForEachBlock(static_cast<int>(texels), 4096, threads_, [&](int begin, int end) {
+  const auto texels = static_cast<int>(maps.texels());
+  std::vector<std::uint32_t> cells(3 * maps.texels());
+  Rows rows(maps.width, maps.height);
+  constexpr int kBlock = 4096;
+  ForEachBlock(texels, kBlock, threads_, [&](int begin, int end) {
+    SetColours(maps, static_cast<size_t>(begin), static_cast<size_t>(end), &rows);
     for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
-      colours[i] = ColourOf(maps, i);
       const std::array<std::uint32_t, 3> own = CellsOf(TexelOf(maps, weight_, i));
       std::copy(own.begin(), own.end(), cells.begin() + static_cast<std::ptrdiff_t>(3 * i));
     }
   });
-  CostTable& channel_costs = tables_->costs;
-  channel_costs.Add(tables_->terms, cells, threads_);
-  std::vector<Costs> costs(texels);
-  ForEachBlock(static_cast<int>(texels), 4096, threads_, [&](int begin, int end) {
-    for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
-      const auto of = [&](size_t c, size_t label) {
-        return channel_costs.at(cells[3 * i + c])[label];
-      };
-      for (size_t label = 0; label < kMetalnesses; ++label) {
-        const double m = Metalness(static_cast<double>(label));
-        costs[i][label] = static_cast<float>(4 * options_.blend_cost * m * (1 - m)) +
-                          (of(0, label) + of(1, label) + of(2, label)) / 3;
-      }
-    }
+  tables_->costs.Add(tables_->terms, cells, threads_);
+  ForEachBlock(texels, kBlock, threads_, [&](int begin, int end) {
+    SetCosts(tables_->costs, cells, options_.blend_cost, static_cast<size_t>(begin),
+             static_cast<size_t>(end), &rows);
   });
-  const int rows = maps.height - above - below;
-  const auto width = static_cast<size_t>(maps.width), converted = width * static_cast<size_t>(rows);
-  MetalRoughness result{maps.width, rows, std::vector<float>(3 * converted),
-                        std::vector<float>(converted)};
-  const float narrow = static_cast<float>(0.5 / (options_.colour_width * options_.colour_width));
-  ForEachBlock(rows, 8, threads_, [&](int begin, int end) {
-    for (int row = above + begin; row < above + end; ++row) {
-      for (int column = 0; column < maps.width; ++column) {
-        const auto at = [&](int r, int c) {
-          return static_cast<size_t>(r) * width + static_cast<size_t>(c);
-        };
-        const size_t i = at(row, column), o = at(row - above, column);
-        Costs sum{};
-        for (int r = std::max(0, row - options_.radius);
-             r <= std::min(maps.height - 1, row + options_.radius); ++r) {
-          for (int c = std::max(0, column - options_.radius);
-               c <= std::min(maps.width - 1, column + options_.radius); ++c) {
-            const size_t other = at(r, c);
-            float distance = 0;
-            for (size_t k = 0; k < 6; ++k) {
-              const float d = colours[other][k] - colours[i][k];
-              distance += d * d;
-            }
-            const float share = std::exp(-narrow * distance);
-            for (size_t k = 0; k < kMetalnesses; ++k) sum[k] += share * costs[other][k];
-          }
-        }
-        const double metallic = BestMetalness(sum);
-        result.metallic[o] = static_cast<float>(metallic);
-        const Texel texel = TexelOf(maps, weight_, i);
-        const auto& pairs = PairsOf(tables_->terms, texel.roughness);
-        for (size_t k = 0; k < 3; ++k) {
-          result.base_color[k * converted + o] = static_cast<float>(
-              BestBase(pairs, metallic, texel.diffuse[k], texel.specular[k]).base);
-        }
-      }
-    }
-  });
+  const int converted = maps.height - above - below;
+  MetalRoughness result{maps.width, converted, {}, {}};
+  result.metallic.resize(static_cast<size_t>(maps.width) * static_cast<size_t>(converted));
+  result.base_color.resize(3 * result.metallic.size());
+  ForEachPiece(converted, threads_, [&](int row) { ConvertRow(maps, rows, above, row, &result); });
   return result;
+}
+
+void MetalConverter::ConvertRow(const SvbrdfMaps& maps, const Rows& rows, int above, int row,
+                                MetalRoughness* result) const {
+  const auto per_square = static_cast<float>(1 / (options_.colour_width * options_.colour_width));
+  const size_t converted = result->metallic.size();
+  for (int first = 0; first < maps.width; first += kColumnsAtOnce) {
+    const int count = std::min(kColumnsAtOnce, maps.width - first);
+    const Sums sums =
+        SumsOfNeighbours(rows, above + row, first, count, options_.radius, per_square);
+    for (int c = 0; c < count; ++c) {
+      const auto column = static_cast<size_t>(first + c), width = static_cast<size_t>(maps.width);
+      Costs costs;
+      for (size_t k = 0; k < kMetalnesses; ++k) costs[k] = sums.of[k][static_cast<size_t>(c)];
+      const auto metallic = static_cast<float>(BestMetalness(costs));
+      const size_t to = static_cast<size_t>(row) * width + column;
+      result->metallic[to] = metallic;
+      const Texel texel = TexelOf(maps, weight_, static_cast<size_t>(above + row) * width + column);
+      const PairTerms& pairs = tables_->terms[BinOf(texel.roughness)];
+      for (size_t k = 0; k < 3; ++k) {
+        result->base_color[k * converted + to] =
+            BestBaseColor(pairs, metallic, texel.diffuse[k], texel.specular[k]).base;
+      }
+    }
+  }
 }
 
 MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, DiffuseWeight weight,
@@ -323,22 +327,22 @@ MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, DiffuseWeight weight,
 }
 
 std::array<double, 3> MetalRoughnessBrdf(const std::array<float, 3>& base_color, double metallic,
-                                         double roughness, const std::array<double, 3>& light,
-                                         const std::array<double, 3>& camera) {
-  const PairTerms terms = TermsOf(MakePair(light, camera), roughness);
-  const Linear target = TargetOf(terms, metallic);
+                                         double roughness, const DirectionPair& pair) {
+  const double lobe = SmithSpecular(pair, roughness), fresnel = SchlickWeight(pair.v_dot_h);
+  const LinearInBase dielectric = DielectricReflectance(lobe, fresnel);
+  const LinearInBase metal = MetalReflectance(lobe, fresnel);
+  const double slope = (1 - metallic) * dielectric.slope + metallic * metal.slope;
+  const double rest = (1 - metallic) * dielectric.rest + metallic * metal.rest;
   std::array<double, 3> brdf;
-  for (size_t c = 0; c < 3; ++c) brdf[c] = target.slope * base_color[c] + target.rest;
+  for (size_t c = 0; c < 3; ++c) brdf[c] = slope * base_color[c] + rest;
   return brdf;
 }
 
-double MetalRoughnessError(const MetalRoughness& converted, const SvbrdfMaps& maps,
-                           DiffuseWeight weight) {
-  const auto target = [&](size_t texel, const DirectionPair& pair) {
+Shading MetalRoughnessShading(const MetalRoughness& converted, const SvbrdfMaps& maps) {
+  return [&](size_t texel, const DirectionPair& pair) {
     return MetalRoughnessBrdf(converted.ColorAt(texel), converted.metallic[texel],
-                              maps.plane(kRoughness)[texel], pair.light, pair.camera);
+                              maps.plane(kRoughness)[texel], pair);
   };
-  return ShadingError(maps, weight, target);
 }
 
 }  // namespace glint

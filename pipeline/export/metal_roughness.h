@@ -16,14 +16,17 @@
 
 #include "fitting/reflectance/convention.h"
 #include "fitting/reflectance/svbrdf_maps.h"
+#include "pipeline/export/direction_pairs.h"
 
 namespace glint {
-
-inline constexpr double kDielectricF0 = 0.04;
+namespace metal_tables {
+struct Rows;
+}
 
 struct MetalRoughnessOptions {
-  int radius = 4;             // texels, of the neighbours whose errors are averaged
-  double colour_width = 0.1;  // of √albedo, by which neighbours may differ
+  int radius = 4;  // texels, of the neighbours whose errors are averaged
+  // Of √albedo: neighbours that differ by this count three fifths, from twice it on nothing.
+  double colour_width = 0.1;
   // Cost of metalness ½ beside 0 and 1: nothing is half a metal. Of log radiance.
   double blend_cost = 0.003;
 };
@@ -51,22 +54,18 @@ class MetalConverter {
 
  private:
   struct Tables;
+  void ConvertRow(const SvbrdfMaps& maps, const metal_tables::Rows& rows, int above, int row,
+                  MetalRoughness* result) const;
   DiffuseWeight weight_;
   MetalRoughnessOptions options_;
   int threads_;
   std::unique_ptr<Tables> tables_;
 };
 
-// Its reflectance of the texel under one pair of directions, given in the frame of the texel's
-// normal: f [1/sr] per channel.
+// Its reflectance under one pair of directions: f [1/sr] per channel.
 std::array<double, 3> MetalRoughnessBrdf(const std::array<float, 3>& base_color, double metallic,
-                                         double roughness, const std::array<double, 3>& light,
-                                         const std::array<double, 3>& camera);
-
-// How faithful it is: mean over channels, a hundred pairs of directions and up to 4,096 texels of
-// |log(target + 0.01) − log(ours + 0.01)|, radiance of a white matte texel under perpendicular
-// light 1.
-double MetalRoughnessError(const MetalRoughness& converted, const SvbrdfMaps& maps,
-                           DiffuseWeight weight);
+                                         double roughness, const DirectionPair& pair);
+// How it shades. Both must outlive it.
+Shading MetalRoughnessShading(const MetalRoughness& converted, const SvbrdfMaps& maps);
 
 }  // namespace glint

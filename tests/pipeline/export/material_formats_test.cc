@@ -26,7 +26,7 @@ const MaterialFormat& Format(const std::string& name) {
 }
 
 std::string Written(const std::string& name, DiffuseWeight weight = DiffuseWeight::kOne) {
-  return Format(name).write(test::MaterialOf(test::UniformMaps(kValues), weight), FileOfMap);
+  return Format(name).write(test::MaterialOf(test::UniformMaps(kValues), weight), FileOfMap, 1);
 }
 
 // Every node that another reads is there.
@@ -57,7 +57,7 @@ TEST(MaterialFormatsTest, UsdHasThePlaneInMetresAndClosesWhatItOpens) {
 TEST(MaterialFormatsTest, UsdNamesPrimsByIdentifiers) {
   ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));
   material.name = "2nd-oak.v1";
-  const std::string text = Format("usd").write(material, FileOfMap);
+  const std::string text = Format("usd").write(material, FileOfMap, 1);
   EXPECT_THAT(text, HasSubstr("def Xform \"_2nd_oak_v1\""));
 }
 
@@ -73,13 +73,14 @@ TEST(MaterialFormatsTest, BlendersScriptHasTrueScale) {
 // The formats that keep F0 are nearer to ours than base colour and metalness alone can be.
 TEST(MaterialFormatsTest, WholeMaterialsAreMoreFaithfulThanMetalRoughness) {
   const ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));
-  const double metal_roughness =
-      MetalRoughnessError(material.metal, material.maps, material.diffuse_weight);
+  const auto error_of = [&](const Shading& shading) {
+    return ShadingErrors(material.maps, material.diffuse_weight, {shading}, 1)[0];
+  };
+  const double metal_roughness = error_of(MetalRoughnessShading(material.metal, material.maps));
   for (const MaterialFormat& format : MaterialFormats()) {
-    const double error = ShadingError(material.maps, material.diffuse_weight,
-                                      [&](size_t texel, const DirectionPair& pair) {
-                                        return format.brdf(material, texel, pair);
-                                      });
+    const double error = error_of([&](size_t texel, const DirectionPair& pair) {
+      return format.brdf(material, texel, pair);
+    });
     EXPECT_GT(error, 0) << format.name;
     EXPECT_LT(error, 0.06) << format.name;
     EXPECT_LT(error, metal_roughness) << format.name;

@@ -12,6 +12,11 @@ namespace {
 
 using test::UniformMaps;
 
+double MetalRoughnessError(const MetalRoughness& converted, const SvbrdfMaps& maps,
+                           DiffuseWeight weight) {
+  return ShadingErrors(maps, weight, {MetalRoughnessShading(converted, maps)}, 1)[0];
+}
+
 // Two foils on card: a rough dielectric and a coloured metal, each with noise.
 SvbrdfMaps Foils(int size) {
   std::mt19937 random(4);
