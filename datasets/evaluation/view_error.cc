@@ -155,8 +155,9 @@ View ViewOfFit(const FittedMaps& fit, const RectifiedView& view) {
 std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
                              const RectifiedView& view, int threads) {
   const bool same_size = fit.maps.width == set.plane.width && fit.maps.height == set.plane.height;
-  const SvbrdfMaps maps =
-      same_size ? fit.maps : ResampleSvbrdf(fit.maps, set.plane.width, set.plane.height);
+  SvbrdfMaps resampled;
+  if (!same_size) resampled = ResampleSvbrdf(fit.maps, set.plane.width, set.plane.height);
+  const SvbrdfMaps& maps = same_size ? fit.maps : resampled;
   // The maps are of the fit's diffuse weight; light and texels are the set's.
   ReflectanceConvention convention = set.convention;
   convention.diffuse_weight = fit.convention.diffuse_weight;

@@ -31,15 +31,6 @@ cv::Mat Bytes(const Image& image) {
   return bytes;
 }
 
-std::string Encoded(const Image& image, const std::string& extension,
-                    const std::vector<int>& parameters) {
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(extension, Bytes(image), bytes, parameters)) {
-    throw ComputationError("report: a picture cannot be encoded as " + extension);
-  }
-  return {bytes.begin(), bytes.end()};
-}
-
 std::string DataUri(const std::string& type, const std::string& bytes) {
   return "data:image/" + type + ";base64," + Base64(bytes);
 }
@@ -74,16 +65,18 @@ Image ShrunkPlanes(std::span<const float> rgb_planar, int width, int height, int
 }
 
 std::string JpegBytes(const Image& image, int quality) {
-  return Encoded(image, ".jpg", {cv::IMWRITE_JPEG_QUALITY, quality});
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".jpg", Bytes(image), bytes, {cv::IMWRITE_JPEG_QUALITY, quality})) {
+    throw ComputationError("report: a picture cannot be encoded as JPEG");
+  }
+  return {bytes.begin(), bytes.end()};
 }
 
 std::string JpegUri(const Image& image, int quality) {
   return DataUri("jpeg", JpegBytes(image, quality));
 }
 
-std::string PngUri(const Image& image) {
-  return DataUri("png", Encoded(image, ".png", {cv::IMWRITE_PNG_COMPRESSION, 9}));
-}
+std::string PngUri(const Image& image) { return DataUri("png", EncodePng(image)); }
 
 std::string ImageHtml(const std::string& uri, const std::string& alternative) {
   return "<img src=\"" + uri + "\" alt=\"" + HtmlText(alternative) + "\">";

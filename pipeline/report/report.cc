@@ -9,6 +9,7 @@
 #include "pipeline/report/guidance_section.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/sections.h"
+#include "pipeline/report/shown_views.h"
 #include "pipeline/report/thumbnail.h"
 #include "pipeline/report/viewer_section.h"
 
@@ -87,9 +88,10 @@ ReportInput ReadReportInput(const fs::path& work, const std::string& from, int m
 Report MakeReport(const ReportInput& input, const ReportOptions& options, int threads) {
   Report report;
   report.metrics = Json::object();
-  const std::string views = ViewsSection(input, options, threads, &report.metrics);
+  const std::vector<ShownView> shown = ShowViews(input, options, threads);
+  const std::string views = ViewsSection(input, shown, &report.metrics);
   std::string body = TitleSection(input);
-  body += ViewerSection(input, options);
+  body += ViewerSection(input, options, shown, threads);
   body += MapsSection(input, options);
   body += DownloadsSection(input, options);
   body += TileSection(input, options);

@@ -18,7 +18,7 @@
 
 namespace glint {
 
-inline constexpr int kReportVersion = 8;
+inline constexpr int kReportVersion = 9;
 
 struct ReportOptions {
   std::string from = "refine";  // stage whose maps are shown: refine, fit

@@ -5,7 +5,8 @@
 #include <numbers>
 
 #include "base/errors/errors.h"
-#include "base/parallel/parallel.h"
+#include "base/resampling/resampling.h"
+#include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/files/hash.h"
 #include "pipeline/images/exr_rows.h"
 #include "pipeline/photos/photo.h"
@@ -22,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kOwnManifest[] = "manifest.json";
-constexpr float kDifferenceGain = 4;
 constexpr int kStagePicture_px = 1200;
 
 std::string ManifestLink(const std::string& stage) { return "../" + stage + "/manifest.json"; }
@@ -55,37 +55,6 @@ bool Used(const ReportInput& input, const RectifiedView& view) {
          input.used_views.end();
 }
 
-// Photograph, rendering and four times their difference, as three table cells.
-std::string PanelCells(const RectifiedImage& photograph, std::span<const float> rendered,
-                       const RectifiedView& view, int side_px, int threads) {
-  std::vector<float> difference(rendered.size());
-  const size_t texels = photograph.mask.size();
-  for (size_t i = 0; i < rendered.size(); ++i) {
-    const float high = view.ldr ? 1.0f : std::numeric_limits<float>::infinity();
-    const bool usable = photograph.mask[i % texels] >= 0.5f;
-    difference[i] = usable ? std::abs(std::clamp(photograph.rgb[i], 0.0f, high) -
-                                      std::clamp(rendered[i], 0.0f, high))
-                           : 0.0f;
-  }
-  struct Cell {
-    std::span<const float> rgb;
-    float gain;
-    const char* what;
-    std::string html;
-  };
-  Cell cells[] = {{photograph.rgb, 1, "photograph", ""},
-                  {rendered, 1, "rendering", ""},
-                  {difference, kDifferenceGain, "difference", ""}};
-  ForEachPiece(3, threads, [&](int i) {
-    Cell& cell = cells[i];
-    // Radiance is averaged, not what is displayed of it.
-    const Image small = ShrunkPlanes(cell.rgb, photograph.width, photograph.height, side_px);
-    const Image shown = DisplayImage(small.samples, small.width, small.height, cell.gain);
-    cell.html = "<td>" + ImageHtml(JpegUri(shown), cell.what + (" " + view.name)) + "</td>";
-  });
-  return cells[0].html + cells[1].html + cells[2].html;
-}
-
 // Where large photographs are compared at a smaller size: which.
 std::string ComparedAt(const ReportInput& input) {
   const SamplePlane &whole = input.set.plane, &shown = input.shown.plane;
@@ -100,14 +69,9 @@ double Distance_mm(const Vec3d& point) {
 
 }  // namespace
 
-RectifiedImage ShownPhotograph(const ReportInput& input, const RectifiedView& view) {
-  return PhotographOfFit(input.fit, input.set, view, input.shown.plane.width,
-                         input.shown.plane.height);
-}
-
-Image RoughnessConfidence(const ReportInput& input, const fs::path& confidence_exr) {
-  const SamplePlane& plane = input.shown.plane;
-  const Image image = ReadExrAveraged(confidence_exr, {"roughness.Y"}, plane.width, plane.height);
+Image RoughnessConfidence(const ReportInput& input, const fs::path& confidence_exr, int most_px) {
+  const auto [width, height] = SizeAtMost(input.set.plane.width, input.set.plane.height, most_px);
+  const Image image = ReadExrAveraged(confidence_exr, {"roughness.Y"}, width, height);
   return ColorMapped(image.channel(0), image.width, image.height, 0, 0.2f);
 }
 
@@ -189,14 +153,16 @@ std::string MapsSection(const ReportInput& input, const ReportOptions& options) 
       {"roughness", kRoughness, "grey", "roughness, 0 black to 1 white"},
       {"normal", kNormalX, "normal", "normal, (n + 1)/2, +Y up"},
   };
+  const SvbrdfMaps& whole = input.fit.maps;
+  const auto [width, height] = SizeAtMost(whole.width, whole.height, options.picture_px);
+  const SvbrdfMaps maps = ResampleSvbrdf(whole, width, height);
   std::string body = "<div class=\"pictures\">\n";
   for (const Shown& shown : kShown) {
-    const Image image = MapImage(input.fit.maps, shown.plane, shown.kind);
-    body += Figure(JpegUri(Shrunk(image, options.picture_px), 92), shown.caption);
+    body += Figure(JpegUri(MapImage(maps, shown.plane, shown.kind), 92), shown.caption);
   }
   const fs::path confidence = input.work / "refine" / "confidence.exr";
   if (options.from == "refine" && fs::exists(confidence)) {
-    body += Figure(PngUri(Shrunk(RoughnessConfidence(input, confidence), options.picture_px / 2)),
+    body += Figure(PngUri(RoughnessConfidence(input, confidence, options.picture_px / 2)),
                    "standard deviation of the roughness, blue 0 to yellow 0.2");
   }
   body += "</div>\n";
@@ -223,7 +189,7 @@ std::string TileSection(const ReportInput& input, const ReportOptions& options) 
                             "three by three pieces, lit", "wide"));
 }
 
-std::string ViewsSection(const ReportInput& input, const ReportOptions& options, int threads,
+std::string ViewsSection(const ReportInput& input, const std::vector<ShownView>& shown,
                          Json* own_metrics) {
   Json views = Json::array();
   std::string rows;
@@ -231,12 +197,11 @@ std::string ViewsSection(const ReportInput& input, const ReportOptions& options,
     double log_l1 = 0, rmse = 0;
     int count = 0;
   } means[2];
-  for (const RectifiedView& view : input.set.views) {
-    const RectifiedImage photograph = ShownPhotograph(input, view);
-    const std::vector<float> rendered = RenderFit(input.fit, input.shown, view, threads);
-    const ViewError error = CompareView(rendered, photograph, view.ldr);
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const RectifiedView& view = input.set.views[i];
+    const ViewError& error = shown[i].error;
     const bool used = Used(input, view);
-    const Trace trace = Trace{kOwnManifest, "metrics.views"}.Index(views.size());
+    const Trace trace = Trace{kOwnManifest, "metrics.views"}.Index(i);
     views.push_back({{"name", view.name},
                      {"photo", view.photo},
                      {"fitted", used},
@@ -251,8 +216,7 @@ std::string ViewsSection(const ReportInput& input, const ReportOptions& options,
     }
     const Json& entry = views.back();
     rows += "<tr><td>" + HtmlText(view.name) + "<br><code>" + HtmlText(view.photo) + "</code>" +
-            (used ? "" : "<br><span class=\"kept\">held out</span>") + "</td>" +
-            PanelCells(photograph, rendered, view, options.picture_px / 2, threads) +
+            (used ? "" : "<br><span class=\"kept\">held out</span>") + "</td>" + shown[i].cells +
             "<td class=\"number\">" + FigureHtml(entry["log_l1"], trace.Field("log_l1")) +
             "</td><td class=\"number\">" + FigureHtml(entry["rmse"], trace.Field("rmse")) +
             "</td></tr>\n";

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "pipeline/images/image.h"
 #include "pipeline/report/report.h"
+#include "pipeline/report/shown_views.h"
 
 namespace glint {
 
@@ -13,17 +15,16 @@ std::string TitleSection(const ReportInput& input);
 // A part of the page that is closed at first.
 std::string Folded(const std::string& title, const std::string& body);
 
-// The photograph at the size that is shown.
-RectifiedImage ShownPhotograph(const ReportInput& input, const RectifiedView& view);
-// Standard deviation of the roughness at that size, in colours from 0 to 0.2.
-Image RoughnessConfidence(const ReportInput& input, const std::filesystem::path& confidence_exr);
+// Standard deviation of the roughness in colours from 0 to 0.2, at most `most_px` along a side.
+Image RoughnessConfidence(const ReportInput& input, const std::filesystem::path& confidence_exr,
+                          int most_px);
 
 std::string OverviewSection(const ReportInput& input, const Json& own_metrics);
 std::string MapsSection(const ReportInput& input, const ReportOptions& options);
 // Three by three repetitions; "" where the stage tile has not run on these maps.
 std::string TileSection(const ReportInput& input, const ReportOptions& options);
-// Renders every view; adds the errors to `own_metrics`.
-std::string ViewsSection(const ReportInput& input, const ReportOptions& options, int threads,
+// Adds the errors to `own_metrics`.
+std::string ViewsSection(const ReportInput& input, const std::vector<ShownView>& shown,
                          Json* own_metrics);
 std::string GeometrySection(const ReportInput& input);
 // Metrics, pictures, options, inputs and outputs of one stage.

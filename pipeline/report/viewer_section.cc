@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/colour/srgb.h"
+#include "base/parallel/parallel.h"
 #include "base/resampling/resampling.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/report/html.h"
@@ -48,23 +49,31 @@ SvbrdfMaps ShownMaps(const SvbrdfMaps& maps, int most_px) {
   return ResampleSvbrdf(maps, width, height);
 }
 
-Json MapsJson(const ReportInput& input, const SvbrdfMaps& maps, const ReportOptions& options) {
+Json MapsJson(const ReportInput& input, const SvbrdfMaps& maps, const ReportOptions& options,
+              int threads) {
   const auto geometry = GeometryPictures(maps);
-  Json json = {{"diffuse", PngUri(SrgbPicture(maps, kDiffuseR))},
-               {"specular", PngUri(SrgbPicture(maps, kSpecularR))},
-               {"geometry_high", PngUri(geometry[0])},
-               {"geometry_low", PngUri(geometry[1])}};
+  const std::array<std::pair<const char*, Image>, 4> pictures = {
+      {{"diffuse", SrgbPicture(maps, kDiffuseR)},
+       {"specular", SrgbPicture(maps, kSpecularR)},
+       {"geometry_high", geometry[0]},
+       {"geometry_low", geometry[1]}}};
+  std::array<std::string, pictures.size()> uris;
+  ForEachPiece(static_cast<int>(pictures.size()), threads, [&](int i) {
+    uris[static_cast<size_t>(i)] = PngUri(pictures[static_cast<size_t>(i)].second);
+  });
+  Json json = Json::object();
+  for (size_t i = 0; i < pictures.size(); ++i) json[pictures[i].first] = uris[i];
   const fs::path confidence = input.work / "refine" / "confidence.exr";
   if (options.from == "refine" && fs::exists(confidence)) {
-    json["confidence"] = PngUri(Shrunk(RoughnessConfidence(input, confidence), options.picture_px));
+    json["confidence"] = PngUri(RoughnessConfidence(input, confidence, options.picture_px));
   }
   return json;
 }
 
-Json ViewsJson(const ReportInput& input, const ReportOptions& options) {
+Json ViewsJson(const ReportInput& input, const std::vector<ShownView>& shown) {
   Json views = Json::array();
-  for (const RectifiedView& view : input.set.views) {
-    const RectifiedImage photograph = ShownPhotograph(input, view);
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const RectifiedView& view = input.set.views[i];
     const View lit = ViewOfFit(input.fit, view);
     const bool fitted = std::find(input.used_views.begin(), input.used_views.end(), view.name) !=
                         input.used_views.end();
@@ -77,9 +86,7 @@ Json ViewsJson(const ReportInput& input, const ReportOptions& options) {
                      {"ambient_rgb", lit.ambient_rgb},
                      {"exposure", lit.exposure},
                      {"beam", lit.beam},
-                     {"photograph", JpegUri(Shrunk(DisplayImage(photograph.rgb, photograph.width,
-                                                                photograph.height),
-                                                   options.picture_px))}});
+                     {"photograph", shown[i].photograph_uri}});
   }
   return views;
 }
@@ -111,7 +118,8 @@ constexpr char kElements[] = R"(<div id="viewer" class="viewer">
 
 }  // namespace
 
-std::string ViewerSection(const ReportInput& input, const ReportOptions& options) {
+std::string ViewerSection(const ReportInput& input, const ReportOptions& options,
+                          const std::vector<ShownView>& shown, int threads) {
   if (ViewerBundle().empty()) {
     return "<p>This build of Glint has no viewer (npm could not be reached when it was built): the "
            "pictures below show what it would show.</p>\n";
@@ -122,8 +130,8 @@ std::string ViewerSection(const ReportInput& input, const ReportOptions& options
       {"size_texel", {maps.width, maps.height}},
       {"diffuse_whole", input.fit.convention.diffuse_weight == DiffuseWeight::kOne},
       {"falls_off", input.set.convention.falloff == LightFalloff::kInverseSquare},
-      {"maps", MapsJson(input, maps, options)},
-      {"views", ViewsJson(input, options)}};
+      {"maps", MapsJson(input, maps, options, threads)},
+      {"views", ViewsJson(input, shown)}};
   return std::string(kElements) + "<script type=\"application/json\" id=\"viewer-material\">" +
          ScriptJson(material) + "</script>\n";
 }
