@@ -6,19 +6,23 @@ namespace glint {
 namespace {
 
 constexpr StageKind kStages[] = {
-    {"calib", "cameras, poses and lights from the board", {1.5, 0, 0.025, 0, 0, 200, 15, 0, 0, 0}},
+    {"calib",
+     "cameras, poses and lights from the board",
+     {1.5, 0, 0, 0.025, 0, 0, 200, 15, 0, 0, 0}},
     {"rectify",
      "rectified top views of the sample in linear radiance",
-     {0.4, 0, 0.016, 0, 0.21, 170, 8, 0, 5, 70}},
-    {"fit", "material maps by latent or classic fitting", {1, 6, 0, 1.3, 0, 330, 0, 60, 0, 190}},
-    {"refine", "material maps per texel", {3, 0, 0, 8.5, 0.45, 140, 0, 226, 16, 1300}, true},
+     {0.4, 0, 0, 0.012, 0, 0.13, 170, 8, 0, 5, 70}},
+    {"fit", "material maps by latent or classic fitting", {1, 0, 7, 0, 1, 0, 330, 0, 60, 0, 190}},
+    {"refine", "material maps per texel", {0.6, 0.45, 0, 0, 7.2, 0.3, 140, 0, 300, 16, 1300}, true},
     {"tile",
      "seamlessly tiling maps ([tile] section in capture.toml)",
-     {0.2, 0, 0, 3.2, 0, 140, 0, 300, 0, 0}},
-    {"export", "maps and materials for other programs", {0.4, 0, 0, 5.2, 0, 136, 0, 170, 0, 3000}},
+     {0.2, 0, 0, 0, 3.2, 0, 140, 0, 300, 0, 0}},
+    {"export",
+     "maps and materials for other programs",
+     {0.15, 0, 0, 0, 1.7, 0, 136, 0, 190, 0, 3000}},
     {"report",
      "one HTML page showing the whole result",
-     {1.1, 0, 0, 3.6, 0.03, 280, 0, 130, 3, 450}},
+     {0.3, 0, 0, 0, 0.55, 0.05, 280, 0, 130, 3, 450}},
 };
 
 }  // namespace

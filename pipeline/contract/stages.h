@@ -9,11 +9,11 @@
 namespace glint {
 
 // A stage's work and memory are sums of parts (cost_model.h). Fitted to five captures of 5 to 12
-// photographs of 2 and 12 megapixels at 256² to 2048², on two cores of a Xeon with AVX-512 and
-// without bfloat16 (docs/experiments/run-time.md); one with bfloat16 took about 0.6
-// of the time.
+// photographs of 12 megapixels at 256² to 2048², on two cores of an EPYC with AVX-512 and bfloat16
+// (docs/experiments/run-time.md).
 struct StageCost {
   double start_s;              // programs, weights, files
+  double photograph_s;         // per photograph, whatever its size and the maps'
   double network_s;            // in the networks; twice as long without bfloat16
   double photograph_px_us;     // per pixel of every photograph
   double texel_us;             // per texel

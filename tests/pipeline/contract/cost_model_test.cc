@@ -25,49 +25,48 @@ struct MeasuredRun {
 
 constexpr double kMega = 1e6;
 
-// Two cores of a Xeon with AVX-512 and bfloat16 and nothing else running, 24 November 2026; `glint
-// run`, run.json of each stage. Refinement of version 21, all but the fourth: an EPYC with the
-// same, 26 November.
+// Two cores of an EPYC with AVX-512 and bfloat16 and nothing else running, 26 November 2026;
+// photographs of 12 megapixels, refinement of version 22, run.json of each stage.
 std::vector<MeasuredRun> Runs() {
-  const auto size = [](int photographs, double megapixels, int side) {
-    return CaptureSize{photographs, kMega * megapixels, 1.0 * side * side, true};
+  const auto size = [](int photographs, int side) {
+    return CaptureSize{photographs, 12 * kMega, 1.0 * side * side, true};
   };
   return {
-      {size(5, 12, 256),
-       {{"calib", 2.53, 565},
-        {"rectify", 1.29, 324},
-        {"fit", 5.98, 359},
-        {"refine", 4.51, 155},
-        {"export", 0.694, 160},
-        {"report", 1.21, 280}}},
-      {size(12, 12, 512),
-       {{"calib", 5.23, 570},
-        {"rectify", 3.43, 323},
-        {"fit", 7.62, 381},
-        {"refine", 6.76, 294},
-        {"export", 1.57, 208},
-        {"report", 2.37, 317}}},
-      {size(9, 2, 1024),
-       {{"calib", 2.22, 236},
-        {"rectify", 2.37, 230},
-        {"fit", 8.84, 392},
-        {"refine", 16.3, 517},
-        {"export", 5.64, 391},
-        {"report", 6.4, 398}}},
-      {size(12, 12, 1024),
-       {{"calib", 5.25, 570},
-        {"rectify", 4.15, 384},
-        {"fit", 8.79, 375},
-        {"refine", 16.9, 566},
-        {"export", 5.63, 392},
-        {"report", 6.38, 408}}},
-      {size(12, 12, 2048),
-       {{"calib", 5.21, 570},
-        {"rectify", 13.4, 404},
-        {"fit", 12.6, 419},
-        {"refine", 53.7, 1291},
-        {"export", 23, 798},
-        {"report", 15.9, 696}}},
+      {size(5, 256),
+       {{"calib", 2.23, 556},
+        {"rectify", 0.96, 319},
+        {"fit", 8.82, 361},
+        {"refine", 2.55, 161},
+        {"export", 0.222, 158},
+        {"report", 0.332, 282}}},
+      {size(12, 512),
+       {{"calib", 4.92, 567},
+        {"rectify", 2.39, 373},
+        {"fit", 9.55, 372},
+        {"refine", 10.3, 306},
+        {"export", 0.72, 206},
+        {"report", 0.77, 319}}},
+      {size(9, 1024),
+       {{"calib", 4.52, 532},
+        {"rectify", 2.38, 379},
+        {"fit", 9.18, 370},
+        {"refine", 14.2, 663},
+        {"export", 1.78, 392},
+        {"report", 1.42, 439}}},
+      {size(12, 1024),
+       {{"calib", 5.03, 568},
+        {"rectify", 3.33, 384},
+        {"fit", 10.4, 374},
+        {"refine", 18.9, 767},
+        {"export", 1.86, 392},
+        {"report", 1.57, 444}}},
+      {size(12, 2048),
+       {{"calib", 5.05, 568},
+        {"rectify", 8.95, 405},
+        {"fit", 12.8, 426},
+        {"refine", 47.8, 1338},
+        {"export", 7.36, 904},
+        {"report", 4.39, 759}}},
   };
 }
 
