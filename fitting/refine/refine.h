@@ -105,7 +105,7 @@ struct RefineSummary {
   double roughness_spread = 0;      // of texels about their substance's mean …
   double specular_spread = 0;       // … relative
   double diffuse_spread = 0;        // likewise; ∞ from one or two photographs
-  double initialisation_error = 0;  // of its albedos, in expected ones of one photograph
+  double initialisation_error = 0;  // in expected ones of one photograph
   double neighbour_spread = 0;      // between neighbours' departures from those means, in spreads
   double normal_spread = 0;         // of n_x, n_y about 0, and between neighbours
   SharedLight shared_light;         // of all views

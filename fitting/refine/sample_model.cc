@@ -17,8 +17,8 @@ namespace glint {
 namespace {
 
 constexpr size_t kSampled = 2048;
-constexpr int kLeastValidatedViews = 3;  // of two, one would have to predict the other
-// Of the albedos' errors, where fitting has seen the same photographs.
+constexpr size_t kLeastValidatedViews = 3;  // of two, one would have to predict the other
+// Of the initialisation's errors, where fitting has seen the same photographs.
 constexpr double kSeenAlready = 3;
 // Scatter of normals to begin with; cross-validation changes it. Of what initial maps say of it a
 // part is what fitting made of its photographs.
@@ -59,12 +59,16 @@ SharedValues SharedOf(const TexelValues& values) {
 
 // Errors of the initialisation. One photograph leaves it what the estimator made it. Of several,
 // fitting has shown it the same photographs already, and what it took from them is not to count
-// twice: roughness and normals, which hold its misfit, are then not taken from it at all.
+// twice: from three on, which tell roughness and normals themselves, these are not taken from it at
+// all, since they hold its misfit.
 InitialisationErrors ErrorsOfInitialisation(const RefineProblem& problem) {
   InitialisationErrors errors;
-  if (problem.views.size() == 1) return errors;
-  errors.ScaleAlbedos(kSeenAlready);
-  errors.normal = errors.roughness = std::numeric_limits<double>::infinity();
+  const size_t views = problem.views.size();
+  if (views == 1) return errors;
+  errors.Scale(kSeenAlready);
+  if (views >= kLeastValidatedViews) {
+    errors.normal = errors.roughness = std::numeric_limits<double>::infinity();
+  }
   return errors;
 }
 
@@ -389,7 +393,7 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   learns_normals_ = true;
   Fit(all_views_, options_.estimation_rounds, true, &sampling);
   learns_normals_ = false;
-  if (static_cast<int>(all_views_.size()) < kLeastValidatedViews) return;
+  if (all_views_.size() < kLeastValidatedViews) return;
   HoldViews(kExpectedDiffuseSpread, sampling);
   ChooseSpreads(Sample(kSampled, solver, threads));
   ChooseNeighbourSpread(kSampled, solver, threads);

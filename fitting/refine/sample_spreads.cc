@@ -61,7 +61,7 @@ SampleModel SampleModel::ScaledBy(const SpreadFactors& factors) const {
   model.means_.specular_spread *= factors[kSpecularSpread];
   model.means_.diffuse_spread *= factors[kDiffuseSpread];
   for (double& spread : model.normal_spreads_) spread *= factors[kNormalSpread];
-  model.initial_errors_.ScaleAlbedos(factors[kInitialisationError]);
+  model.initial_errors_.Scale(factors[kInitialisationError]);
   return model;
 }
 

@@ -23,8 +23,9 @@ struct InitialisationErrors {
   double specular = 0.02;
   double specular_relative = 0.2;
 
-  void ScaleAlbedos(double factor) {
-    for (double* error : {&diffuse, &diffuse_relative, &specular, &specular_relative}) {
+  void Scale(double factor) {
+    for (double* error :
+         {&normal, &roughness, &diffuse, &diffuse_relative, &specular, &specular_relative}) {
       *error *= factor;
     }
   }

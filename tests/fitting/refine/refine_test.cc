@@ -196,6 +196,28 @@ TEST(Refine, OnePhotographDoesNotMakeMapsWorse) {
   EXPECT_LT(held.summary.view_loss[0], 0.1);
 }
 
+// Two photographs hardly tell relief that scatters a flash from a rough surface's own scatter.
+TEST(Refine, TwoPhotographsKeepWhatTheStartKnowsOfRoughness) {
+  SvbrdfMaps truth = QuarteredMaps(32, 21);
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    float* normal[3] = {&truth.plane(kNormalX)[t], &truth.plane(kNormalY)[t],
+                        &truth.plane(kNormalZ)[t]};
+    *normal[0] *= 2;
+    *normal[1] *= 2;
+    *normal[2] = std::sqrt(1 - *normal[0] * *normal[0] - *normal[1] * *normal[1]);
+    truth.plane(kRoughness)[t] = 0.57f;
+    for (int c = 0; c < 3; ++c) {
+      truth.plane(kDiffuseR + c)[t] *= 0.4f / truth.plane(kDiffuseR)[t];
+      truth.plane(kSpecularR + c)[t] = 0.04f;
+    }
+  }
+  const SyntheticScene scene = Photograph(truth, 2, 8);
+  const SvbrdfMaps start = DisturbedMaps(truth, 1.0f, 22);
+  const RefineResult result = Refine(scene.Problem(), start, {}, 1);
+  EXPECT_LT(MeanSquare(result.maps, truth, kRoughness, kRoughness),
+            0.7 * MeanSquare(start, truth, kRoughness, kRoughness));
+}
+
 TEST(Refine, StopsLookingAtTheStartAsViewsGrow) {
   const SvbrdfMaps truth = QuarteredMaps(16, 16);
   const SvbrdfMaps start = DisturbedMaps(truth, 1.0f, 17);
