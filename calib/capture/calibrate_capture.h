@@ -19,7 +19,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 12;
+inline constexpr int kCalibVersion = 13;
 
 struct RejectedPhoto {
   std::string name, reason;

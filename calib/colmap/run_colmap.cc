@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raised when the steps or their options change, so that kept results are made again.
-constexpr int kRunVersion = 1;
+constexpr int kRunVersion = 2;
 // A photograph. Matching takes time with its square: half of COLMAP's own number.
 constexpr int kMostFeatures = 4096;
 constexpr size_t kEnoughForPrincipalPoint = 6;  // photographs

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kStageVersion = 2;  // of stage "rectify" as written here
+constexpr int kStageVersion = 3;  // of stage "rectify" as written here
 constexpr double kDirSide = 2.0;  // DIR's plane spans [-1, 1]²
 constexpr double kRadians = std::numbers::pi / 180;
 

@@ -32,6 +32,7 @@ std::vector<Step> StepsAlong(double azimuth, const HeightField& field, double re
   const double x = std::cos(azimuth), y = std::sin(azimuth);
   const double texel_mm = std::min(field.texel_x_mm, field.texel_y_mm);
   std::vector<Step> steps;
+  if (!(texel_mm > 0)) return steps;  // one texel has no neighbours
   double step_mm = texel_mm;
   for (double distance = texel_mm; distance <= reach_mm; distance += step_mm) {
     steps.push_back(StepTo(x * distance, y * distance, field));
@@ -88,8 +89,8 @@ void Raise(const float* upper, const float* lower, const Step& step, const float
 
 // Adds the share of an azimuth's sky above a horizon of that slope.
 GLINT_VECTOR_CLONES
-void AddOpenShare(const float* steepest, int width, float share, float* open) {
-  for (int c = 0; c < width; ++c) open[c] += share / (1 + steepest[c] * steepest[c]);
+void AddOpenShare(const float* steepest, int width, float* open) {
+  for (int c = 0; c < width; ++c) open[c] += 1 / (1 + steepest[c] * steepest[c]);
 }
 
 int FarthestColumn(const std::vector<std::vector<Step>>& azimuths) {
@@ -125,10 +126,10 @@ std::vector<float> AmbientOcclusion(const HeightField& field, const OcclusionOpt
               rows.Row(row + step.rows + 1) + step.columns, step, here, field.width,
               steepest.data());
       }
-      AddOpenShare(steepest.data(), field.width, 1 / static_cast<float>(options.directions),
-                   open.data() + static_cast<size_t>(row) * width);
+      AddOpenShare(steepest.data(), field.width, open.data() + static_cast<size_t>(row) * width);
     }
   });
+  for (float& share : open) share /= static_cast<float>(options.directions);
   return open;
 }
 

@@ -14,7 +14,7 @@
 
 namespace glint {
 
-inline constexpr int kTileVersion = 4;
+inline constexpr int kTileVersion = 5;
 
 struct TileStageOptions {
   std::string from = "refine";

@@ -1,7 +1,7 @@
 // What stages cost, by the capture's size: what `glint estimate` says, what `glint run` derives its
 // remaining time from, and what is refused where memory is short.
 //
-// Seconds are those of two cores of a Xeon of 2.8 GHz; with AVX2 alone they are the same. On
+// Seconds are those of two cores of an EPYC with AVX-512; with AVX2 alone they are the same. On
 // another machine all are off by about one factor, which the time that a run has taken so far
 // shows.
 #pragma once

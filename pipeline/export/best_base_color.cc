@@ -11,6 +11,8 @@
 namespace glint {
 namespace {
 
+constexpr double kDielectricF0 = 0.04;  // glTF's
+
 // Of log radiance; errors below count as squares, larger ones as they are: a highlight that the
 // target cannot have is not to spoil what it can.
 constexpr float kRobustScale = 0.05f;

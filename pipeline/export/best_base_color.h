@@ -9,8 +9,6 @@
 
 namespace glint {
 
-inline constexpr double kDielectricF0 = 0.04;
-
 // Reflectance as slope·base + rest, of a lobe D·G/(4·NoL·NoV) and the power in Fresnel's term.
 struct LinearInBase {
   double slope = 0, rest = 0;

@@ -17,9 +17,9 @@ namespace glint {
 OIIO::ImageSpec PngSpec(int width, int height, int channels, int bits, const PngTags& tags) {
   OIIO::ImageSpec spec(width, height, channels, bits == 16 ? OIIO::TypeUInt16 : OIIO::TypeUInt8);
   spec.attribute("DateTime", kNoDate);
-  // Maps and photographs hold noise, in which little repeats but what lies side by side: than with
-  // zlib's search for repeats anywhere, files are at most an eighth larger and written eight times
-  // as fast.
+  // Maps and photographs hold noise, in which little repeats but what lies side by side. Compared
+  // with zlib's search for repeats anywhere, maps are written eight times as fast and are at most
+  // an eighth larger.
   constexpr int kAverageFilter = 64;  // libpng's PNG_FILTER_AVG
   spec.attribute("compression", "rle");
   spec.attribute("png:filter", kAverageFilter);

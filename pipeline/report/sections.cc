@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/errors/errors.h"
 #include "base/resampling/resampling.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/files/hash.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/parallel/parallel.h"
 #include "pipeline/report/picture.h"
@@ -54,11 +55,11 @@ ShownView Show(const ReportInput& input, const ReportOptions& options, const Rec
 std::vector<ShownView> ShowViews(const ReportInput& input, const ReportOptions& options,
                                  int threads) {
   std::vector<ShownView> views(input.set.views.size());
-  ForEachPiece(static_cast<int>(views.size()),
-               threads > 0 ? std::min(threads, kViewsAtOnce) : kViewsAtOnce, [&](int i) {
-                 const auto view = static_cast<size_t>(i);
-                 views[view] = Show(input, options, input.set.views[view]);
-               });
+  const int at_once = threads == 1 ? 1 : kViewsAtOnce;
+  ForEachPiece(static_cast<int>(views.size()), at_once, [&](int i) {
+    const auto view = static_cast<size_t>(i);
+    views[view] = Show(input, options, input.set.views[view]);
+  });
   return views;
 }
 

@@ -1,7 +1,9 @@
 #include "pipeline/report/viewer_section.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/colour/srgb.h"
 #include "base/parallel/parallel.h"

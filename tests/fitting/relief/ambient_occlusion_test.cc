@@ -88,6 +88,36 @@ TEST(AmbientOcclusion, AgreesWithCastRays) {
   EXPECT_LT(y / n, 0.95);  // there is something to see
 }
 
+// Each texel by itself, with Lookup: of a field that is not square, nor are its texels, and whose
+// borders continue.
+TEST(AmbientOcclusion, IsThatOfTexelsLookedUpOneByOne) {
+  HeightField field{40, 26, 0.5, 0.7, std::vector<float>(40 * 26)};
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (float& height : field.height_mm) height = uniform(random);
+  OcclusionOptions options;
+  options.directions = 6;
+  options.reach_mm = 9;
+  const std::vector<float> open = AmbientOcclusion(field, options, 1);
+  for (int row = 0; row < field.height; ++row) {
+    for (int column = 0; column < field.width; ++column) {
+      double sum = 0;
+      for (int i = 0; i < options.directions; ++i) {
+        const double azimuth = 2 * kPi * (i + 0.5) / options.directions;
+        double steepest = 0, step = 0.5;
+        for (double d = 0.5; d <= options.reach_mm; step *= options.step_growth, d += step) {
+          const double height = field.Lookup(row - d * std::sin(azimuth) / field.texel_y_mm,
+                                             column + d * std::cos(azimuth) / field.texel_x_mm);
+          steepest = std::max(steepest, (height - field.at(row, column)) / d);
+        }
+        sum += 1 / (1 + steepest * steepest);
+      }
+      EXPECT_NEAR(open[static_cast<size_t>(row * field.width + column)], sum / options.directions,
+                  1e-5);
+    }
+  }
+}
+
 // Cut elsewhere, a relief that repeats is the same relief.
 TEST(AmbientOcclusion, OfARepeatingReliefDependsOnNoBorder) {
   HeightField field = Bumps(32, 7);

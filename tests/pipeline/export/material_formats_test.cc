@@ -87,6 +87,23 @@ TEST(MaterialFormatsTest, WholeMaterialsAreMoreFaithfulThanMetalRoughness) {
   }
 }
 
+// Together and by several threads as each by itself.
+TEST(MaterialFormatsTest, ShadingErrorsAreEachShadingsOwn) {
+  const ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));
+  std::vector<Shading> shadings = {MetalRoughnessShading(material.metal, material.maps)};
+  for (const MaterialFormat& format : MaterialFormats()) {
+    shadings.push_back([&](size_t texel, const DirectionPair& pair) {
+      return format.brdf(material, texel, pair);
+    });
+  }
+  const auto together = ShadingErrors(material.maps, material.diffuse_weight, shadings, 3);
+  ASSERT_EQ(together.size(), shadings.size());
+  for (size_t i = 0; i < shadings.size(); ++i) {
+    EXPECT_EQ(together[i],
+              ShadingErrors(material.maps, material.diffuse_weight, {shadings[i]}, 1)[0]);
+  }
+}
+
 TEST(MaterialFormatsTest, RefusesAFormatThatIsNone) {
   EXPECT_THROW(ChosenFormats({"gltf", "obj"}), UserError);
   EXPECT_EQ(ChosenFormats({"usd", "gltf"}).size(), 2u);

@@ -101,6 +101,33 @@ TEST(MetalRoughnessTest, IsTheBestOfItsNeighbourhood) {
   }
 }
 
+// Wider than what is averaged at a time, and neighbours beyond the borders.
+TEST(MetalRoughnessTest, MirroredMapsAreConvertedAlike) {
+  constexpr int kWidth = 300, kHeight = 5;
+  const SvbrdfMaps foils = Foils(kWidth);
+  SvbrdfMaps maps(kWidth, kHeight), mirrored(kWidth, kHeight);
+  for (int p = 0; p < kSvbrdfPlanes; ++p) {
+    for (int row = 0; row < kHeight; ++row) {
+      for (int column = 0; column < kWidth; ++column) {
+        maps.at(p, row, column) = foils.at(p, row, column);
+        mirrored.at(p, row, kWidth - 1 - column) = foils.at(p, row, column);
+      }
+    }
+  }
+  MetalRoughnessOptions options;
+  options.radius = 64;
+  const auto found = ToMetalRoughness(maps, DiffuseWeight::kOne, options, 1);
+  const auto of_mirrored = ToMetalRoughness(mirrored, DiffuseWeight::kOne, options, 1);
+  for (int row = 0; row < kHeight; ++row) {
+    for (int column = 0; column < kWidth; ++column) {
+      const auto i = static_cast<size_t>(row * kWidth + column);
+      const auto j = static_cast<size_t>(row * kWidth + kWidth - 1 - column);
+      EXPECT_NEAR(found.metallic[i], of_mirrored.metallic[j], 1e-3) << column;
+      EXPECT_NEAR(found.ColorAt(i)[1], of_mirrored.ColorAt(j)[1], 1e-3) << column;
+    }
+  }
+}
+
 TEST(MetalRoughnessTest, DoesNotDependOnTheNumberOfThreads) {
   const SvbrdfMaps maps = Foils(24);
   const auto one = ToMetalRoughness(maps, DiffuseWeight::kOne, {}, 1);
