@@ -8,9 +8,9 @@
 
 namespace glint {
 
-// A stage's work and memory are sums of parts (cost_model.h). Fitted to five captures of 5 to 12
-// photographs of 12 megapixels at 256² to 2048², on two cores of an EPYC with AVX-512 and bfloat16
-// (docs/experiments/run-time.md).
+// A stage's work and memory are sums of parts (cost_model.h). Fitted to six captures of 5 to 12
+// photographs of 2 and 12 megapixels at 256² to 2048², on two cores of an EPYC with AVX-512 and
+// bfloat16 (docs/experiments/run-time.md).
 struct StageCost {
   double start_s;              // programs, weights, files
   double photograph_s;         // per photograph, whatever its size and the maps'
