@@ -25,7 +25,8 @@ struct Rows;
 
 struct MetalRoughnessOptions {
   int radius = 4;  // texels, of the neighbours whose errors are averaged
-  // Of √albedo: neighbours that differ by this count a little more than half, from twice it on nothing.
+  // Of √albedo: neighbours that differ by this count a little more than half, from twice it on
+  // nothing.
   double colour_width = 0.1;
   // Cost of metalness ½ beside 0 and 1: nothing is half a metal. Of log radiance.
   double blend_cost = 0.003;

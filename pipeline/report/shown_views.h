@@ -16,7 +16,8 @@ struct ShownView {
 };
 
 // In the set's order. Each photograph is read and rendered once, at the size of `input.shown`; at
-// most kViewsAtOnce are in memory, some 250 MB each, whatever the number of threads. The same for any number of threads.
+// most kViewsAtOnce are in memory, some 250 MB each, whatever the number of threads. The same for
+// any number of threads.
 inline constexpr int kViewsAtOnce = 2;
 std::vector<ShownView> ShowViews(const ReportInput& input, const ReportOptions& options,
                                  int threads);
