@@ -91,10 +91,8 @@ void MakeScene(Scene* scene) {
   }
   SvbrdfMaps truth(kSize, kSize);
   constexpr int kPatch = 16;
-  std::vector<TexelValues> materials;
-  for (int i = 0; i < (kSize / kPatch) * (kSize / kPatch); ++i) {
-    materials.push_back(RandomMaterial(&random));
-  }
+  std::vector<TexelValues> materials((kSize / kPatch) * (kSize / kPatch));
+  for (TexelValues& material : materials) material = RandomMaterial(&random);
   for (size_t t = 0; t < truth.texels(); ++t) {
     const size_t patch = (t / kSize / kPatch) * (kSize / kPatch) + t % kSize / kPatch;
     TexelValues texel = materials[patch];

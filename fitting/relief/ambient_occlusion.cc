@@ -33,10 +33,11 @@ std::vector<Step> StepsAlong(double azimuth, const HeightField& field, double re
   const double texel_mm = std::min(field.texel_x_mm, field.texel_y_mm);
   std::vector<Step> steps;
   if (!(texel_mm > 0)) return steps;  // one texel has no neighbours
-  double step_mm = texel_mm;
-  for (double distance = texel_mm; distance <= reach_mm; distance += step_mm) {
-    steps.push_back(StepTo(x * distance, y * distance, field));
+  double step_mm = texel_mm, distance_mm = texel_mm;
+  while (distance_mm <= reach_mm) {
+    steps.push_back(StepTo(x * distance_mm, y * distance_mm, field));
     step_mm *= growth;
+    distance_mm += step_mm;
   }
   return steps;
 }

@@ -143,9 +143,10 @@ struct Grid {
 
   // Of the second difference with free ends.
   static std::vector<double> Eigenvalues(int count) {
-    std::vector<double> values;
-    for (int i = 0; i < count; ++i)
-      values.push_back(2 - 2 * std::cos(std::numbers::pi * i / count));
+    std::vector<double> values(static_cast<size_t>(count));
+    for (size_t i = 0; i < values.size(); ++i) {
+      values[i] = 2 - 2 * std::cos(std::numbers::pi * static_cast<double>(i) / count);
+    }
     return values;
   }
 };

@@ -94,7 +94,8 @@ class CostTable {
   static constexpr std::uint32_t kNone = 0xffffffff;
 
   static size_t StepOf(float albedo) {
-    return static_cast<size_t>(0.5f + std::sqrt(std::clamp(albedo, 0.0f, 1.0f)) * (kSteps - 1));
+    return static_cast<size_t>(
+        std::lround(std::sqrt(std::clamp(albedo, 0.0f, 1.0f)) * (kSteps - 1)));
   }
   static float AlbedoOf(size_t step) {
     const float root = static_cast<float>(step) / (kSteps - 1);
@@ -242,13 +243,14 @@ Sums SumsOfNeighbours(const Rows& rows, int row, int first, int count, int radiu
 
 // Where a parabola through the least cost and its neighbours is least.
 double BestMetalness(const Costs& costs) {
-  const int best = static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());
-  if (best == 0 || best == kMetalnesses - 1) return Metalness(best);
-  const double below = costs[static_cast<size_t>(best - 1)], at = costs[static_cast<size_t>(best)];
-  const double above = costs[static_cast<size_t>(best + 1)];
+  const auto best =
+      static_cast<size_t>(std::min_element(costs.begin(), costs.end()) - costs.begin());
+  const auto label = static_cast<double>(best);
+  if (best == 0 || best == kMetalnesses - 1) return Metalness(label);
+  const double below = costs[best - 1], at = costs[best], above = costs[best + 1];
   const double curvature = below - 2 * at + above;
   const double shift = curvature > 1e-12 ? 0.5 * (below - above) / curvature : 0;
-  return Metalness(best + shift);
+  return Metalness(label + shift);
 }
 
 }  // namespace metal_tables
@@ -305,7 +307,8 @@ void MetalConverter::ConvertRow(const SvbrdfMaps& maps, const Rows& rows, int ab
     const Sums sums =
         SumsOfNeighbours(rows, above + row, first, count, options_.radius, per_square);
     for (int c = 0; c < count; ++c) {
-      const auto column = static_cast<size_t>(first + c), width = static_cast<size_t>(maps.width);
+      const size_t column = static_cast<size_t>(first) + static_cast<size_t>(c);
+      const auto width = static_cast<size_t>(maps.width);
       Costs costs;
       for (size_t k = 0; k < kMetalnesses; ++k) costs[k] = sums.of[k][static_cast<size_t>(c)];
       const auto metallic = static_cast<float>(BestMetalness(costs));

@@ -38,7 +38,8 @@ double RayCast(const HeightField& field, int row, int column, double reach_mm) {
   int open = 0;
   const double here = field.at(row, column);
   for (int ray = 0; ray < kRays; ++ray) {
-    const double u = (ray % 16 + 0.5) / 16, azimuth = 2 * kPi * (ray / 16 + 0.5) / 16;
+    const double u = (ray % 16 + 0.5) / 16,
+                 azimuth = 2 * kPi * (static_cast<double>(ray - ray % 16) / 16 + 0.5) / 16;
     const double tangent = std::sqrt((1 - u) / u);  // cos²(polar) = u
     bool hidden = false;
     for (double d = 0.1 * field.texel_x_mm; d < reach_mm && !hidden; d += 0.25 * field.texel_x_mm) {
@@ -104,11 +105,13 @@ TEST(AmbientOcclusion, IsThatOfTexelsLookedUpOneByOne) {
       double sum = 0;
       for (int i = 0; i < options.directions; ++i) {
         const double azimuth = 2 * kPi * (i + 0.5) / options.directions;
-        double steepest = 0, step = 0.5;
-        for (double d = 0.5; d <= options.reach_mm; step *= options.step_growth, d += step) {
+        double steepest = 0, step = 0.5, d = 0.5;
+        while (d <= options.reach_mm) {
           const double height = field.Lookup(row - d * std::sin(azimuth) / field.texel_y_mm,
                                              column + d * std::cos(azimuth) / field.texel_x_mm);
           steepest = std::max(steepest, (height - field.at(row, column)) / d);
+          step *= options.step_growth;
+          d += step;
         }
         sum += 1 / (1 + steepest * steepest);
       }

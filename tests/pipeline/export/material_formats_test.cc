@@ -12,7 +12,6 @@ namespace glint {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 const std::array<float, kSvbrdfPlanes> kValues = {0,    0,    1,     0.4f,  0.3f,
                                                   0.2f, 0.1f, 0.08f, 0.06f, 0.4f};

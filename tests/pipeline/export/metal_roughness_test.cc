@@ -120,8 +120,8 @@ TEST(MetalRoughnessTest, MirroredMapsAreConvertedAlike) {
   const auto of_mirrored = ToMetalRoughness(mirrored, DiffuseWeight::kOne, options, 1);
   for (int row = 0; row < kHeight; ++row) {
     for (int column = 0; column < kWidth; ++column) {
-      const auto i = static_cast<size_t>(row * kWidth + column);
-      const auto j = static_cast<size_t>(row * kWidth + kWidth - 1 - column);
+      const size_t i = static_cast<size_t>(row) * kWidth + static_cast<size_t>(column);
+      const size_t j = static_cast<size_t>(row + 1) * kWidth - 1 - static_cast<size_t>(column);
       EXPECT_NEAR(found.metallic[i], of_mirrored.metallic[j], 1e-3) << column;
       EXPECT_NEAR(found.ColorAt(i)[1], of_mirrored.ColorAt(j)[1], 1e-3) << column;
     }
