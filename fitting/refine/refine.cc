@@ -84,8 +84,11 @@ std::string RefineSummary::BriefReport() const {
   text.precision(3);
   text << "cost " << start_cost << " -> " << final_cost << " per texel, residuals "
        << 100 * residual_sigma << " % (model discrepancy " << 100 * discrepancy << " %), "
-       << effective_views << " effective views, " << substances << " substances (roughness spread "
-       << roughness_spread << "), normals scatter " << normal_spread * 180 / M_PI << " deg, ";
+       << effective_views << " effective views, ";
+  if (std::isfinite(normal_spread)) {  // more than one photograph
+    text << substances << " substances (roughness spread " << roughness_spread
+         << "), normals scatter " << normal_spread * 180 / M_PI << " deg, ";
+  }
   if (exposure_spread > 0) text << "exposures scatter " << 100 * exposure_spread << " %, ";
   text << 100.0 * converged << " % converged";
   return text.str();

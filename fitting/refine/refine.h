@@ -102,12 +102,12 @@ struct RefineSummary {
   double discrepancy = 0;           // of it, what the reflectance model does not express
   double effective_views = 0;       // how many views say something of their own
   int substances = 0;               // that are told apart
-  double roughness_spread = 0;      // of texels about their substance's mean …
+  double roughness_spread = 0;      // of texels about their substance's mean (∞: one photograph) …
   double specular_spread = 0;       // … relative
   double diffuse_spread = 0;        // likewise; ∞ from one or two photographs
   double initialisation_error = 0;  // in expected ones of one photograph
   double neighbour_spread = 0;      // between neighbours' departures from those means, in spreads
-  double normal_spread = 0;         // of n_x, n_y about 0, and between neighbours
+  double normal_spread = 0;         // of n_x, n_y about 0, and between neighbours; likewise
   SharedLight shared_light;         // of all views
   // What single views deviate by: added to the lights beside `shared_light`, factors on
   // exposures; and the spreads of both, estimated.

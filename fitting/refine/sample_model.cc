@@ -57,18 +57,14 @@ SharedValues SharedOf(const TexelValues& values) {
   return shared;
 }
 
-// Errors of the initialisation. One photograph leaves it what the estimator made it. Of several,
-// fitting has shown it the same photographs already, and what it took from them is not to count
-// twice: from three on, which tell roughness and normals themselves, these are not taken from it at
-// all, since they hold its misfit.
+// Errors of the initialisation: what the estimator's are. Where several photographs tell roughness
+// and normals themselves, fitting has shown it the same ones already; what it took from them is not
+// to count twice, and roughness and normals, which hold its misfit, are not taken from it at all.
 InitialisationErrors ErrorsOfInitialisation(const RefineProblem& problem) {
   InitialisationErrors errors;
-  const size_t views = problem.views.size();
-  if (views == 1) return errors;
+  if (problem.views.size() < kLeastValidatedViews) return errors;
   errors.Scale(kSeenAlready);
-  if (views >= kLeastValidatedViews) {
-    errors.normal = errors.roughness = std::numeric_limits<double>::infinity();
-  }
+  errors.normal = errors.roughness = std::numeric_limits<double>::infinity();
   return errors;
 }
 
@@ -123,13 +119,16 @@ SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
       all_views_(part.problem().views.size()),
       initial_errors_(ErrorsOfInitialisation(part.problem())),
       residuals_(part.problem(), {}),
-      normal_spreads_(static_cast<size_t>(part.substances().count()), kExpectedNormalSpread),
+      shares_(part.problem().views.size() > 1),
+      normal_spreads_(static_cast<size_t>(part.substances().count()),
+                      shares_ ? kExpectedNormalSpread : kUnknownSpread),
       deviations_(static_cast<int>(part.problem().views.size()),
                   {options.exposure_spread, options.light_spread, options.light_spread},
                   {options.flash_offset, options.flash_offset, options.flash_beam,
                    options.flash_beam, options.distance_power}) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   means_.mean = InitialMeans(part);
+  if (!shares_) means_.roughness_spread = means_.specular_spread = kUnknownSpread;
 }
 
 SampleModel SampleModel::On(const SamplePart& part) const {
@@ -341,7 +340,8 @@ TexelCovariance SampleModel::CommonCovariance(size_t texel, const TexelValues& v
 double SampleModel::NormalPrecision(size_t texel) const {
   double variance = 0;
   for (size_t k = 0; k < normal_spreads_.size(); ++k) {
-    variance += part_->shares(texel)[k] * normal_spreads_[k] * normal_spreads_[k];
+    const double share = part_->shares(texel)[k];
+    if (share > 0) variance += share * normal_spreads_[k] * normal_spreads_[k];
   }
   return 1 / variance;
 }
@@ -390,7 +390,7 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
 
 void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   Sampling sampling = Sample(kSampled, solver, threads);
-  learns_normals_ = true;
+  learns_normals_ = shares_;
   Fit(all_views_, options_.estimation_rounds, true, &sampling);
   learns_normals_ = false;
   if (all_views_.size() < kLeastValidatedViews) return;

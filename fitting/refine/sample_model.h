@@ -142,6 +142,9 @@ class SampleModel {
   std::vector<int> all_views_;
   InitialisationErrors initial_errors_;
   ResidualModel residuals_;
+  // Whether a surface is level and texels alike says anything beside the initialisation. That of
+  // one photograph is an estimate by what materials are like, which knows both already.
+  bool shares_;
   SubstanceMeans means_;
   // Of n_x, n_y about 0, and about their neighbours' mean, by substance.
   std::vector<double> normal_spreads_;

@@ -197,6 +197,31 @@ TEST(Refine, OnePhotographDoesNotMakeMapsWorse) {
 }
 
 // Two photographs hardly tell relief that scatters a flash from a rough surface's own scatter.
+// An estimator flattens what it cannot see: that its normals are level does not say that the surface
+// is.
+TEST(Refine, OnePhotographSaysHowFarALevelStartMayBeOff) {
+  const SvbrdfMaps truth = QuarteredMaps(32, 23);
+  SvbrdfMaps start = DisturbedMaps(truth, 0.5f, 24);
+  for (const int plane : {kNormalX, kNormalY}) std::ranges::fill(start.plane(plane), 0.0f);
+  std::ranges::fill(start.plane(kNormalZ), 1.0f);
+  const RefineResult result = Refine(Photograph(truth, 1, 8).Problem(), start, {}, 1);
+  double squares = 0;  // of errors, in stated deviations
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    for (const auto& [plane, sigma] :
+         {std::pair{kNormalX, kSigmaNormalX}, {kNormalY, kSigmaNormalY}}) {
+      const double error = result.maps.plane(plane)[t] - truth.plane(plane)[t];
+      const double deviation = result.confidence[sigma * truth.texels() + t];
+      squares += error * error / (deviation * deviation);
+    }
+  }
+  const double rms = std::sqrt(squares / (2.0 * static_cast<double>(truth.texels())));
+  // This surface scatters by more than an estimator's errors are said to.
+  const double more =
+      std::sqrt(MeanSquare(start, truth, kNormalX, kNormalY)) / InitialisationErrors().normal;
+  EXPECT_GT(rms, 0.5);
+  EXPECT_LT(rms, 1.2 * more);
+}
+
 TEST(Refine, TwoPhotographsKeepWhatTheStartKnowsOfRoughness) {
   SvbrdfMaps truth = QuarteredMaps(32, 21);
   for (size_t t = 0; t < truth.texels(); ++t) {
