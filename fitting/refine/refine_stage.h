@@ -14,7 +14,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 24;
+inline constexpr int kRefineVersion = 25;
 
 struct RefineStageOptions {
   RefineOptions refine;
@@ -25,6 +25,8 @@ struct RefineStageOptions {
   // Of the same sets, RefineOptions::exposure_spread and light_spread.
   double exposure_spread = 0.1;
   double light_spread = 0.02;
+  // Likewise RefineOptions::residual_deviation: what fourteen such samples were found to have.
+  double residual_deviation = 0.1;
   double flash_beam = 0.3;
   double distance_power = 1;
   int rows_at_once = 0;              // in memory; 0: as memory allows; never changes a value

@@ -118,7 +118,7 @@ SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
       options_(options),
       all_views_(part.problem().views.size()),
       initial_errors_(ErrorsOfInitialisation(part.problem())),
-      residuals_(part.problem(), {}),
+      residuals_(part.problem(), {.expected_sigma = options.residual_deviation}),
       shares_(part.problem().views.size() > 1),
       normal_spreads_(static_cast<size_t>(part.substances().count()),
                       shares_ ? kExpectedNormalSpread : kUnknownSpread),
