@@ -243,6 +243,18 @@ TEST(Refine, TwoPhotographsKeepWhatTheStartKnowsOfRoughness) {
             0.7 * MeanSquare(start, truth, kRoughness, kRoughness));
 }
 
+TEST(Refine, ExpectedResidualsMatterWherePhotographsAreFew) {
+  const SvbrdfMaps truth = QuarteredMaps(16, 25);
+  const SvbrdfMaps start = DisturbedMaps(truth, 0.5f, 26);
+  const auto residuals = [&](int views, double expected) {
+    RefineOptions options;
+    options.residual_deviation = expected;
+    return Refine(Photograph(truth, views, 8).Problem(), start, options, 1).summary.residual_sigma;
+  };
+  EXPECT_GT(residuals(2, 0.1), 1.3 * residuals(2, 0.05));
+  EXPECT_LT(residuals(20, 0.1), 1.3 * residuals(20, 0.05));
+}
+
 TEST(Refine, StopsLookingAtTheStartAsViewsGrow) {
   const SvbrdfMaps truth = QuarteredMaps(16, 16);
   const SvbrdfMaps start = DisturbedMaps(truth, 1.0f, 17);
