@@ -100,14 +100,14 @@ enum ConfidencePlane : int {
 struct RefineSummary {
   double start_cost = 0;  // means over texels
   double final_cost = 0;
-  double residual_sigma = 0;        // scale σ of residuals, log units (docs/model.md) …
-  double residual_deviation = 0;    // … and their standard deviation, which long tails raise
-  double discrepancy = 0;           // of it, what the reflectance model does not express
-  double effective_views = 0;       // how many views say something of their own
-  int substances = 0;               // that are told apart
-  double roughness_spread = 0;      // of texels about their substance's mean (∞: one photograph) …
-  double specular_spread = 0;       // … relative
-  double diffuse_spread = 0;        // likewise; ∞ from one or two photographs
+  double residual_sigma = 0;      // scale σ of residuals, log units (docs/model.md) …
+  double residual_deviation = 0;  // … and their standard deviation, which long tails raise
+  double discrepancy = 0;         // of it, what the reflectance model does not express
+  double effective_views = 0;     // how many views say something of their own
+  int substances = 0;             // that are told apart
+  double roughness_spread = 0;  // of texels about their substance's mean (∞: one photograph) …
+  double specular_spread = 0;   // … relative
+  double diffuse_spread = 0;    // likewise; ∞ from one or two photographs
   double initialisation_error = 0;  // in expected ones of one photograph
   double neighbour_spread = 0;      // between neighbours' departures from those means, in spreads
   double normal_spread = 0;         // of n_x, n_y about 0, and between neighbours; likewise

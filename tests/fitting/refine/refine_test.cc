@@ -197,8 +197,8 @@ TEST(Refine, OnePhotographDoesNotMakeMapsWorse) {
 }
 
 // Two photographs hardly tell relief that scatters a flash from a rough surface's own scatter.
-// An estimator flattens what it cannot see: that its normals are level does not say that the surface
-// is.
+// An estimator flattens what it cannot see: that its normals are level does not say that the
+// surface is.
 TEST(Refine, OnePhotographSaysHowFarALevelStartMayBeOff) {
   const SvbrdfMaps truth = QuarteredMaps(32, 23);
   SvbrdfMaps start = DisturbedMaps(truth, 0.5f, 24);
