@@ -72,7 +72,7 @@ std::string RefineOptions::Check() const {
   if (!(flash_beam >= 0.0)) return "the expected gradient of the flash's beam must be at least 0";
   if (!(distance_power >= 0.0)) return "the expected power of distance must be at least 0";
   if (!(exposure_spread >= 0.0)) return "the expected exposure spread must be at least 0";
-  if (!(residual_deviation > 0.0)) return "the expected residual deviation must be above 0";
+  if (!(residual_sigma > 0.0)) return "the expected scale of residuals must be above 0";
   if (!(light_spread >= 0.0)) return "the expected light spread must be at least 0";
   if (!(point_spread_px >= 0.0)) return "the point spread must be at least 0";
   if (!(prior >= 0.0)) return "the prior's weight must be at least 0";

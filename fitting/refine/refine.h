@@ -67,9 +67,9 @@ struct RefineOptions {
   // places across their directions, relative to their distance (view_deviations.h). 0: as said.
   double exposure_spread = 0;
   double light_spread = 0;
-  // Standard deviation expected of residuals (log radiance) before any is seen: a weak prior, which
-  // decides where photographs are few (residual_model.h).
-  double residual_deviation = 0.05;
+  // Scale σ expected of residuals (log radiance) before any is seen: a weak prior, which decides
+  // where photographs are few (residual_model.h).
+  double residual_sigma = 0.05;
   // Standard deviations expected of all views' light (shared_light.h). 0: as said.
   double flash_beam = 0, distance_power = 0;
   double prior = 1.0;  // factor on the priors' weight; 0: none

@@ -185,7 +185,7 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStageOptions& opti
   refine.flash_offset = options.flash_offset;
   refine.exposure_spread = options.exposure_spread;
   refine.light_spread = options.light_spread;
-  refine.residual_deviation = options.residual_deviation;
+  refine.residual_sigma = options.residual_sigma;
   refine.flash_beam = options.flash_beam;
   refine.distance_power = options.distance_power;
   return refine;
@@ -369,7 +369,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "perpendicular to the light's direction, relative to its distance, if the light was "
       "not calibrated; it and the positions are then estimated from the photographs; 0: keep "
       "the stated positions");
-  set->AddRange("residual-deviation", &options->residual_deviation, 1e-3, 10,
+  set->AddRange("residual-sigma", &options->residual_sigma, 1e-3, 10,
                 "expected standard deviation (a weak prior) of the log-radiance residuals, if the "
                 "light was not calibrated (otherwise 0.05); it is then estimated from the "
                 "photographs, and matters where there are few");

@@ -25,8 +25,8 @@ struct RefineStageOptions {
   // Of the same sets, RefineOptions::exposure_spread and light_spread.
   double exposure_spread = 0.1;
   double light_spread = 0.02;
-  // Likewise RefineOptions::residual_deviation: what fourteen such samples were found to have.
-  double residual_deviation = 0.1;
+  // Likewise RefineOptions::residual_sigma: what fourteen such samples were found to have.
+  double residual_sigma = 0.1;
   double flash_beam = 0.3;
   double distance_power = 1;
   int rows_at_once = 0;              // in memory; 0: as memory allows; never changes a value

@@ -23,9 +23,9 @@ struct ResidualModelOptions {
   // Share of its variance that is a smooth function of the half vector; the rest is each view's
   // own (registration, exposure).
   double smooth_share = 0.8;
-  // What residuals are expected to be before any is seen (RefineOptions::residual_deviation), and
+  // What residuals are expected to be before any is seen (RefineOptions::residual_sigma), and
   // how many per texel that belief is worth while views are being found.
-  double expected_sigma = RefineOptions().residual_deviation;
+  double expected_sigma = RefineOptions().residual_sigma;
   double expected_residuals = 1;
 };
 

@@ -118,17 +118,17 @@ SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
       options_(options),
       all_views_(part.problem().views.size()),
       initial_errors_(ErrorsOfInitialisation(part.problem())),
-      residuals_(part.problem(), {.expected_sigma = options.residual_deviation}),
-      shares_(part.problem().views.size() > 1),
+      residuals_(part.problem(), {.expected_sigma = options.residual_sigma}),
+      has_sample_priors_(part.problem().views.size() > 1),
       normal_spreads_(static_cast<size_t>(part.substances().count()),
-                      shares_ ? kExpectedNormalSpread : kUnknownSpread),
+                      has_sample_priors_ ? kExpectedNormalSpread : kUnknownSpread),
       deviations_(static_cast<int>(part.problem().views.size()),
                   {options.exposure_spread, options.light_spread, options.light_spread},
                   {options.flash_offset, options.flash_offset, options.flash_beam,
                    options.flash_beam, options.distance_power}) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   means_.mean = InitialMeans(part);
-  if (!shares_) means_.roughness_spread = means_.specular_spread = kUnknownSpread;
+  if (!has_sample_priors_) means_.roughness_spread = means_.specular_spread = kUnknownSpread;
 }
 
 SampleModel SampleModel::On(const SamplePart& part) const {
@@ -390,7 +390,7 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
 
 void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   Sampling sampling = Sample(kSampled, solver, threads);
-  learns_normals_ = shares_;
+  learns_normals_ = has_sample_priors_;
   Fit(all_views_, options_.estimation_rounds, true, &sampling);
   learns_normals_ = false;
   if (all_views_.size() < kLeastValidatedViews) return;

@@ -144,7 +144,7 @@ class SampleModel {
   ResidualModel residuals_;
   // Whether a surface is level and texels alike says anything beside the initialisation. That of
   // one photograph is an estimate by what materials are like, which knows both already.
-  bool shares_;
+  bool has_sample_priors_;
   SubstanceMeans means_;
   // Of n_x, n_y about 0, and about their neighbours' mean, by substance.
   std::vector<double> normal_spreads_;

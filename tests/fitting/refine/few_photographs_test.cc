@@ -94,7 +94,7 @@ TEST(Refine, ExpectedResidualsMatterWherePhotographsAreFew) {
   const SvbrdfMaps start = DisturbedMaps(truth, 0.5f, 26);
   const auto residuals = [&](int views, double expected) {
     RefineOptions options;
-    options.residual_deviation = expected;
+    options.residual_sigma = expected;
     return Refine(Photograph(truth, views, 8).Problem(), start, options, 1).summary.residual_sigma;
   };
   EXPECT_GT(residuals(2, 0.1), 1.3 * residuals(2, 0.05));
