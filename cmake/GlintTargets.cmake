@@ -16,6 +16,27 @@ function(glint_library name)
   endif()
 endfunction()
 
+# glint_vector_kernels(kernel DISPATCH kernel_dispatch.cc OUT kernels): kernel_baseline.cc and, on
+# x86, kernel_avx2.cc and kernel_avx512.cc, each compiled for its instruction set; they include
+# base/cpu/vectors.inl.
+function(glint_vector_kernels name)
+  cmake_parse_arguments(ARG "" "DISPATCH;OUT" "" ${ARGN})
+  set(kernels ${name}_baseline.cc)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    list(APPEND kernels ${name}_avx2.cc ${name}_avx512.cc)
+    set_source_files_properties(${name}_avx2.cc PROPERTIES COMPILE_OPTIONS "-mavx2;-mfma")
+    set_source_files_properties(${name}_avx512.cc PROPERTIES
+      COMPILE_OPTIONS "-mavx512f;-mavx512dq;-mavx512vl;-mavx512bw;-mavx2;-mfma")
+    set_source_files_properties(${ARG_DISPATCH} PROPERTIES COMPILE_DEFINITIONS GLINT_X86_KERNELS)
+  endif()
+  # Vector types wider than the set's registers never cross a call that is not inlined (-Wno-psabi).
+  # The kernels are worth optimising in every build: at less than -O3 they are several times slower.
+  set_property(SOURCE ${kernels} APPEND PROPERTY COMPILE_OPTIONS -Wno-psabi -O3)
+  # Headers compiled for one instruction set do not serve another.
+  set_property(SOURCE ${kernels} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
+  set(${ARG_OUT} ${kernels} PARENT_SCOPE)
+endfunction()
+
 # What a user runs, without tests and benchmarks: cmake --build … --target programs
 add_custom_target(programs)
 # The same without what only developers run: what ./dev demo waits for.

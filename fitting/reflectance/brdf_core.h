@@ -14,7 +14,7 @@
 // differentiation, tests/fitting/render and tests/fitting/texel the vector code with brdf.h.
 //
 // No standard library here: the vector kernels are compiled once for each instruction set and may
-// contain no function that the linker could take from another (fitting/render/kernel_vector.inl).
+// contain no function that the linker could take from another (base/cpu/vectors.inl).
 #pragma once
 
 #include "fitting/reflectance/brdf_constants.h"

@@ -1,7 +1,7 @@
-// Vectors of GLINT_VECTOR_BYTES and the few functions on them that the kernel needs. Included by
-// kernel.inl inside an anonymous namespace, once per instruction set: nothing here may be a
-// function that the linker could share with code compiled for another set, so nothing comes from
-// std.
+// Vectors of GLINT_VECTOR_BYTES and the few functions on them that kernels need. Included by
+// kernels inside an anonymous namespace of glint::kernel, once per instruction set: nothing here
+// may be a function that the linker could share with code compiled for another set, so nothing
+// comes from std.
 
 #define GLINT_INLINE inline __attribute__((always_inline))
 
