@@ -2,27 +2,24 @@
 // views of 8 bit, robust, with the prior), one thread, one process. Prints texels per second, the
 // ratio and both mean costs. Refinement's time is all that it spends on texels: several starts,
 // neighbours, confidence. What it estimates of the sample before (docs/model.md), which does not
-// grow with the maps and gives Ceres the scale of its prior too, is printed apart. Ceres is
-// measured twice: with the residuals as one writes them (autodiff of brdf.h, a block per view), and
-// with refinement's own residual kernel as one block, which leaves the solver's share.
+// grow with the maps and gives Ceres the scale of its prior too, is printed apart. Ceres has the
+// residuals as one writes them: autodiff of brdf.h, a block per view.
 #include <ceres/ceres.h>
 #include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <random>
 #include <vector>
 
 #include "base/cpu/instruction_set.h"
 #include "fitting/refine/estimate_sample.h"
-#include "fitting/refine/gather.h"
 #include "fitting/refine/refine.h"
 #include "fitting/refine/refine_rows.h"
+#include "fitting/reflectance/log_radiance.h"
 #include "fitting/reflectance/texel_at.h"
 #include "fitting/texel/texel_parameters.h"
-#include "fitting/texel/texel_residuals.h"
 
 namespace glint {
 namespace {
@@ -158,39 +155,6 @@ class PriorResiduals : public ceres::SizedCostFunction<kTexelParameters, kTexelP
   const TexelPrior& prior_;
 };
 
-// All residuals as one block, from refinement's own vectorised kernel and analytic derivatives.
-class KernelResiduals : public ceres::CostFunction {
- public:
-  KernelResiduals(const KernelOptions& options, const TexelObservations& observations,
-                  const TexelPrior& prior, KernelRows* rows)
-      : options_(options),
-        observations_(observations),
-        prior_(prior),
-        rows_(rows),
-        scratch_(static_cast<size_t>(TexelResidualCount(observations)) * kTexelParameters) {
-    mutable_parameter_block_sizes()->push_back(kTexelParameters);
-    set_num_residuals(TexelResidualCount(observations));
-  }
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    TexelValues texel;
-    std::copy(parameters[0], parameters[0] + kTexelParameters, texel.begin());
-    const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
-    EvaluateTexelResiduals(options_, observations_, prior_, texel, rows_,
-                           {residuals, static_cast<size_t>(num_residuals())},
-                           {wanted ? jacobians[0] : scratch_.data(), scratch_.size()});
-    return true;
-  }
-
- private:
-  const KernelOptions& options_;
-  const TexelObservations& observations_;
-  const TexelPrior& prior_;
-  KernelRows* rows_;
-  mutable std::vector<double> scratch_;
-};
-
 double SolveBounded(ceres::Problem* problem, TexelValues* texel) {
   for (int i = 0; i <= kRough; ++i) {
     problem->SetParameterLowerBound(texel->data(), i, i == kRough ? kRoughnessBounds.low : 0.0);
@@ -209,25 +173,6 @@ struct Side {
   double rate = 0;  // texels per second
   double cost = 0;  // mean
 };
-
-// Calls solve(texel index, its observations, prior and start) for every texel.
-template <class Solve>
-Side Measure(const Scene& scene, double scale, const Solve& solve) {
-  const size_t texels = scene.start.texels();
-  TexelObservations observations(kViews);
-  std::vector<int> views(kViews);
-  std::iota(views.begin(), views.end(), 0);
-  double total = 0.0;
-  const double began = Now();
-  for (size_t t = 0; t < texels; ++t) {
-    GatherObservations(scene.problem, scene.start, t, views, &observations);
-    TexelValues texel = ReadTexel(scene.start, t);
-    const TexelPrior prior(TexelGaussian(texel, {}), scale);
-    total += solve(t, observations, prior, &texel);
-  }
-  const double n = static_cast<double>(texels);
-  return {n / (Now() - began), total / n};
-}
 
 void AddViewBlocks(const Scene& scene, size_t t, const KernelOptions& options,
                    ceres::Problem* problem, TexelValues* texel) {
@@ -248,8 +193,24 @@ void AddViewBlocks(const Scene& scene, size_t t, const KernelOptions& options,
   }
 }
 
+Side SolveWithCeres(const Scene& scene, const KernelOptions& options, double scale) {
+  const size_t texels = scene.start.texels();
+  double total = 0.0;
+  const double began = Now();
+  for (size_t t = 0; t < texels; ++t) {
+    TexelValues texel = ReadTexel(scene.start, t);
+    const TexelPrior prior(TexelGaussian(texel, {}), scale);
+    ceres::Problem problem;
+    AddViewBlocks(scene, t, options, &problem, &texel);
+    problem.AddResidualBlock(new PriorResiduals(prior), nullptr, texel.data());
+    total += SolveBounded(&problem, &texel);
+  }
+  const double n = static_cast<double>(texels);
+  return {n / (Now() - began), total / n};
+}
+
 void Print(const char* name, const Side& side) {
-  fmt::print("{:<62} {:7.0f} texels/s, mean cost {:.6f}\n", name, side.rate, side.cost);
+  fmt::print("{:<40} {:7.0f} texels/s, mean cost {:.6f}\n", name, side.rate, side.cost);
 }
 
 double Median(std::vector<double> values) {
@@ -263,8 +224,8 @@ int Main() {
   RefineOptions options;
   const KernelOptions kernel{scene.problem.convention.diffuse_weight, options.robust_scale};
   fmt::print("{}² texels, {} views, one thread, {}\n", kSize, kViews, Name(BestInstructionSet()));
-  // The three in turn, several times: what disturbs one round disturbs all three alike.
-  std::vector<double> ratios, kernel_ratios;
+  // Both in turn, several times: what disturbs one round disturbs both alike.
+  std::vector<double> ratios;
   for (int round = 0; round < kRounds; ++round) {
     double began = Now();
     const SampleEstimate estimate = EstimateSample(scene.problem, scene.start, options, 1);
@@ -277,36 +238,14 @@ int Main() {
     const Side refine{static_cast<double>(scene.start.texels()) / seconds, summary.final_cost};
     Print("refinement of texels, all of it", refine);
 
-    const double scale = summary.residual_sigma;
-    const Side plain = Measure(
-        scene, scale,
-        [&](size_t t, const TexelObservations&, const TexelPrior& prior, TexelValues* texel) {
-          ceres::Problem problem;
-          AddViewBlocks(scene, t, kernel, &problem, texel);
-          problem.AddResidualBlock(new PriorResiduals(prior), nullptr, texel->data());
-          return SolveBounded(&problem, texel);
-        });
-    Print("bounded ceres::Solve per texel, residuals by autodiff", plain);
-    KernelRows rows(kViews);
-    const Side shared =
-        Measure(scene, scale,
-                [&](size_t, const TexelObservations& observations, const TexelPrior& prior,
-                    TexelValues* texel) {
-                  ceres::Problem problem;
-                  problem.AddResidualBlock(new KernelResiduals(kernel, observations, prior, &rows),
-                                           nullptr, texel->data());
-                  return SolveBounded(&problem, texel);
-                });
-    Print("bounded ceres::Solve per texel, refinement's residual kernel", shared);
-    ratios.push_back(refine.rate / plain.rate);
-    kernel_ratios.push_back(refine.rate / shared.rate);
+    const Side ceres = SolveWithCeres(scene, kernel, summary.residual_sigma);
+    Print("bounded ceres::Solve per texel", ceres);
+    ratios.push_back(refine.rate / ceres.rate);
     if (round + 1 == kRounds) {
       fmt::print(
           "ratio {:.1f} (wanted: 30 or more with AVX-512, 18 with AVX2), mean cost {:.6f} against "
           "{:.6f}\n",
-          Median(ratios), refine.cost, plain.cost);
-      fmt::print("ratio {:.1f} where Ceres is given refinement's own residual kernel\n",
-                 Median(kernel_ratios));
+          Median(ratios), refine.cost, ceres.cost);
     }
   }
   return 0;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/texel/texel_cholesky.h"
-
 namespace glint {
 namespace {
 
@@ -13,35 +11,34 @@ constexpr double kWidest = 1.0;
 
 }  // namespace
 
-std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
-                                                     const TexelValues& texel, double squares,
-                                                     double scale, const TexelCovariance& common) {
-  const double variance = scale * scale;
-  // What nothing is known of keeps the widest deviation: it stands in for a missing prior.
-  double unknown[kTexelParameters];
-  std::fill_n(unknown, kTexelParameters, variance / (kWidest * kWidest));
-  const TexelCholesky factor(gram, unknown);
-  double inverse[kTexelParameters][kTexelParameters];
-  for (int i = 0; i < kTexelParameters; ++i) {
-    double unit[kTexelParameters] = {};
-    unit[i] = 1.0;
-    factor.Solve(unit, &inverse[i]);
-  }
-  const auto covariance = [&](int a, int b) {
-    return variance * inverse[a][b] +
-           common[static_cast<size_t>(a) * kTexelParameters + static_cast<size_t>(b)];
-  };
+void TexelCovariance::operator+=(const TexelCovariance& other) {
+  for (size_t i = 0; i < variances.size(); ++i) variances[i] += other.variances[i];
+  slopes += other.slopes;
+}
 
+double LeastInformation(double scale) { return scale * scale / (kWidest * kWidest); }
+
+TexelCovariance PosteriorCovariance(const BatchInverse& inverse, int lane, double scale) {
+  const double variance = scale * scale;
+  TexelCovariance covariance;
+  for (int i = 0; i < kTexelParameters; ++i) {
+    covariance.variances[static_cast<size_t>(i)] = variance * inverse.at(i, i, lane);
+  }
+  covariance.slopes = variance * inverse.at(kSlopeX, kSlopeY, lane);
+  return covariance;
+}
+
+std::array<float, kConfidencePlanes> TexelConfidence(const TexelCovariance& covariance,
+                                                     const TexelValues& texel, double squares) {
   // n_x, n_y by the slopes.
   const double x = texel[kSlopeX], y = texel[kSlopeY];
   const double length = 1.0 / std::sqrt(1.0 + x * x + y * y);
   const double nx = x * length, ny = y * length;
   const double by_x[2] = {length * (1.0 - nx * nx), -length * nx * ny};
   const double by_y[2] = {by_x[1], length * (1.0 - ny * ny)};
-  const double xx = covariance(kSlopeX, kSlopeX), xy = covariance(kSlopeX, kSlopeY),
-               yy = covariance(kSlopeY, kSlopeY);
+  const double xx = covariance.variances[kSlopeX], yy = covariance.variances[kSlopeY];
   const auto normal_variance = [&](int axis) {
-    return by_x[axis] * by_x[axis] * xx + 2.0 * by_x[axis] * by_y[axis] * xy +
+    return by_x[axis] * by_x[axis] * xx + 2.0 * by_x[axis] * by_y[axis] * covariance.slopes +
            by_y[axis] * by_y[axis] * yy;
   };
 
@@ -52,11 +49,11 @@ std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
   std::array<float, kConfidencePlanes> planes;
   planes[kSigmaNormalX] = deviation(normal_variance(0));
   planes[kSigmaNormalY] = deviation(normal_variance(1));
-  planes[kSigmaRoughness] = deviation(covariance(kRough, kRough));
+  planes[kSigmaRoughness] = deviation(covariance.variances[kRough]);
   for (int c = 0; c < 3; ++c) {
-    const int d = DiffuseParameter(c), s = SpecularParameter(c);
-    planes[kSigmaDiffuseR + c] = deviation(covariance(d, d));
-    planes[kSigmaSpecularR + c] = deviation(covariance(s, s));
+    const auto at = [&](int i) { return deviation(covariance.variances[static_cast<size_t>(i)]); };
+    planes[kSigmaDiffuseR + c] = at(DiffuseParameter(c));
+    planes[kSigmaSpecularR + c] = at(SpecularParameter(c));
   }
   planes[kTexelCost] = static_cast<float>(0.5 * squares);
   return planes;

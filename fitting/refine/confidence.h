@@ -4,20 +4,31 @@
 #include <array>
 
 #include "fitting/refine/refine.h"
-#include "fitting/texel/texel_kernel.h"
+#include "fitting/texel/texel_batch.h"
 
 namespace glint {
 
-// By the physical values, row-major.
-using TexelCovariance = std::array<double, kTexelParameters * kTexelParameters>;
+// What must be known of a texel's covariance, by the physical values: the variances, and the
+// covariance of the slopes.
+struct TexelCovariance {
+  std::array<double, kTexelParameters> variances{};
+  double slopes = 0;
 
-// √diag(scale²·M⁻¹ + common) with M = `gram` by the physical values, prior included: the covariance
-// of Laplace's approximation to the posterior, and what it takes as certain is uncertain by (see
-// SampleModel::CommonCovariance). `scale`: standard deviation of a residual of weight 1
-// (residual_model.h). The cost's place holds half of `squares`, the photographs' weighted squared
+  void operator+=(const TexelCovariance& other);
+};
+
+// Of Laplace's approximation to the posterior: scale² times the inverse of the normal equations at
+// the solution, prior included. `scale`: standard deviation of a residual of weight 1
+// (residual_model.h).
+TexelCovariance PosteriorCovariance(const BatchInverse& inverse, int lane, double scale);
+
+// Square roots. The cost's place holds half of `squares`, the photographs' weighted squared
 // residuals.
-std::array<float, kConfidencePlanes> TexelConfidence(const TexelGram& gram,
-                                                     const TexelValues& texel, double squares,
-                                                     double scale, const TexelCovariance& common);
+std::array<float, kConfidencePlanes> TexelConfidence(const TexelCovariance& covariance,
+                                                     const TexelValues& texel, double squares);
+
+// What is added to the normal equations: of what nothing is known the widest deviation is kept; it
+// stands in for a missing prior.
+double LeastInformation(double scale);
 
 }  // namespace glint

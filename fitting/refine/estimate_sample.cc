@@ -1,6 +1,7 @@
 #include "fitting/refine/estimate_sample.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <tuple>
 
@@ -49,7 +50,7 @@ class Estimator {
         start_(start),
         threads_(threads),
         workers_(RefineWorkers(problem, options, threads)),
-        part_(problem_, start, std::nullopt, options.substances),
+        part_(problem_, start, std::nullopt, options.substances, threads),
         model_(part_, options) {
     shared_light_.distance_mm = MeanLightDistance_mm(said_);
   }
@@ -58,8 +59,15 @@ class Estimator {
 
  private:
   void SetViews(const ViewDeviations& deviations);
-  std::vector<DeviationProducts> OfViews(size_t texel, const TexelValues& values,
-                                         std::span<const int> views, RefineWorker* worker);
+  void Solve(std::span<const SampleTask> tasks, const SampleRequest& request, RefineWorker* worker,
+             std::span<SampledTexel> solved) const;
+  BatchGram GramAt(const RefineProblem& problem, std::span<const size_t> texels,
+                   std::span<const TexelValues> values, std::span<const int> views,
+                   RefineWorker* worker, BatchResiduals* residuals = nullptr) const;
+  void Describe(std::span<const SampleTask> tasks, const SampleRequest& request,
+                RefineWorker* worker, std::span<SampledTexel> solved) const;
+  std::vector<DeviationProducts> OfViews(size_t texel, int lane, std::span<const int> views,
+                                         const RefineWorker& worker) const;
 
   RefineProblem problem_;         // views as they deviate
   const std::vector<View> said_;  // those, with lights where they are said to be
@@ -75,41 +83,111 @@ class Estimator {
 
 void Estimator::Run() {
   SampleSolver solver;
-  solver.solve = [&](size_t texel, const TexelPrior& prior, const TexelValues& from,
-                     const SampleRequest& request, int worker) {
-    RefineWorker& w = *workers_[static_cast<size_t>(worker)];
-    GatherObservations(problem_, start_, texel, request.views, &w.observations);
-    SampledTexel sampled;
-    sampled.values = from;
-    sampled.views = w.observations.views();
-    if (sampled.views == 0) return sampled;
-    w.search.SetExplained(request.explained_sigma);
-    sampled.values = request.near_minimum
-                         ? w.search.Improved(w.observations, prior, from, true).values
-                         : w.search.FromStart(w.observations, prior, from).solution.values;
-    TexelGram& gram = sampled.gram;
-    if (request.of_views && !nudged_.empty()) {
-      sampled.of_views = OfViews(texel, sampled.values, request.views, &w);
+  solver.solve = [&](std::span<const SampleTask> tasks, const SampleRequest& request, int worker,
+                     std::span<SampledTexel> solved) {
+    RefineWorker* w = workers_[static_cast<size_t>(worker)].get();
+    Solve(tasks, request, w, solved);
+    for (size_t first = 0; first < tasks.size(); first += kBatch) {
+      const size_t count = std::min<size_t>(kBatch, tasks.size() - first);
+      Describe(tasks.subspan(first, count), request, w, solved.subspan(first, count));
     }
-    w.search.solver().Gram(w.observations, TexelPrior(), sampled.values, &gram);
-    sampled.squares = gram[kTexelParameters][kTexelParameters];
-    for (int i = 0; i < kTexelParameters; ++i) sampled.prior_diagonal[i] = -gram[i][i];
-    prior.AddTo(sampled.values, &gram);
-    for (int i = 0; i < kTexelParameters; ++i) sampled.prior_diagonal[i] += gram[i][i];
-    return sampled;
   };
-  solver.predict = [&](size_t texel, const TexelValues& values, std::span<const int> views,
-                       int worker) {
-    RefineWorker& w = *workers_[static_cast<size_t>(worker)];
-    GatherObservations(problem_, start_, texel, views, &w.observations);
-    if (w.observations.views() == 0) return Prediction{};
-    return Prediction{2 * w.search.solver().Cost(w.observations, TexelPrior(), values),
-                      3 * w.observations.views()};
+  solver.predict = [&](std::span<const size_t> texels, std::span<const TexelValues> values,
+                       std::span<const int> views, int worker) {
+    RefineWorker* w = workers_[static_cast<size_t>(worker)].get();
+    Prediction sum;
+    for (size_t first = 0; first < texels.size(); first += kBatch) {
+      const size_t count = std::min<size_t>(kBatch, texels.size() - first);
+      const BatchGram gram =
+          GramAt(problem_, texels.subspan(first, count), values.subspan(first, count), views, w);
+      for (int lane = 0; lane < static_cast<int>(count); ++lane) {
+        sum += {gram.Squares(lane), 3 * w->observed.seen(lane)};
+      }
+    }
+    return sum;
   };
   solver.deviate = [&](const ViewDeviations& deviations) { SetViews(deviations); };
   if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);
   SetViews(model_.deviations());
   model_.Estimate(solver, threads_);
+}
+
+void Estimator::Solve(std::span<const SampleTask> tasks, const SampleRequest& request,
+                      RefineWorker* worker, std::span<SampledTexel> solved) const {
+  using From = BatchSearch::From;
+  BatchSearch& batches = worker->batches;
+  batches.SetExplained(request.explained_sigma);
+  batches.Begin(
+      request.near_minimum ? From::kNearMinimum : From::kStart,
+      [&](std::span<const size_t> ids, BatchObservations* observations) {
+        std::array<size_t, kBatch> texels;
+        for (size_t i = 0; i < ids.size(); ++i) texels[i] = tasks[ids[i]].texel;
+        GatherObservations(problem_, start_, std::span(texels).first(ids.size()), request.views,
+                           observations);
+      },
+      [&](const BatchSearch::Task& task, const BatchSearch::Found& found) {
+        solved[task.id].values = found.solution.values;
+      });
+  for (size_t i = 0; i < tasks.size(); ++i) {
+    batches.Add({.id = i, .prior = tasks[i].prior, .start = tasks[i].from, .converged = true});
+  }
+  batches.Finish();
+}
+
+// Of the photographs alone. Leaves the texels' observations and residuals in `worker`.
+BatchGram Estimator::GramAt(const RefineProblem& problem, std::span<const size_t> texels,
+                            std::span<const TexelValues> values, std::span<const int> views,
+                            RefineWorker* worker, BatchResiduals* residuals) const {
+  GatherObservations(problem, start_, texels, views, &worker->observed);
+  BatchValues batch;
+  for (size_t i = 0; i < values.size(); ++i) SetLane(static_cast<int>(i), values[i], &batch);
+  BatchGram gram;
+  worker->batches.evaluator().Gram(worker->observed, batch, &gram, residuals);
+  return gram;
+}
+
+// At most a batch of texels at their solutions.
+void Estimator::Describe(std::span<const SampleTask> tasks, const SampleRequest& request,
+                         RefineWorker* worker, std::span<SampledTexel> solved) const {
+  std::vector<size_t> texels;
+  std::vector<TexelValues> values;
+  for (size_t i = 0; i < tasks.size(); ++i) {
+    texels.push_back(tasks[i].texel);
+    values.push_back(solved[i].values);
+  }
+  const bool of_views = request.of_views && !nudged_.empty();
+  for (size_t i = 0; of_views && i < nudged_.size(); ++i) {
+    GramAt(nudged_[i], texels, values, request.views, worker, &worker->nudged[i]);
+  }
+  const BatchGram photographs = GramAt(problem_, texels, values, request.views, worker,
+                                       of_views ? &worker->residuals : nullptr);
+  BatchPrior priors;
+  BatchValues batch;
+  for (size_t i = 0; i < tasks.size(); ++i) {
+    priors.SetLane(static_cast<int>(i), tasks[i].prior);
+    SetLane(static_cast<int>(i), values[i], &batch);
+  }
+  BatchInverse inverse;
+  worker->batches.evaluator().Inverse(photographs, priors, batch,
+                                      LeastInformation(model_.residuals().scale()), &inverse);
+  for (size_t i = 0; i < tasks.size(); ++i) {
+    const int lane = static_cast<int>(i);
+    SampledTexel& sampled = solved[i];
+    sampled.views = worker->observed.seen(lane);
+    sampled.of_views.clear();
+    if (sampled.views == 0) continue;
+    if (of_views) sampled.of_views = OfViews(texels[i], lane, request.views, *worker);
+    sampled.squares = photographs.Squares(lane);
+    for (int row = 0; row < kTexelParameters; ++row) {
+      for (int column = 0; column < kTexelParameters; ++column) {
+        sampled.inverse[static_cast<size_t>(row * kTexelParameters + column)] =
+            inverse.at(row, column, lane);
+      }
+    }
+    TexelGram prior{};
+    tasks[i].prior.AddTo(sampled.values, &prior);
+    for (size_t k = 0; k < kTexelParameters; ++k) sampled.prior_diagonal[k] = prior[k][k];
+  }
 }
 
 // To the shared light as it is known, and single views' deviations beside it.
@@ -128,37 +206,22 @@ void Estimator::SetViews(const ViewDeviations& deviations) {
   }
 }
 
-// Leaves the texel's own observations in `worker`.
-std::vector<DeviationProducts> Estimator::OfViews(size_t texel, const TexelValues& values,
+// Of one lane's texel.
+std::vector<DeviationProducts> Estimator::OfViews(size_t texel, int lane,
                                                   std::span<const int> views,
-                                                  RefineWorker* worker) {
-  TexelSolver& solver = worker->search.solver();
-  std::vector<int> usable;
-  for (const int v : views) {
-    if (problem_.views[static_cast<size_t>(v)].mask[texel] >= 0.5f) usable.push_back(v);
-  }
-  for (size_t i = 0; i < nudged_.size(); ++i) {
-    GatherObservations(nudged_[i], start_, texel, views, &worker->observations);
-    solver.Cost(worker->observations, TexelPrior(), values);
-    std::vector<double>& residuals = worker->nudged[i];
-    residuals.clear();
-    for (int c = 0; c < 3; ++c) {
-      const double* row = solver.rows().row(c, KernelRows::kResidual);
-      residuals.insert(residuals.end(), row, row + usable.size());
-    }
-  }
-  GatherObservations(problem_, start_, texel, views, &worker->observations);
-  TexelGram gram;
-  solver.Gram(worker->observations, TexelPrior(), values, &gram);
-  std::vector<DeviationProducts> products =
-      ProductsOf(solver.rows(), worker->nudged, usable.size());
+                                                  const RefineWorker& worker) const {
   const SamplePlane& plane = problem_.plane;
   const double x_mm = plane.x_mm(static_cast<int>(texel) % plane.width);
   const double y_mm = plane.y_mm(static_cast<int>(texel) / plane.width);
-  for (size_t i = 0; i < usable.size(); ++i) {
-    products[i].view = usable[i];
-    products[i].by_shared = ByShared(problem_.views[static_cast<size_t>(usable[i])].view,
-                                     shared_light_.distance_mm, x_mm, y_mm);
+  std::vector<DeviationProducts> products;
+  for (size_t k = 0; k < views.size(); ++k) {
+    const int view = static_cast<int>(k);
+    if (!worker.observed.sees(view, lane)) continue;
+    DeviationProducts& of =
+        products.emplace_back(ProductsOf(worker.residuals, worker.nudged, view, lane));
+    of.view = views[k];
+    of.by_shared = ByShared(problem_.views[static_cast<size_t>(views[k])].view,
+                            shared_light_.distance_mm, x_mm, y_mm);
   }
   return products;
 }

@@ -1,36 +1,71 @@
 #include "fitting/refine/gather.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "fitting/reflectance/texel_at.h"
 
 namespace glint {
 
-void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps, size_t texel,
-                        std::span<const int> views, TexelObservations* observations) {
-  const size_t texels = static_cast<size_t>(problem.plane.width) * problem.plane.height;
-  const double x = problem.plane.x_mm(static_cast<int>(texel % problem.plane.width));
-  const double y = problem.plane.y_mm(static_cast<int>(texel / problem.plane.width));
-  std::optional<RoomReflection> reflection;
-  if (problem.room.any()) reflection.emplace(TexelAt(maps, texel));
-  observations->Clear();
-  for (const int v : views) {
-    const RefineView& view = problem.views[static_cast<size_t>(v)];
-    if (!(view.mask[texel] >= 0.5f)) continue;
-    const std::span<const float> target = view.deblurred.empty() ? view.rgb : view.deblurred;
-    double radiance[3];
-    bool clipped[3];
-    for (int c = 0; c < 3; ++c) {
-      radiance[c] = std::max(static_cast<double>(target[c * texels + texel]), 0.0);
-      clipped[c] = view.ldr && static_cast<double>(view.rgb[c * texels + texel]) >= kClipped;
-    }
-    TexelGeometry<double> geometry =
-        TexelGeometryInView<double>(view.view, problem.convention.falloff, x, y);
-    if (reflection) reflection->AddTo(problem.room, view.view.exposure, &geometry);
-    observations->Add(geometry, radiance, clipped);
+namespace {
+
+struct Seen {
+  float radiance[3];
+  bool clipped[3];
+};
+
+// False: it does not see the texel.
+bool See(const RefineView& view, size_t texels, size_t texel, Seen* seen) {
+  if (!(view.mask[texel] >= 0.5f)) return false;
+  const std::span<const float> target = view.deblurred.empty() ? view.rgb : view.deblurred;
+  for (size_t c = 0; c < 3; ++c) {
+    seen->radiance[c] = std::max(target[c * texels + texel], 0.0f);
+    seen->clipped[c] = view.ldr && static_cast<double>(view.rgb[c * texels + texel]) >= kClipped;
   }
-  observations->Finish();
+  return true;
+}
+
+struct Place {
+  double x_mm, y_mm;
+};
+
+Place PlaceOf(const SamplePlane& plane, size_t texel) {
+  const int width = plane.width;
+  return {plane.x_mm(static_cast<int>(texel) % width), plane.y_mm(static_cast<int>(texel) / width)};
+}
+
+}  // namespace
+
+void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps,
+                        std::span<const size_t> texels, std::span<const int> views,
+                        BatchObservations* observations) {
+  observations->Clear(static_cast<int>(views.size()));
+  for (size_t i = 0; i < texels.size(); ++i) {
+    const Place place = PlaceOf(problem.plane, texels[i]);
+    observations->Place(static_cast<int>(i), place.x_mm, place.y_mm);
+  }
+  for (size_t k = 0; k < views.size(); ++k) {
+    const RefineView& view = problem.views[static_cast<size_t>(views[k])];
+    const int at = static_cast<int>(k);
+    for (size_t i = 0; i < texels.size(); ++i) {
+      Seen seen;
+      if (!See(view, maps.texels(), texels[i], &seen)) continue;
+      observations->Set(static_cast<int>(i), at, seen.radiance, seen.clipped);
+    }
+    observations->Complete(at, BatchView(view.view, problem.convention.falloff));
+  }
+  if (!problem.room.any()) return;
+  for (size_t i = 0; i < texels.size(); ++i) {
+    const Place place = PlaceOf(problem.plane, texels[i]);
+    const RoomReflection reflection(TexelAt(maps, texels[i]));
+    for (size_t k = 0; k < views.size(); ++k) {
+      const View& view = problem.views[static_cast<size_t>(views[k])].view;
+      TexelGeometry<double> geometry =
+          TexelGeometryInView<double>(view, problem.convention.falloff, place.x_mm, place.y_mm);
+      reflection.AddTo(problem.room, view.exposure, &geometry);
+      observations->SetAmbient(static_cast<int>(i), static_cast<int>(k), geometry.ambient,
+                               geometry.ambient_specular);
+    }
+  }
 }
 
 }  // namespace glint

@@ -5,7 +5,7 @@
 
 #include "base/resampling/resampling.h"
 #include "fitting/reflectance/log_radiance.h"
-#include "fitting/texel/texel_observations.h"
+#include "fitting/texel/texel_batch.h"
 
 namespace glint {
 namespace {

@@ -45,6 +45,9 @@ struct RowsAbout {
   int starts;
 };
 
+// Of narrow maps several rows are solved at once: texels that take long are solved together.
+constexpr int kTexelsAtOnce = 1024;
+
 // Some rows of the sample.
 class PartRefiner {
  public:
@@ -68,10 +71,16 @@ class PartRefiner {
   // Of the rows asked for and of so many about them.
   void SolveFromStarts(int about);
   void SolveFromNeighbours(int half_pass, int about);
+  BatchSearch::Task FromNeighbours(size_t texel) const;
   void Conclude();
-  void ConcludeTexel(size_t texel, RefineWorker* worker);
-  void ForEachTexel(int about,
-                    const std::function<void(size_t texel, RefineWorker* worker)>& visit);
+  void ConcludeBatch(std::span<const size_t> texels, RefineWorker* worker);
+  void ConcludeTexel(size_t texel, int lane, const BatchGram& photographs,
+                     const BatchInverse& inverse, const BatchInverse& without_neighbours,
+                     const RefineWorker& worker);
+  // A few rows at a time.
+  void ForEachRows(int about,
+                   const std::function<void(int begin, int end, RefineWorker* worker)>& visit);
+  void Gather(std::span<const size_t> texels, BatchObservations* observations) const;
   TexelPrior PriorOf(size_t texel) const { return model_.PriorOf(texel, result_.maps); }
   void Keep(size_t texel, const TexelSolution& solution);
 
@@ -90,15 +99,15 @@ class PartRefiner {
   std::vector<std::unique_ptr<RefineWorker>> workers_;
   RowRefiner::Rows result_;
   std::vector<unsigned char> origin_;
-  std::vector<double> start_costs_;  // by row
-  std::vector<double> sums_;         // by row: cost, log differences and their number by view
+  std::vector<float> start_costs_;
+  std::vector<double> sums_;  // by row: cost, log differences and their number by view
 };
 
 PartRefiner::PartRefiner(const SampleEstimate& estimate, const RefineProblem& said,
                          const SvbrdfMaps& start, const RefineOptions& options, int above,
                          int below, int threads, std::function<void(int row)> count)
     : all_views_(said.views.size()),
-      part_(said, start, estimate.substances, options.substances),
+      part_(said, start, estimate.substances, options.substances, threads),
       model_(estimate.model.On(part_)),
       problem_(WithViews(said, estimate.found)),
       blurred_rows_(BlurredRows(said, options)),
@@ -113,29 +122,31 @@ PartRefiner::PartRefiner(const SampleEstimate& estimate, const RefineProblem& sa
       workers_(RefineWorkers(said, options, threads)) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   for (auto& worker : workers_) {
-    worker->search.SetNoise(std::sqrt(model_.residuals().variance()));
+    worker->batches.SetNoise(std::sqrt(model_.residuals().variance()));
   }
   result_.maps = start;
   result_.confidence.assign(start.texels() * kConfidencePlanes, 0.0f);
   origin_.assign(start.texels(), 0);
-  start_costs_.assign(static_cast<size_t>(start.height), 0.0);
+  start_costs_.assign(start.texels(), 0.0f);
   sums_.assign(static_cast<size_t>(start.height) * SumColumns(), 0.0);
 }
 
-void PartRefiner::ForEachTexel(int about, const std::function<void(size_t, RefineWorker*)>& visit) {
+void PartRefiner::ForEachRows(int about,
+                              const std::function<void(int begin, int end, RefineWorker*)>& visit) {
   std::mutex mutex;
   const int from = std::max(0, above_ - about);
   const int end = std::min(start_.height, start_.height - below_ + about);
-  ForEachPieceByWorker(end - from, threads_, [&](int piece, int worker) {
-    const int row = from + piece;
-    const size_t width = static_cast<size_t>(start_.width);
-    const size_t first = static_cast<size_t>(row) * width;
-    for (size_t texel = first; texel < first + width; ++texel) {
-      visit(texel, workers_[static_cast<size_t>(worker)].get());
-    }
+  const int rows = std::max(1, kTexelsAtOnce / start_.width);
+  ForEachPieceByWorker((end - from + rows - 1) / rows, threads_, [&](int piece, int worker) {
+    const int first = from + piece * rows, last = std::min(end, first + rows);
+    visit(first, last, workers_[static_cast<size_t>(worker)].get());
     const std::lock_guard lock(mutex);
-    count_(row);
+    for (int row = first; row < last; ++row) count_(row);
   });
+}
+
+void PartRefiner::Gather(std::span<const size_t> texels, BatchObservations* observations) const {
+  GatherObservations(problem_, start_, texels, all_views_, observations);
 }
 
 void PartRefiner::Keep(size_t texel, const TexelSolution& solution) {
@@ -164,83 +175,122 @@ void PartRefiner::Deblur() {
 }
 
 void PartRefiner::SolveFromStarts(int about) {
-  ForEachTexel(about, [&](size_t texel, RefineWorker* worker) {
-    GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
-    if (worker->observations.views() == 0) {
-      origin_[texel] = kConverged | kUnseen;  // the initial values stay
-      return;
+  const size_t width = static_cast<size_t>(start_.width);
+  ForEachRows(about, [&](int begin, int end, RefineWorker* worker) {
+    BatchSearch& batches = worker->batches;
+    batches.Begin(
+        BatchSearch::From::kStart,
+        [&](std::span<const size_t> texels, BatchObservations* seen) { Gather(texels, seen); },
+        [&](const BatchSearch::Task& task, const BatchSearch::Found& found) {
+          if (found.views == 0) {
+            origin_[task.id] = kConverged | kUnseen;  // the initial values stay
+            return;
+          }
+          start_costs_[task.id] = static_cast<float>(found.solution.start_cost);
+          if (found.other_start) origin_[task.id] |= kOtherStart;
+          Keep(task.id, found.solution);
+        });
+    for (size_t texel = static_cast<size_t>(begin) * width;
+         texel < static_cast<size_t>(end) * width; ++texel) {
+      batches.Add({.id = texel, .prior = model_.PriorOf(texel), .start = ReadTexel(start_, texel)});
     }
-    const TexelValues start = ReadTexel(start_, texel);
-    const TexelPrior prior = model_.PriorOf(texel);
-    const TexelSearch::Found found = worker->search.FromStart(worker->observations, prior, start);
-    start_costs_[texel / static_cast<size_t>(start_.width)] += found.start_cost;
-    if (found.other_start) origin_[texel] |= kOtherStart;
-    Keep(texel, found.solution);
+    batches.Finish();
   });
 }
 
 // One colour of the checkerboard: the neighbours of a texel all have the other, and stand still.
 // Half passes count from 1.
 void PartRefiner::SolveFromNeighbours(int half_pass, int about) {
-  const int width = start_.width, height = start_.height;
-  ForEachTexel(about, [&](size_t texel, RefineWorker* worker) {
-    const int column = static_cast<int>(texel % width);
-    const int row = static_cast<int>(texel / width);
-    if ((first_row_ + row + column + half_pass) % 2 != 0 || (origin_[texel] & kUnseen)) return;
-    std::array<TexelValues, 4> neighbours;
-    size_t count = 0;
-    ForEachNeighbour(texel, width, height, [&](size_t neighbour) {
-      neighbours[count++] = ReadTexel(result_.maps, neighbour);
-    });
-    GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
-    const TexelPrior prior = PriorOf(texel);
-    // The prior is no longer the one it was solved with.
-    const TexelSolution current =
-        worker->search.Improved(worker->observations, prior, ReadTexel(result_.maps, texel),
-                                (origin_[texel] & kConverged) != 0);
-    const TexelSearch::Found found = worker->search.FromNeighbours(
-        worker->observations, prior, current, std::span(neighbours).first(count));
-    if (found.other_start) origin_[texel] |= kNeighbour;
-    Keep(texel, found.solution);
+  const int width = start_.width;
+  ForEachRows(about, [&](int begin, int end, RefineWorker* worker) {
+    BatchSearch& batches = worker->batches;
+    batches.Begin(
+        BatchSearch::From::kNeighbours,
+        [&](std::span<const size_t> texels, BatchObservations* seen) { Gather(texels, seen); },
+        [&](const BatchSearch::Task& task, const BatchSearch::Found& found) {
+          if (found.other_start) origin_[task.id] |= kNeighbour;
+          Keep(task.id, found.solution);
+        });
+    for (int row = begin; row < end; ++row) {
+      for (int column = (first_row_ + row + half_pass) % 2; column < width; column += 2) {
+        const size_t texel =
+            static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column);
+        if (origin_[texel] & kUnseen) continue;
+        batches.Add(FromNeighbours(texel));
+      }
+    }
+    batches.Finish();
   });
 }
 
-// Confidence and the texel's share of the summary, from the observations that `worker` holds.
-void PartRefiner::ConcludeTexel(size_t texel, RefineWorker* worker) {
-  const size_t texels = start_.texels();
-  const size_t views = problem_.views.size();
-  const TexelValues values = ReadTexel(result_.maps, texel);
-  const TexelPrior prior = PriorOf(texel);
-  TexelGram gram;
-  worker->search.solver().Gram(worker->observations, TexelPrior(), values, &gram);
-  const double squares = gram[kTexelParameters][kTexelParameters];
-  const TexelCovariance common = model_.CommonCovariance(texel, values, gram);
-  prior.AddTo(values, &gram);
-  const auto planes = TexelConfidence(gram, values, squares, model_.residuals().scale(), common);
+// The prior is no longer the one that the texel was solved with.
+BatchSearch::Task PartRefiner::FromNeighbours(size_t texel) const {
+  BatchSearch::Task task{.id = texel,
+                         .prior = PriorOf(texel),
+                         .start = ReadTexel(result_.maps, texel),
+                         .converged = (origin_[texel] & kConverged) != 0};
+  ForEachNeighbour(texel, start_.width, start_.height, [&](size_t neighbour) {
+    task.neighbours[static_cast<size_t>(task.neighbour_count++)] =
+        ReadTexel(result_.maps, neighbour);
+  });
+  return task;
+}
+
+// Confidence and the texel's share of the summary, of one lane.
+void PartRefiner::ConcludeTexel(size_t texel, int lane, const BatchGram& photographs,
+                                const BatchInverse& inverse, const BatchInverse& without_neighbours,
+                                const RefineWorker& worker) {
+  const size_t texels = start_.texels(), views = problem_.views.size();
+  TexelCovariance covariance = PosteriorCovariance(inverse, lane, model_.residuals().scale());
+  covariance += model_.CommonCovariance(texel, without_neighbours, lane);
+  const auto planes =
+      TexelConfidence(covariance, ReadTexel(result_.maps, texel), photographs.Squares(lane));
   for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];
 
   double* sum = &sums_[texel / static_cast<size_t>(start_.width) * SumColumns()];
-  sum[0] += 0.5 * gram[kTexelParameters][kTexelParameters];
-  const KernelRows& rows = worker->search.solver().rows();
-  const int usable = worker->observations.views();
-  std::vector<double>& differences = worker->differences;
-  for (int c = 0; c < 3; ++c) {
-    LogDifferences(rows.row(c, KernelRows::kResidual), usable, options_.robust_scale,
-                   differences.data() + c * usable);
-  }
-  int row = 0;
+  sum[0] += 0.5 * static_cast<double>(inverse.squares[lane]);
   for (size_t v = 0; v < views; ++v) {
-    if (!(problem_.views[v].mask[texel] >= 0.5f)) continue;
-    for (int c = 0; c < 3; ++c) sum[1 + v] += differences[c * usable + row];
+    const int view = static_cast<int>(v);
+    if (!worker.observed.sees(view, lane)) continue;
+    for (int c = 0; c < 3; ++c) {
+      sum[1 + v] += worker.residuals.at(view, c, BatchResiduals::kDifference, lane);
+    }
     sum[1 + views + v] += 3.0;
-    ++row;
+  }
+}
+
+void PartRefiner::ConcludeBatch(std::span<const size_t> texels, RefineWorker* worker) {
+  Gather(texels, &worker->observed);
+  BatchValues values;
+  BatchPrior prior, without_neighbours;
+  for (size_t i = 0; i < texels.size(); ++i) {
+    const int lane = static_cast<int>(i);
+    SetLane(lane, ReadTexel(result_.maps, texels[i]), &values);
+    prior.SetLane(lane, PriorOf(texels[i]));
+    without_neighbours.SetLane(lane, model_.PriorOf(texels[i]));
+  }
+  BatchEvaluator& evaluator = worker->batches.evaluator();
+  BatchGram photographs;
+  evaluator.Gram(worker->observed, values, &photographs, &worker->residuals);
+  const double least = LeastInformation(model_.residuals().scale());
+  BatchInverse inverse, inverse_without_neighbours;
+  evaluator.Inverse(photographs, prior, values, least, &inverse);
+  evaluator.Inverse(photographs, without_neighbours, values, least, &inverse_without_neighbours);
+  for (size_t i = 0; i < texels.size(); ++i) {
+    ConcludeTexel(texels[i], static_cast<int>(i), photographs, inverse, inverse_without_neighbours,
+                  *worker);
   }
 }
 
 void PartRefiner::Conclude() {
-  ForEachTexel(0, [&](size_t texel, RefineWorker* worker) {
-    GatherObservations(problem_, start_, texel, all_views_, &worker->observations);
-    ConcludeTexel(texel, worker);
+  const size_t width = static_cast<size_t>(start_.width);
+  ForEachRows(0, [&](int begin, int end_row, RefineWorker* worker) {
+    const size_t end = static_cast<size_t>(end_row) * width;
+    for (size_t first = static_cast<size_t>(begin) * width; first < end; first += kBatch) {
+      std::array<size_t, kBatch> texels;
+      std::iota(texels.begin(), texels.end(), first);
+      ConcludeBatch(std::span(texels).first(std::min<size_t>(kBatch, end - first)), worker);
+    }
   });
 }
 
@@ -262,8 +312,10 @@ double PartRefiner::Count(int row, Origin flag) const {
 }
 
 std::vector<double> PartRefiner::SumsOf(int row) const {
-  std::vector<double> sums = {start_costs_[static_cast<size_t>(row)], Count(row, kConverged),
-                              Count(row, kOtherStart), Count(row, kNeighbour)};
+  const auto begin = start_costs_.begin() + static_cast<std::ptrdiff_t>(row) * start_.width;
+  std::vector<double> sums = {std::accumulate(begin, begin + start_.width, 0.0),
+                              Count(row, kConverged), Count(row, kOtherStart),
+                              Count(row, kNeighbour)};
   const double* more = &sums_[static_cast<size_t>(row) * SumColumns()];
   sums.insert(sums.end(), more, more + SumColumns());
   return sums;

@@ -14,7 +14,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 25;
+inline constexpr int kRefineVersion = 26;
 
 struct RefineStageOptions {
   RefineOptions refine;

@@ -6,21 +6,21 @@
 
 #include "fitting/refine/refine.h"
 #include "fitting/refine/view_deviations.h"
-#include "fitting/texel/texel_observations.h"
-#include "fitting/texel/texel_search.h"
+#include "fitting/texel/batch_search.h"
 
 namespace glint {
 
 struct RefineWorker {
   RefineWorker(const KernelOptions& options, const RefineOptions& refine, int views)
-      : observations(views),
-        search(options, refine.iterations, views, refine.starts),
-        differences(3 * static_cast<size_t>(views)),
-        nudged(kViewDeviations) {}
-  TexelObservations observations;
-  TexelSearch search;
-  std::vector<double> differences;
-  std::vector<std::vector<double>> nudged;  // residuals, views a step further off
+      : observed(views),
+        batches(options, refine.iterations, views, refine.starts),
+        residuals(views) {
+    for (int i = 0; i < kViewDeviations; ++i) nudged.emplace_back(views);
+  }
+  BatchObservations observed;
+  BatchSearch batches;
+  BatchResiduals residuals;
+  std::vector<BatchResiduals> nudged;  // views a step further off, by deviation
 };
 
 inline KernelOptions KernelOptionsOf(const RefineProblem& problem, const RefineOptions& options) {

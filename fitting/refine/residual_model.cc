@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/texel/texel_observations.h"
+#include "fitting/reflectance/log_radiance.h"
+#include "fitting/texel/texel_batch.h"
 
 namespace glint {
 namespace {

@@ -60,7 +60,7 @@ class ResidualModel {
 double MeasurementVariance(const RefineProblem& problem);
 
 // The scale σ² of residuals whose negative log likelihood is Charbonnier's loss / σ²
-// (texel_kernel.h): they have the symmetric hyperbolic distribution (Barndorff-Nielsen, Proc. R.
+// (batch_kernel.h): they have the symmetric hyperbolic distribution (Barndorff-Nielsen, Proc. R.
 // Soc. A 1977), whose mean squared g² is more than σ² where its tails are long. ζ = δ²/σ² solves
 // K₀(ζ)/K₁(ζ) + 1/ζ − 1 = mean g² / 2δ²: the likelihood's maximum.
 double HyperbolicVariance(double mean_square, double robust_scale);

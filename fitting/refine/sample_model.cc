@@ -1,6 +1,6 @@
 #include "fitting/refine/sample_model.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 
 #include "base/parallel/parallel.h"
 #include "fitting/refine/neighbours.h"
-#include "fitting/texel/texel_cholesky.h"
+#include "fitting/refine/sample_blocks.h"
 #include "fitting/texel/texel_parameters.h"
 
 namespace glint {
@@ -25,21 +25,10 @@ constexpr double kSeenAlready = 3;
 constexpr double kExpectedNormalSpread = 0.05;
 constexpr double kNormalTexels = 20;  // that this belief is worth, of a substance
 
-// What nothing is known of, without a prior.
-constexpr double kUnknownInformation = 1e-9;
-
 using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
-// (JᵀJ + prior)⁻¹ by the physical values.
-Matrix9 InverseInformation(const SampledTexel& sampled) {
-  Matrix9 information;
-  for (int i = 0; i < kTexelParameters; ++i) {
-    for (int j = i; j < kTexelParameters; ++j) {
-      information(i, j) = information(j, i) = sampled.gram[i][j];
-    }
-    information(i, i) += kUnknownInformation;
-  }
-  return information.ldlt().solve(Matrix9::Identity());
+Eigen::Map<const Matrix9> InverseOf(const SampledTexel& sampled) {
+  return Eigen::Map<const Matrix9>(sampled.inverse.data());
 }
 
 // −1 … 1 along each axis.
@@ -212,15 +201,19 @@ SampleModel::Sampling SampleModel::SamplingOf(std::vector<size_t> texels,
 
 void SampleModel::Fit(std::span<const int> views, int rounds, bool update_residuals,
                       Sampling* sampling) {
-  const int count = static_cast<int>(sampling->texels.size());
+  const size_t count = sampling->texels.size();
   for (int round = 0; round < rounds; ++round) {
     const SampleRequest request{views, !update_residuals && round > 0,
                                 update_residuals ? 0 : std::sqrt(residuals_.variance()),
                                 update_residuals && finds_views_};
-    ForEachPieceByWorker(count, sampling->threads, [&](int i, int worker) {
-      const size_t k = static_cast<size_t>(i), texel = sampling->texels[k];
-      sampling->solved[k] = sampling->solver->solve(texel, PriorOf(texel),
-                                                    sampling->solved[k].values, request, worker);
+    ForEachSampleBlock(count, sampling->threads, [&](size_t first, size_t block, int worker) {
+      std::vector<SampleTask> tasks;
+      for (size_t k = first; k < first + block; ++k) {
+        const size_t texel = sampling->texels[k];
+        tasks.push_back({texel, PriorOf(texel), sampling->solved[k].values});
+      }
+      sampling->solver->solve(tasks, request, worker,
+                              std::span(sampling->solved).subspan(first, block));
     });
     UpdateSubstances(*sampling);
     if (update_residuals && finds_views_) UpdateDeviations(*sampling);
@@ -235,7 +228,7 @@ void SampleModel::UpdateSubstances(const Sampling& sampling) {
   for (size_t i = 0; i < sampling.solved.size(); ++i) {
     const SampledTexel& solved = sampling.solved[i];
     if (solved.views == 0) continue;
-    const Matrix9 inverse = InverseInformation(solved);
+    const auto inverse = InverseOf(solved);
     SubstanceSample sample;
     sample.shares = part_->shares(sampling.texels[i]);
     sample.value = SharedOf(solved.values);
@@ -287,7 +280,7 @@ void SampleModel::UpdateResiduals(const Sampling& sampling) {
   double squares = 0, free = 0;
   for (const SampledTexel& solved : sampling.solved) {
     if (solved.views == 0) continue;
-    const Matrix9 inverse = InverseInformation(solved);
+    const auto inverse = InverseOf(solved);
     double determined = kTexelParameters;  // tr (JᵀJ + prior)⁻¹ JᵀJ
     for (int i = 0; i < kTexelParameters; ++i) {
       determined -= inverse(i, i) * solved.prior_diagonal[static_cast<size_t>(i)];
@@ -306,34 +299,34 @@ void SampleModel::UpdateResiduals(const Sampling& sampling) {
 
 // Where the means move by dm, the most probable values move by C·P·dm, with C the texel's posterior
 // covariance and P its substances' precisions. Neighbours are left out of C: theirs move alike.
-TexelCovariance SampleModel::CommonCovariance(size_t texel, const TexelValues& values,
-                                              const TexelGram& photographs) const {
-  TexelGram gram = photographs;
-  PriorOf(texel).AddTo(values, &gram);
-  double nothing[kTexelParameters];
-  std::fill_n(nothing, kTexelParameters, kUnknownInformation);
-  const TexelCholesky information(gram, nothing);
+TexelCovariance SampleModel::CommonCovariance(size_t texel, const BatchInverse& inverse,
+                                              int lane) const {
   const float* shares = part_->shares(texel);
   const SharedValues variances = means_.Variances(means_.Of(shares));
-  double moved[kShared][kTexelParameters];  // by each of the means
-  for (size_t p = 0; p < kShared; ++p) {
-    double pull[kTexelParameters] = {};
-    pull[kSharedParameters[p]] = residuals_.scale() * residuals_.scale() / variances[p];
-    information.Solve(pull, &moved[p]);
-  }
   const SharedCovariance means = means_.CovarianceOf(shares);
-  TexelCovariance common{};
-  for (size_t p = 0; p < kShared; ++p) {
-    double with[kTexelParameters] = {};
-    for (size_t q = 0; q < kShared; ++q) {
-      for (size_t j = 0; j < kTexelParameters; ++j) with[j] += means[kShared * p + q] * moved[q][j];
+  const double variance = residuals_.scale() * residuals_.scale();
+  const auto follows = [&](int value) {
+    SharedValues by;
+    for (size_t p = 0; p < kShared; ++p) {
+      by[p] = variance / variances[p] * inverse.at(kSharedParameters[p], value, lane);
     }
-    for (size_t i = 0; i < kTexelParameters; ++i) {
-      for (size_t j = 0; j < kTexelParameters; ++j) {
-        common[i * kTexelParameters + j] += moved[p][i] * with[j];
-      }
+    return by;
+  };
+  const auto covariance = [&](const SharedValues& a, const SharedValues& b) {
+    double sum = 0;
+    for (size_t p = 0; p < kShared; ++p) {
+      double with = 0;
+      for (size_t q = 0; q < kShared; ++q) with += means[kShared * p + q] * b[q];
+      sum += a[p] * with;
     }
+    return sum;
+  };
+  TexelCovariance common;
+  for (int i = 0; i < kTexelParameters; ++i) {
+    const SharedValues by = follows(i);
+    common.variances[static_cast<size_t>(i)] = covariance(by, by);
   }
+  common.slopes = covariance(follows(kSlopeX), follows(kSlopeY));
   return common;
 }
 
@@ -355,7 +348,7 @@ void SampleModel::UpdateNormalSpreads(const Sampling& sampling) {
   for (size_t i = 0; i < sampling.solved.size(); ++i) {
     const SampledTexel& solved = sampling.solved[i];
     if (solved.views == 0) continue;
-    const Matrix9 inverse = InverseInformation(solved);
+    const auto inverse = InverseOf(solved);
     double normal[2];
     NormalOfSlopes(solved.values[kSlopeX], solved.values[kSlopeY], normal);
     double square = 0;
@@ -380,7 +373,7 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
     if (solved.views == 0) continue;
     TexelOfViews& texel = texels.emplace_back();
     texel.place = PlaceOf(part_->problem().plane, sampling.texels[i]);
-    Eigen::Map<Matrix9>(texel.inverse.data()) = InverseInformation(solved);
+    texel.inverse = solved.inverse;
     texel.products = &solved.of_views;
   }
   const double scale = residuals_.scale();

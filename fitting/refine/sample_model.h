@@ -24,8 +24,9 @@ struct SampledTexel {
   int views = 0;  // 0: nothing is seen of it
   TexelValues values{};
   double squares = 0;  // squared residuals g² of the photographs alone
-  TexelGram gram{};    // by the physical values, prior included, in units of the residuals' scale²
-  std::array<double, kTexelParameters> prior_diagonal{};  // what the prior added to its diagonal
+  // (JᵀJ + prior)⁻¹ by the physical values, row-major, in units of the residuals' scale⁻² …
+  std::array<double, kTexelParameters * kTexelParameters> inverse{};
+  std::array<double, kTexelParameters> prior_diagonal{};  // … and the prior's part before inversion
   std::vector<DeviationProducts> of_views;  // where deviations of views are looked for
 };
 
@@ -41,7 +42,14 @@ struct Prediction {
   double MeanSquare() const { return squares / std::max(residuals, 1); }
 };
 
-// How a sampled texel is to be solved.
+// A texel to be solved.
+struct SampleTask {
+  size_t texel = 0;
+  TexelPrior prior;
+  TexelValues from{};
+};
+
+// How sampled texels are to be solved.
 struct SampleRequest {
   std::span<const int> views;  // those to take
   bool near_minimum = false;   // `from` is next to one: no other starts
@@ -52,11 +60,11 @@ struct SampleRequest {
 // What SampleModel asks of the texels' solver; called from several threads, `worker` below their
 // number.
 struct SampleSolver {
-  std::function<SampledTexel(size_t texel, const TexelPrior& prior, const TexelValues& from,
-                             const SampleRequest& request, int worker)>
+  std::function<void(std::span<const SampleTask> tasks, const SampleRequest& request, int worker,
+                     std::span<SampledTexel> solved)>
       solve;
-  std::function<Prediction(size_t texel, const TexelValues& values, std::span<const int> views,
-                           int worker)>
+  std::function<Prediction(std::span<const size_t> texels, std::span<const TexelValues> values,
+                           std::span<const int> views, int worker)>
       predict;
   // From now on views deviate so from what is said of them.
   std::function<void(const ViewDeviations& deviations)> deviate;
@@ -81,11 +89,9 @@ class SampleModel {
   TexelPrior PriorOf(size_t texel) const;
   TexelPrior PriorOf(size_t texel, const SvbrdfMaps& maps) const;
 
-  // Covariance of the texel's values that its substances' means leave open, row-major: those are
-  // uncertain themselves, and all their texels share what they are wrong by. `photographs`: the
-  // Gram matrix of the photographs alone at `values`.
-  TexelCovariance CommonCovariance(size_t texel, const TexelValues& values,
-                                   const TexelGram& photographs) const;
+  // What the texel's substances' means leave open: those are uncertain themselves, and all their
+  // texels share what they are wrong by. `inverse`: of the normal equations with PriorOf(texel).
+  TexelCovariance CommonCovariance(size_t texel, const BatchInverse& inverse, int lane) const;
 
   void Describe(RefineSummary* summary) const;
 
@@ -120,6 +126,7 @@ class SampleModel {
   void ForEachFold(const Sampling& sampling, const Visit& visit) const;
   // Mean squared residual of held-out views.
   double CrossValidate(const Sampling& sampling) const;
+  Prediction Predict(const Sampling& sampling, std::span<const int> views) const;
   SampleModel ScaledBy(const SpreadFactors& factors) const;
   void ChooseSpreads(const Sampling& sampling);
   // Of texels and their neighbours, about `most` in all.

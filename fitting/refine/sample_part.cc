@@ -1,46 +1,71 @@
 #include "fitting/refine/sample_part.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
+#include <numeric>
+#include <span>
+
+#include "base/parallel/parallel.h"
+#include "fitting/refine/gather.h"
+#include "fitting/reflectance/log_radiance.h"
 
 namespace glint {
 namespace {
 
+// The lower of the two in the middle; 0 of none.
+float Median(std::vector<float>* values) {
+  if (values->empty()) return 0;
+  const auto middle = values->begin() + static_cast<std::ptrdiff_t>((values->size() - 1) / 2);
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
+}
+
 // Median over the views of π·I/(E·NoL), the albedo of a matte texel: highlights are rare among
 // them.
-std::vector<float> MedianColour(const RefineProblem& problem) {
-  const SamplePlane& plane = problem.plane;
-  const size_t texels = static_cast<size_t>(plane.width) * static_cast<size_t>(plane.height);
+std::vector<float> MedianColour(const RefineProblem& problem, const SvbrdfMaps& initial,
+                                int threads) {
+  using Obs = BatchObservations;
+  const size_t texels = initial.texels();
+  const int views = static_cast<int>(problem.views.size());
+  RefineProblem without_room = problem;
+  without_room.room = {};
+  std::vector<int> all(problem.views.size());
+  std::iota(all.begin(), all.end(), 0);
   std::vector<float> colour(3 * texels);
-  std::vector<float> seen[3];
-  for (size_t i = 0; i < texels; ++i) {
-    const int row = static_cast<int>(i) / plane.width, column = static_cast<int>(i) % plane.width;
-    for (auto& values : seen) values.clear();
-    for (const RefineView& view : problem.views) {
-      if (!(view.mask[i] >= 0.5f)) continue;
-      const TexelGeometry<double> g = TexelGeometryInView<double>(
-          view.view, problem.convention.falloff, plane.x_mm(column), plane.y_mm(row));
-      for (size_t c = 0; c < 3; ++c) {
-        const double received = g.irradiance[c] * std::max(0.05, g.light[2]);
-        seen[c].push_back(
-            static_cast<float>(std::numbers::pi * view.rgb[c * texels + i] / received));
+  ForEachBlock(static_cast<int>(texels), 64 * kBatch, threads, [&](int begin, int end) {
+    Obs seen(views);
+    std::vector<float> values;
+    for (int first = begin; first < end; first += kBatch) {
+      std::array<size_t, kBatch> batch;
+      std::iota(batch.begin(), batch.end(), static_cast<size_t>(first));
+      const int count = std::min(kBatch, end - first);
+      GatherObservations(without_room, initial, std::span(batch).first(static_cast<size_t>(count)),
+                         all, &seen);
+      for (int lane = 0; lane < count; ++lane) {
+        for (int c = 0; c < 3; ++c) {
+          values.clear();
+          for (int v = 0; v < views; ++v) {
+            if (!seen.sees(v, lane)) continue;
+            const auto at = [&](int plane) { return seen.rows()[v * Obs::kPlanes + plane][lane]; };
+            const float radiance = 1 / at(Obs::kInverseTarget + c) - static_cast<float>(kLogOffset);
+            const float received = at(Obs::kIrradiance + c) * std::max(0.05f, at(Obs::kLightZ));
+            values.push_back(std::numbers::pi_v<float> * radiance / received);
+          }
+          colour[static_cast<size_t>(c) * texels + batch[static_cast<size_t>(lane)]] =
+              Median(&values);
+        }
       }
     }
-    for (size_t c = 0; c < 3; ++c) {
-      if (seen[c].empty()) continue;
-      const auto middle = seen[c].begin() + static_cast<std::ptrdiff_t>((seen[c].size() - 1) / 2);
-      std::nth_element(seen[c].begin(), middle, seen[c].end());
-      colour[c * texels + i] = *middle;
-    }
-  }
+  });
   return colour;
 }
 
 }  // namespace
 
 SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
-                       const std::optional<Substances>& known, int most)
-    : SamplePart(problem, initial, MedianColour(problem), known, most) {}
+                       const std::optional<Substances>& known, int most, int threads)
+    : SamplePart(problem, initial, MedianColour(problem, initial, threads), known, most) {}
 
 SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
                        const std::vector<float>& colour, const std::optional<Substances>& known,

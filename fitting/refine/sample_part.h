@@ -15,7 +15,7 @@ class SamplePart {
   // `problem` and `initial` must outlive this, views as they are said to be. `known`: the sample's
   // substances; none: they are found among these texels, at most `most`.
   SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
-             const std::optional<Substances>& known, int most);
+             const std::optional<Substances>& known, int most, int threads);
 
   const RefineProblem& problem() const { return problem_; }
   const SvbrdfMaps& initial() const { return initial_; }

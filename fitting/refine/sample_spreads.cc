@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel/parallel.h"
 #include "fitting/refine/neighbours.h"
+#include "fitting/refine/sample_blocks.h"
 #include "fitting/refine/sample_model.h"
 #include "fitting/refine/spread_search.h"
 
@@ -39,19 +39,25 @@ void SampleModel::ForEachFold(const Sampling& sampling, const Visit& visit) cons
   }
 }
 
+Prediction SampleModel::Predict(const Sampling& sampling, std::span<const int> views) const {
+  std::vector<TexelValues> values;
+  for (const SampledTexel& solved : sampling.solved) values.push_back(solved.values);
+  std::vector<Prediction> by_block(sampling.texels.size());  // at the block's first texel
+  ForEachSampleBlock(values.size(), sampling.threads, [&](size_t first, size_t count, int worker) {
+    by_block[first] = sampling.solver->predict(
+        std::span(sampling.texels).subspan(first, count),
+        std::span<const TexelValues>(values).subspan(first, count), views, worker);
+  });
+  Prediction sum;
+  for (const Prediction& p : by_block) sum += p;
+  return sum;
+}
+
 double SampleModel::CrossValidate(const Sampling& sampling) const {
   Prediction sum;
-  ForEachFold(sampling, [&](const SampleModel&, const Sampling& part, const std::vector<int>&,
-                            const std::vector<int>& held_out) {
-    std::vector<Prediction> predictions(part.texels.size());
-    ForEachPieceByWorker(
-        static_cast<int>(predictions.size()), part.threads, [&](int i, int worker) {
-          const size_t k = static_cast<size_t>(i);
-          predictions[k] =
-              part.solver->predict(part.texels[k], part.solved[k].values, held_out, worker);
-        });
-    for (const Prediction& p : predictions) sum += p;
-  });
+  ForEachFold(sampling,
+              [&](const SampleModel& model, const Sampling& part, const std::vector<int>&,
+                  const std::vector<int>& held_out) { sum += model.Predict(part, held_out); });
   return sum.MeanSquare();
 }
 
@@ -94,24 +100,32 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
                            const std::vector<int>& fitted, const std::vector<int>& held_out) {
     std::vector<SampleModel> tried(count, model);
     for (size_t f = 0; f < count; ++f) tried[f].neighbour_spread_ *= kNeighbourFactors[f];
-    std::vector<std::vector<Prediction>> predictions(centres.size() - 1);
-    ForEachPieceByWorker(static_cast<int>(predictions.size()), threads, [&](int i, int worker) {
-      const size_t k = static_cast<size_t>(i), texel = part.texels[centres[k]];
-      std::vector<Neighbour> neighbours;
-      for (size_t n = centres[k] + 1; n < centres[k + 1]; ++n) {
-        neighbours.push_back({part.texels[n], part.solved[n].values});
-      }
+    const size_t crosses_count = centres.size() - 1;
+    std::vector<std::vector<Prediction>> predictions(crosses_count);  // at a block's first
+    ForEachSampleBlock(crosses_count, threads, [&](size_t first, size_t block, int worker) {
       for (const SampleModel& one : tried) {
-        TexelGaussian gaussian = one.Knowledge(texel);
-        one.MultiplyNeighbours(texel, neighbours, &gaussian);
-        const SampledTexel solved =
-            solver.solve(texel, one.Scaled(gaussian), part.solved[centres[k]].values,
-                         {.views = fitted, .near_minimum = true}, worker);
-        predictions[k].push_back(solver.predict(texel, solved.values, held_out, worker));
+        std::vector<SampleTask> tasks;
+        std::vector<size_t> middles_texels;
+        for (size_t k = first; k < first + block; ++k) {
+          const size_t texel = part.texels[centres[k]];
+          std::vector<Neighbour> neighbours;
+          for (size_t n = centres[k] + 1; n < centres[k + 1]; ++n) {
+            neighbours.push_back({part.texels[n], part.solved[n].values});
+          }
+          TexelGaussian gaussian = one.Knowledge(texel);
+          one.MultiplyNeighbours(texel, neighbours, &gaussian);
+          tasks.push_back({texel, one.Scaled(gaussian), part.solved[centres[k]].values});
+          middles_texels.push_back(texel);
+        }
+        std::vector<SampledTexel> solved(block);
+        solver.solve(tasks, {.views = fitted, .near_minimum = true}, worker, solved);
+        std::vector<TexelValues> values;
+        for (const SampledTexel& texel : solved) values.push_back(texel.values);
+        predictions[first].push_back(solver.predict(middles_texels, values, held_out, worker));
       }
     });
     for (const auto& p : predictions) {
-      for (size_t f = 0; f < count; ++f) sums[f] += p[f];
+      for (size_t f = 0; f < p.size(); ++f) sums[f] += p[f];
     }
   });
   std::vector<double> errors(count);

@@ -15,6 +15,7 @@ namespace {
 constexpr float kBrightnessWeight = 0.5f, kChromaWeight = 2.0f;
 constexpr float kAlbedoOffset = 0.01f;
 constexpr float kMembershipWidth = 0.2f;  // of the features, for soft shares
+constexpr float kLeastShare = 1e-3f;      // a texel that has less of a substance has nothing of it
 constexpr int kIterations = 40;
 constexpr size_t kClustered = 8192;
 
@@ -124,9 +125,10 @@ SharedCovariance SubstanceMeans::CovarianceOf(const float* shares) const {
   if (covariance.empty()) return sum;
   const size_t count = mean.size();
   for (size_t k = 0; k < count; ++k) {
+    if (shares[k] < kLeastShare) continue;
     for (size_t l = 0; l < count; ++l) {
+      if (shares[l] < kLeastShare) continue;
       const double share = static_cast<double>(shares[k]) * shares[l];
-      if (share < 1e-6) continue;
       for (size_t p = 0; p < kShared; ++p) {
         const double* row = covariance.data() + (kShared * k + p) * kShared * count + kShared * l;
         for (size_t q = 0; q < kShared; ++q) sum[kShared * p + q] += share * row[q];
@@ -172,14 +174,15 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
     const VectorS pull = precision.cwiseProduct(departure);
     for (Eigen::Index k = 0; k < count; ++k) {
       const double share = sample.shares[k];
-      if (share < 1e-3) continue;
+      if (share < kLeastShare) continue;
       gradient.segment<kN>(kN * k) += share * pull;
-      for (Eigen::Index l = 0; l < count; ++l) {
+      for (Eigen::Index l = 0; l <= k; ++l) {
         const double other = sample.shares[l];
-        if (other >= 1e-3) information.block<kN, kN>(kN * k, kN * l) += share * other * own;
+        if (other >= kLeastShare) information.block<kN, kN>(kN * k, kN * l) += share * other * own;
       }
     }
   }
+  information.triangularView<Eigen::StrictlyUpper>() = information.transpose();
   information *= worth;
   gradient *= worth;
   // Means are expected within a wide range of their common mean.

@@ -74,34 +74,31 @@ Eigen::MatrixXd SharingTheLight(int views) {
 
 }  // namespace
 
-std::vector<DeviationProducts> ProductsOf(const KernelRows& rows,
-                                          std::span<const std::vector<double>> nudged,
-                                          size_t views) {
-  std::vector<DeviationProducts> products(views);
-  for (size_t v = 0; v < views; ++v) {
-    DeviationProducts& of = products[v];
-    for (int c = 0; c < 3; ++c) {
-      const double residual = rows.row(c, KernelRows::kResidual)[v];
-      std::array<double, kViewDeviations> by;
-      for (size_t i = 0; i < kViewDeviations; ++i) {
-        by[i] = (nudged[i][static_cast<size_t>(c) * views + v] - residual) / kDeviationStep;
-      }
-      const std::pair<int, KernelRows::Row> values[] = {
-          {DiffuseParameter(c), KernelRows::kByDiffuse},
-          {SpecularParameter(c), KernelRows::kBySpecular},
-          {kRough, KernelRows::kByRough},
-          {kSlopeX, KernelRows::kBySlopeX},
-          {kSlopeY, KernelRows::kBySlopeY}};
-      for (size_t i = 0; i < kViewDeviations; ++i) {
-        for (size_t j = 0; j < kViewDeviations; ++j) of.squared[i][j] += by[i] * by[j];
-        of.by_residual[i] += by[i] * residual;
-        for (const auto& [value, row] : values) {
-          of.by_values[i][static_cast<size_t>(value)] += by[i] * rows.row(c, row)[v];
-        }
+DeviationProducts ProductsOf(const BatchResiduals& residuals,
+                             std::span<const BatchResiduals> nudged, int view, int lane) {
+  using Row = BatchResiduals::Row;
+  DeviationProducts of;
+  for (int c = 0; c < 3; ++c) {
+    const auto at = [&](Row row) { return residuals.at(view, c, row, lane); };
+    const double residual = at(Row::kResidual);
+    std::array<double, kViewDeviations> by;
+    for (size_t i = 0; i < kViewDeviations; ++i) {
+      by[i] = (nudged[i].at(view, c, Row::kResidual, lane) - residual) / kDeviationStep;
+    }
+    const std::pair<int, double> by_values[] = {{DiffuseParameter(c), at(Row::kByDiffuse)},
+                                                {SpecularParameter(c), at(Row::kBySpecular)},
+                                                {kRough, at(Row::kByRough)},
+                                                {kSlopeX, at(Row::kBySlopeX)},
+                                                {kSlopeY, at(Row::kBySlopeY)}};
+    for (size_t i = 0; i < kViewDeviations; ++i) {
+      for (size_t j = 0; j < kViewDeviations; ++j) of.squared[i][j] += by[i] * by[j];
+      of.by_residual[i] += by[i] * residual;
+      for (const auto& [value, by_value] : by_values) {
+        of.by_values[i][static_cast<size_t>(value)] += by[i] * by_value;
       }
     }
   }
-  return products;
+  return of;
 }
 
 ViewDeviations::ViewDeviations(int views, const DeviationValues& expected,

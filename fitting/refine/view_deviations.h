@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "fitting/texel/texel_kernel.h"
+#include "fitting/texel/texel_batch.h"
 #include "fitting/view_correction/deviating_view.h"
 #include "fitting/view_correction/shared_light.h"
 
@@ -33,15 +33,14 @@ struct DeviationProducts {
   std::array<std::array<double, kTexelParameters>, kViewDeviations> by_values{};
 };
 
-// Derivatives of residuals by the deviations: differences over a step this long.
+// Derivatives of residuals by the deviations: differences over a step this long, of residuals that
+// single precision rounds by 2e-7.
 inline constexpr double kDeviationStep = 1e-4;
 
-// `rows`: of the views as they are; `nudged`: residuals [channel][usable view], for each deviation
-// in turn a step longer, of as many usable views. Which views they are, and `by_shared`, is
-// left to the caller.
-std::vector<DeviationProducts> ProductsOf(const KernelRows& rows,
-                                          std::span<const std::vector<double>> nudged,
-                                          size_t views);
+// Of a lane's texel in one view. `nudged`: for each deviation in turn, with views that are a step
+// further. Which view it is, and `by_shared`, is left to the caller.
+DeviationProducts ProductsOf(const BatchResiduals& residuals,
+                             std::span<const BatchResiduals> nudged, int view, int lane);
 
 // What one texel tells of the views.
 struct TexelOfViews {

@@ -6,9 +6,6 @@
 namespace glint {
 namespace {
 
-// Beyond this many tails the value is its bound to double precision.
-constexpr double kFarthestTail = 30.0;
-
 const ValueBounds& BoundsOf(int parameter) {
   return parameter == kRough ? kRoughnessBounds : kAlbedoBounds;
 }
@@ -29,7 +26,7 @@ double BoundedValue(const ValueBounds& bounds, double u, double* derivative) {
 }
 
 double UnboundedVariable(const ValueBounds& bounds, double value) {
-  const double nearest = 0.01 * bounds.tail;
+  const double nearest = kNearestToBound * bounds.tail;
   const double x = std::clamp(value, bounds.low + nearest, bounds.high - nearest);
   if (x < bounds.low + bounds.tail) {
     return bounds.low + bounds.tail * (1.0 + std::log((x - bounds.low) / bounds.tail));

@@ -1,25 +1,34 @@
-// The unbounded variables that the solver moves, and the physical values they stand for.
-//
-// A bounded value x in (low, high) is x = u within [low + tail, high − tail], and approaches its
-// bound exponentially beyond: x = low + tail·exp((u − low)/tail − 1). The map is once continuously
-// differentiable and the identity over nearly all of the range, so the bounds cost neither the
-// steps of Gauss–Newton nor the meaning of a prior in physical units, and a value at its bound can
-// leave it again (a sine's gradient vanishes there; a logistic curve bends everywhere).
+// A texel as the solver sees it: its physical values, and the unbounded variables that the solver
+// moves (texel_bounds.h).
 #pragma once
 
+#include <array>
+#include <cstddef>
+
+#include "fitting/reflectance/brdf.h"
 #include "fitting/reflectance/svbrdf_maps.h"
-#include "fitting/texel/texel_kernel.h"
+#include "fitting/texel/texel_bounds.h"
 
 namespace glint {
 
-struct ValueBounds {
-  double low = 0.0, high = 1.0;
-  double tail = 0.02;  // width over which the value bends toward its bound
+// Albedos come first and by channel: a channel's residuals depend on that channel's albedos only,
+// so normal equations in this order have zeros between channels.
+enum TexelParameter : int {
+  kAlbedos = 0,  // diffuse.R, specular.R, diffuse.G, specular.G, diffuse.B, specular.B
+  kRough = 6,
+  kSlopeX,  // normal ∝ (slope_x, slope_y, 1)
+  kSlopeY,
+  kTexelParameters = 9
 };
+inline constexpr int DiffuseParameter(int channel) { return kAlbedos + 2 * channel; }
+inline constexpr int SpecularParameter(int channel) { return kAlbedos + 2 * channel + 1; }
 
-inline constexpr ValueBounds kAlbedoBounds{0.0, 1.0, 0.05};
-inline constexpr ValueBounds kRoughnessBounds{0.03, 1.0, 0.10};
-inline constexpr double kMostSlope = 11.43;  // 85° of tilt: starts beyond are drawn back to it
+using TexelValues = std::array<double, kTexelParameters>;
+
+// [J f]ᵀ[J f] of residuals f with Jacobian J: the normal equations with the squared norm of f in
+// the last corner. Symmetric; only the upper triangle (column ≥ row) is used.
+inline constexpr int kGramSize = kTexelParameters + 1;
+using TexelGram = std::array<std::array<double, kGramSize>, kGramSize>;
 
 // Value for the variable `u`, and its derivative.
 double BoundedValue(const ValueBounds& bounds, double u, double* derivative);

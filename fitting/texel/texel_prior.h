@@ -10,7 +10,7 @@
 
 #include <array>
 
-#include "fitting/texel/texel_kernel.h"
+#include "fitting/texel/texel_parameters.h"
 
 namespace glint {
 
@@ -64,6 +64,7 @@ class TexelPrior {
   void AddTo(const TexelValues& texel, TexelGram* gram) const;
   // The most probable texel.
   const TexelValues& mean() const { return mean_; }
+  double mean_normal(int axis) const { return mean_normal_[axis]; }  // n_x, n_y
   // Weight of a squared departure of parameter `i`.
   double weight(int i) const { return weight_[i] * weight_[i]; }
   // Sum of its squared residuals.

@@ -3,12 +3,16 @@
 #include <ceres/jet.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "base/parallel/parallel.h"
+#include "fitting/reflectance/log_radiance.h"
 #include "fitting/reflectance/texel_at.h"
-#include "fitting/texel/residual_noise.h"
 #include "fitting/texel/texel_parameters.h"
+#include "fitting/view_correction/residual_noise.h"
 
 namespace glint {
 namespace {
@@ -17,7 +21,7 @@ constexpr int kMargin = 2;        // texels at the edge, whose lookup would leav
 constexpr double kNoise = 0.004;  // of log residuals: texels that fit so well are not searched
 constexpr int kTexelIterations = 40;
 constexpr int kTexelStarts = 2;
-constexpr int kTexelsPerPiece = 32;
+constexpr size_t kTexelsPerPiece = 4 * kBatch;
 // Sums of normal equations, whatever the number of threads: each has views² memory.
 constexpr int kSums = 8;
 constexpr double kMostStep = 0.3;  // of roughness and slopes together, as a texel follows
@@ -61,7 +65,7 @@ void ShadeByLight(const TexelSvbrdf<double>& svbrdf, const View& view,
       convention.diffuse_weight, radiance);
 }
 
-// How the residual of texel_kernel.h depends on the radiances that it compares.
+// How the residual of batch_kernel.h depends on the radiances that it compares.
 struct LogResidual {
   LogResidual(double rendered, double shown, double robust_scale)
       : error(std::log((rendered + kLogOffset) / (shown + kLogOffset))) {
@@ -74,6 +78,16 @@ struct LogResidual {
   }
   double error, by_rendered, by_shown;
 };
+
+// visit(texels) with the numbers of [begin, end), at most a batch of them at a time.
+template <class Visit>
+void ForEachBatch(size_t begin, size_t end, const Visit& visit) {
+  std::array<size_t, kBatch> texels;
+  for (size_t first = begin; first < end; first += kBatch) {
+    std::iota(texels.begin(), texels.end(), first);
+    visit(std::span<const size_t>(texels).first(std::min<size_t>(kBatch, end - first)));
+  }
+}
 
 }  // namespace
 
@@ -92,13 +106,23 @@ struct TexelLattice::Worker {
   Worker(const KernelOptions& options, int views)
       : kernel(options),
         observations(views),
-        search(options, kTexelIterations, views, kTexelStarts) {
-    search.SetNoise(kNoise);
+        residuals(views),
+        batches(options, kTexelIterations, views, kTexelStarts),
+        seen(static_cast<size_t>(3 * views * kBatch)) {
+    batches.SetNoise(kNoise);
   }
+  LookedUp& Seen(int view, int channel, int lane) {
+    return seen[static_cast<size_t>((3 * view + channel) * kBatch + lane)];
+  }
+  const LookedUp& Seen(int view, int channel, int lane) const {
+    return seen[static_cast<size_t>((3 * view + channel) * kBatch + lane)];
+  }
+
   KernelOptions kernel;
-  TexelObservations observations;
-  TexelSearch search;
-  std::vector<LookedUp> seen;  // by usable view and channel
+  BatchObservations observations;
+  BatchResiduals residuals;
+  BatchSearch batches;
+  std::vector<LookedUp> seen;  // by view, channel and lane
 };
 
 TexelLattice::~TexelLattice() = default;
@@ -163,72 +187,114 @@ TexelPrior TexelLattice::PriorOf(const Texel& texel) const {
   return TexelPrior(TexelGaussian(texel.start, ErrorsOfStart()), hold_);
 }
 
-void TexelLattice::Gather(const Texel& texel, const Eigen::VectorXd& x, Worker* worker) const {
+void TexelLattice::Gather(std::span<const size_t> texels, const Eigen::VectorXd& x, Worker* worker,
+                          BatchObservations* observations) const {
   const SamplePlane& plane = set_.plane;
-  const size_t texels = static_cast<size_t>(plane.width) * plane.height;
+  const size_t all = static_cast<size_t>(plane.width) * plane.height;
   const RoomLight room = unknowns_.RoomAt(x);
-  const Vec3d diffuse = RoomIrradiance(room, texel.room_diffuse);
-  worker->observations.Clear();
-  worker->seen.clear();
-  for (size_t k = 0; k < texel.views.size(); ++k) {
-    const int v = texel.views[k];
-    const Photograph& photograph = set_.photographs[static_cast<size_t>(v)];
-    double column = texel.column, row = texel.row;
-    for (int i = 0; unknowns_.kinds().registration && i < 4; ++i) {
-      column += texel.corner_weights[i] * x[unknowns_.shift(v) + i];
-      row += texel.corner_weights[i] * x[unknowns_.shift(v) + 4 + i];
+  observations->Clear(unknowns_.views());
+  for (size_t i = 0; i < texels.size(); ++i) {
+    const Texel& texel = texels_[texels[i]];
+    const int lane = static_cast<int>(i);
+    observations->Place(lane, texel.x_mm, texel.y_mm);
+    for (const int v : texel.views) {
+      const Photograph& photograph = set_.photographs[static_cast<size_t>(v)];
+      double column = texel.column, row = texel.row;
+      for (int k = 0; unknowns_.kinds().registration && k < 4; ++k) {
+        column += texel.corner_weights[k] * x[unknowns_.shift(v) + k];
+        row += texel.corner_weights[k] * x[unknowns_.shift(v) + 4 + k];
+      }
+      float radiance[3];
+      bool clipped[3];
+      for (int c = 0; c < 3; ++c) {
+        LookedUp seen = LookUp(photograph.rgb.data() + static_cast<size_t>(c) * all, plane.width,
+                               plane.height, column, row);
+        seen.value = std::max(seen.value, 0.0);
+        radiance[c] = static_cast<float>(seen.value);
+        clipped[c] = photograph.ldr && seen.value >= kClipped;
+        worker->Seen(v, c, lane) = seen;
+      }
+      observations->Set(lane, v, radiance, clipped);
     }
-    double radiance[3];
-    bool clipped[3];
-    for (size_t c = 0; c < 3; ++c) {
-      LookedUp seen =
-          LookUp(photograph.rgb.data() + c * texels, plane.width, plane.height, column, row);
-      seen.value = radiance[c] = std::max(seen.value, 0.0);
-      clipped[c] = photograph.ldr && radiance[c] >= kClipped;
-      worker->seen.push_back(seen);
-    }
-    const View view = unknowns_.ViewAt(v, x);
-    TexelGeometry<double> geometry =
-        TexelGeometryInView<double>(view, set_.convention.falloff, texel.x_mm, texel.y_mm);
-    const Vec3d specular = RoomIrradiance(room, texel.room_specular[k]);
-    for (size_t c = 0; c < 3; ++c) {
-      geometry.ambient[c] += view.exposure * diffuse[c];
-      geometry.ambient_specular[c] += view.exposure * specular[c];
-    }
-    worker->observations.Add(geometry, radiance, clipped);
   }
-  worker->observations.Finish();
+  for (int v = 0; v < unknowns_.views(); ++v) {
+    observations->Complete(v, BatchView(unknowns_.ViewAt(v, x), set_.convention.falloff));
+  }
+  if (!room.any()) return;
+  for (size_t i = 0; i < texels.size(); ++i) {
+    const Texel& texel = texels_[texels[i]];
+    const Vec3d diffuse = RoomIrradiance(room, texel.room_diffuse);
+    for (size_t k = 0; k < texel.views.size(); ++k) {
+      const View view = unknowns_.ViewAt(texel.views[k], x);
+      const Vec3d specular = RoomIrradiance(room, texel.room_specular[k]);
+      double ambient[3], ambient_specular[3];
+      for (size_t c = 0; c < 3; ++c) {
+        ambient[c] = view.exposure * (view.ambient_rgb[c] + diffuse[c]);
+        ambient_specular[c] = view.exposure * (view.ambient_rgb[c] + specular[c]);
+      }
+      observations->SetAmbient(static_cast<int>(i), texel.views[k], ambient, ambient_specular);
+    }
+  }
+}
+
+// The sum of the texels' costs.
+double TexelLattice::FitBlock(size_t first, size_t count, const Eigen::VectorXd& x,
+                              const Values* others, Worker* worker, Values* values) const {
+  const Values starts(values->begin() + static_cast<std::ptrdiff_t>(first),
+                      values->begin() + static_cast<std::ptrdiff_t>(first + count));
+  std::vector<double> costs(count, std::numeric_limits<double>::infinity());
+  const auto fit = [&](const TexelValues* from) {
+    worker->batches.Begin(
+        BatchSearch::From::kStart,
+        [&](std::span<const size_t> texels, BatchObservations* observations) {
+          Gather(texels, x, worker, observations);
+        },
+        [&](const BatchSearch::Task& task, const BatchSearch::Found& found) {
+          double& cost = costs[task.id - first];
+          if (!(found.solution.cost < cost)) return;
+          cost = found.solution.cost;
+          (*values)[task.id] = found.solution.values;
+        });
+    for (size_t i = 0; i < count; ++i) {
+      worker->batches.Add(
+          {.id = first + i, .prior = PriorOf(texels_[first + i]), .start = from[i]});
+    }
+    worker->batches.Finish();
+  };
+  fit(starts.data());
+  if (others != nullptr) fit(others->data() + first);
+  double sum = 0;
+  for (const double cost : costs) sum += cost;
+  return sum;
 }
 
 double TexelLattice::Fit(const Eigen::VectorXd& x, const Values* others, Values* values) {
-  std::vector<double> costs(texels_.size());
-  const int pieces = (size() + kTexelsPerPiece - 1) / kTexelsPerPiece;
-  ForEachPieceByWorker(pieces, threads_, [&](int piece, int at) {
-    Worker* worker = workers_[static_cast<size_t>(at)].get();
-    const int last = std::min(size(), (piece + 1) * kTexelsPerPiece);
-    for (int i = piece * kTexelsPerPiece; i < last; ++i) {
-      const size_t k = static_cast<size_t>(i);
-      Gather(texels_[k], x, worker);
-      const TexelPrior prior = PriorOf(texels_[k]);
-      const auto fit = [&](const TexelValues& from) {
-        return worker->search.FromStart(worker->observations, prior, from).solution;
-      };
-      TexelSolution best = fit((*values)[k]);
-      if (others != nullptr) {
-        const TexelSolution other = fit((*others)[k]);
-        if (other.cost < best.cost) best = other;
-      }
-      (*values)[k] = best.values;
-      costs[k] = best.cost;
-    }
+  const size_t pieces = (texels_.size() + kTexelsPerPiece - 1) / kTexelsPerPiece;
+  std::vector<double> costs(pieces);
+  ForEachPieceByWorker(static_cast<int>(pieces), threads_, [&](int piece, int at) {
+    const size_t k = static_cast<size_t>(piece), first = k * kTexelsPerPiece;
+    costs[k] = FitBlock(first, std::min(kTexelsPerPiece, texels_.size() - first), x, others,
+                        workers_[static_cast<size_t>(at)].get(), values);
   });
   double sum = 0;
   for (const double cost : costs) sum += cost;
   return sum;
 }
 
-void TexelLattice::AddResiduals(const Texel& texel, const Eigen::VectorXd& x,
-                                const TexelValues& values, Worker* worker,
+BatchGram TexelLattice::GramAt(std::span<const size_t> texels, const Eigen::VectorXd& x,
+                               const Values& values, Worker* worker) const {
+  Gather(texels, x, worker, &worker->observations);
+  BatchValues batch;
+  for (size_t i = 0; i < texels.size(); ++i) {
+    SetLane(static_cast<int>(i), values[texels[i]], &batch);
+  }
+  BatchGram gram;
+  worker->batches.evaluator().Gram(worker->observations, batch, &gram, &worker->residuals);
+  return gram;
+}
+
+void TexelLattice::AddResiduals(const Texel& texel, int lane, const Eigen::VectorXd& x,
+                                const TexelValues& values, const Worker& worker,
                                 TexelReduction* reduction) const {
   const TexelSvbrdf<double> svbrdf = TexelFromValues(values.data());
   const UnknownKinds& kinds = unknowns_.kinds();
@@ -243,9 +309,9 @@ void TexelLattice::AddResiduals(const Texel& texel, const Eigen::VectorXd& x,
                  texel.y_mm, radiance);
     const bool ldr = set_.photographs[static_cast<size_t>(v)].ldr;
     for (int c = 0; c < 3; ++c) {
-      const LookedUp& seen = worker->seen[3 * k + static_cast<size_t>(c)];
+      const LookedUp& seen = worker.Seen(v, c, lane);
       radiance[c].a += ReflectRoom(texel, k, svbrdf, view.exposure, room, c, &by_room);
-      const LogResidual residual(radiance[c].a, seen.value, worker->kernel.robust_scale);
+      const LogResidual residual(radiance[c].a, seen.value, worker.kernel.robust_scale);
       if (ldr && seen.value >= kClipped && residual.error > 0) continue;  // satisfied
       by_views.clear();
       for (int i = 0; kinds.light && i < 3; ++i) {
@@ -259,7 +325,7 @@ void TexelLattice::AddResiduals(const Texel& texel, const Eigen::VectorXd& x,
         by_views.emplace_back(unknowns_.shift(v) + i, weight * seen.by_column);
         by_views.emplace_back(unknowns_.shift(v) + 4 + i, weight * seen.by_row);
       }
-      reduction->Add(worker->search.solver().rows(), static_cast<int>(k), c, by_views,
+      reduction->Add(worker.residuals, v, c, lane, by_views,
                      residual.by_rendered * unknowns_.room_unit() * by_room.head(kinds.room_terms));
     }
   }
@@ -283,20 +349,24 @@ double TexelLattice::ReflectRoom(const Texel& texel, size_t k, const TexelSvbrdf
 NormalEquations TexelLattice::Reduce(const Eigen::VectorXd& x, const Values& values) {
   std::vector<NormalEquations> sums(kSums, NormalEquations(0));
   ForEachPieceByWorker(kSums, threads_, [&](int piece, int at) {
-    const int first = size() * piece / kSums, last = size() * (piece + 1) / kSums;
+    const size_t k = static_cast<size_t>(piece);
+    const size_t begin = texels_.size() * k / kSums, end = texels_.size() * (k + 1) / kSums;
     Worker* worker = workers_[static_cast<size_t>(at)].get();
     TexelReduction reduction(unknowns_.size(), unknowns_.kinds().room_terms);
-    for (int i = first; i < last; ++i) {
-      const size_t k = static_cast<size_t>(i);
-      Gather(texels_[k], x, worker);
-      TexelGram gram;
-      worker->search.solver().Gram(worker->observations, PriorOf(texels_[k]), values[k], &gram);
-      reduction.Begin(values[k]);
-      AddResiduals(texels_[k], x, values[k], worker, &reduction);
-      reduction.Eliminate(gram, &following_[k]);
-    }
+    ForEachBatch(begin, end, [&](std::span<const size_t> texels) {
+      const BatchGram photographs = GramAt(texels, x, values, worker);
+      for (size_t i = 0; i < texels.size(); ++i) {
+        const size_t t = texels[i];
+        TexelGram gram;
+        photographs.Lane(static_cast<int>(i), &gram);
+        PriorOf(texels_[t]).AddTo(values[t], &gram);
+        reduction.Begin(values[t]);
+        AddResiduals(texels_[t], static_cast<int>(i), x, values[t], *worker, &reduction);
+        reduction.Eliminate(gram, &following_[t]);
+      }
+    });
     reduction.Finish();
-    sums[static_cast<size_t>(piece)] = std::move(reduction.equations);
+    sums[k] = std::move(reduction.equations);
   });
   NormalEquations total(unknowns_.size());
   for (const NormalEquations& sum : sums) {
@@ -341,14 +411,17 @@ Eigen::MatrixXd TexelLattice::MeanSlopeByViews() const {
 double TexelLattice::SharedNoise(const Eigen::VectorXd& x, const Values& values) {
   Worker* worker = workers_.front().get();
   ResidualNoise noise;
-  for (size_t k = 0; k < texels_.size(); ++k) {
-    const int freedom = 3 * static_cast<int>(texels_[k].views.size()) - kTexelParameters;
-    if (freedom < 6) continue;
-    Gather(texels_[k], x, worker);
-    const double cost =
-        worker->search.solver().Cost(worker->observations, PriorOf(texels_[k]), values[k]);
-    noise.Add(worker->search.solver().rows(), worker->observations.views(), 2 * cost / freedom);
-  }
+  ForEachBatch(0, texels_.size(), [&](std::span<const size_t> texels) {
+    const BatchGram photographs = GramAt(texels, x, values, worker);
+    for (size_t i = 0; i < texels.size(); ++i) {
+      const int lane = static_cast<int>(i);
+      const int freedom = 3 * worker->observations.seen(lane) - kTexelParameters;
+      if (freedom < 6) continue;
+      const double squares =
+          photographs.Squares(lane) + PriorOf(texels_[texels[i]]).SquaredNorm(values[texels[i]]);
+      noise.Add(worker->observations, worker->residuals, lane, squares / freedom);
+    }
+  });
   return noise.Shared();
 }
 

@@ -3,9 +3,10 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <vector>
 
-#include "fitting/texel/texel_search.h"
+#include "fitting/texel/batch_search.h"
 #include "fitting/view_correction/normal_equations.h"
 #include "fitting/view_correction/texel_reduction.h"
 #include "fitting/view_correction/view_unknowns.h"
@@ -51,10 +52,18 @@ class TexelLattice {
   struct Texel;
   struct Worker;
   TexelPrior PriorOf(const Texel& texel) const;
-  void Gather(const Texel& texel, const Eigen::VectorXd& x, Worker* worker) const;
+  // The observations of some texels, each in its lane; all of the set's views.
+  void Gather(std::span<const size_t> texels, const Eigen::VectorXd& x, Worker* worker,
+              BatchObservations* observations) const;
+  double FitBlock(size_t first, size_t count, const Eigen::VectorXd& x, const Values* others,
+                  Worker* worker, Values* values) const;
+  // Of texels at `values`, photographs alone; leaves their observations and residuals in `worker`.
+  BatchGram GramAt(std::span<const size_t> texels, const Eigen::VectorXd& x, const Values& values,
+                   Worker* worker) const;
   // One texel's residuals with their derivatives by the views.
-  void AddResiduals(const Texel& texel, const Eigen::VectorXd& x, const TexelValues& values,
-                    Worker* worker, TexelReduction* reduction) const;
+  void AddResiduals(const Texel& texel, int lane, const Eigen::VectorXd& x,
+                    const TexelValues& values, const Worker& worker,
+                    TexelReduction* reduction) const;
   // What the texel's k-th view shows of the room, and its derivatives by the room's terms.
   double ReflectRoom(const Texel& texel, size_t k, const TexelSvbrdf<double>& svbrdf,
                      double exposure, const RoomLight& room, int channel,

@@ -25,24 +25,24 @@ void TexelReduction::Begin(const TexelValues& values) {
   products_.setZero();
 }
 
-void TexelReduction::Add(const KernelRows& rows, int view, int channel,
+void TexelReduction::Add(const BatchResiduals& residuals, int view, int channel, int lane,
                          const std::vector<std::pair<int, double>>& by_views,
                          const Eigen::VectorXd& by_room) {
-  const auto at = [&](KernelRows::Row row) { return rows.row(channel, row)[view]; };
+  const auto at = [&](BatchResiduals::Row row) { return residuals.at(view, channel, row, lane); };
   const std::pair<int, double> by_texel[] = {
-      {DiffuseParameter(channel), at(KernelRows::kByDiffuse)},
-      {SpecularParameter(channel), at(KernelRows::kBySpecular)},
-      {kRough, at(KernelRows::kByRough)},
-      {kSlopeX, at(KernelRows::kBySlopeX)},
-      {kSlopeY, at(KernelRows::kBySlopeY)}};
+      {DiffuseParameter(channel), at(BatchResiduals::kByDiffuse)},
+      {SpecularParameter(channel), at(BatchResiduals::kBySpecular)},
+      {kRough, at(BatchResiduals::kByRough)},
+      {kSlopeX, at(BatchResiduals::kBySlopeX)},
+      {kSlopeY, at(BatchResiduals::kBySlopeY)}};
   for (const auto& [parameter, derivative] : by_texel) {
     const double by = derivative * by_variable_[static_cast<size_t>(parameter)];
     for (const auto& [unknown, by_view] : by_views) products_(parameter, unknown) += by * by_view;
     products_.row(parameter).segment(first_of_room(channel), room_terms_) +=
         by * by_room.transpose();
   }
-  equations.Add(at(KernelRows::kResidual), by_views);
-  if (room_terms_ > 0) AddRoom(channel, at(KernelRows::kResidual), by_views, by_room);
+  equations.Add(at(BatchResiduals::kResidual), by_views);
+  if (room_terms_ > 0) AddRoom(channel, at(BatchResiduals::kResidual), by_views, by_room);
 }
 
 // The room's terms are many and dense.

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "fitting/texel/texel_kernel.h"
+#include "fitting/texel/texel_batch.h"
 #include "fitting/texel/texel_parameters.h"
 #include "fitting/view_correction/normal_equations.h"
 
@@ -27,8 +27,8 @@ class TexelReduction {
   // A texel with these values.
   void Begin(const TexelValues& values);
   // One residual of it, and its derivatives by a few unknowns and by the channel's terms of the
-  // room's light (of no size without these); those by the texel's values are in `rows`.
-  void Add(const KernelRows& rows, int view, int channel,
+  // room's light (of no size without these); those by the texel's values are in `residuals`.
+  void Add(const BatchResiduals& residuals, int view, int channel, int lane,
            const std::vector<std::pair<int, double>>& by_views, const Eigen::VectorXd& by_room);
   // Takes the texel out; `gram`: its own products.
   void Eliminate(const TexelGram& gram, TexelFollowing* following);

@@ -5,7 +5,7 @@
 //   min over views  Σ_texels min over texel Σ_views ρ( log(R(texel; view) + 0.01) − log(I + 0.01) )
 //       + expectations of the views' errors
 //
-// over a lattice of texels; residuals as in fitting/texel/texel_kernel.h. Every cost is that of
+// over a lattice of texels; residuals as in fitting/texel/batch_kernel.h. Every cost is that of
 // texels that are fitted anew to the views as they then are (variable projection: Golub and
 // Pereyra, "The differentiation of pseudo-inverses and nonlinear least squares problems whose
 // variables separate", SIAM J. Numer. Anal. 1973), each by the search that refinement uses. Texels

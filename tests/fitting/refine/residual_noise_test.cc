@@ -1,4 +1,4 @@
-#include "fitting/texel/residual_noise.h"
+#include "fitting/view_correction/residual_noise.h"
 
 #include <gtest/gtest.h>
 

@@ -6,15 +6,17 @@
 // too easily and every standard deviation comes out too small by √3.
 #pragma once
 
-#include "fitting/texel/texel_kernel.h"
+#include "fitting/texel/texel_batch.h"
 
 namespace glint {
 
 // Collects texels' residuals at their solutions; what they share is seen over views and texels.
 class ResidualNoise {
  public:
-  // `rows`: of a texel's solution. `variance`: of its residuals; texels count alike whatever it is.
-  void Add(const KernelRows& rows, int views, double variance);
+  // Of a lane's texel at its solution. `variance`: of its residuals; texels count alike whatever it
+  // is.
+  void Add(const BatchObservations& observations, const BatchResiduals& residuals, int lane,
+           double variance);
   void Add(const ResidualNoise& other);
   // How often as large a variance is to be reckoned with as if residuals were independent, from 1
   // (they are) to 3 (the channels of a view are one). 1 where too few views tell.

@@ -1,4 +1,4 @@
-#include "fitting/texel/residual_noise.h"
+#include "fitting/view_correction/residual_noise.h"
 
 #include <algorithm>
 
@@ -13,13 +13,16 @@ constexpr int kLeastViews = kCommonParameters + 2;
 
 }  // namespace
 
-void ResidualNoise::Add(const KernelRows& rows, int views, double variance) {
+void ResidualNoise::Add(const BatchObservations& observations, const BatchResiduals& residuals,
+                        int lane, double variance) {
+  const int views = observations.seen(lane);
   if (views < kLeastViews || !(variance > 0)) return;
   double common = 0, all = 0;
-  for (int v = 0; v < views; ++v) {
+  for (int v = 0; v < observations.views(); ++v) {
+    if (!observations.sees(v, lane)) continue;
     double sum = 0;
     for (int c = 0; c < 3; ++c) {
-      const double residual = rows.row(c, KernelRows::kResidual)[v];
+      const double residual = residuals.at(v, c, BatchResiduals::kResidual, lane);
       sum += residual;
       all += residual * residual;
     }
