@@ -18,6 +18,10 @@ namespace fs = std::filesystem;
 
 constexpr double kMega = 1e6;
 
+// Refinement looks at fewer texels for wrong views where photographs are more (kViewsOfFullLattice,
+// fitting/view_correction).
+constexpr int kMostPaired = 40;
+
 // Stage fit with the method "start": no fitting.
 constexpr StageCost kStart = {0.6, 0, 0.3, 0, 2, 0.2, 330, 0, 146, 17, 0};
 
@@ -57,7 +61,8 @@ double PredictedSeconds(const std::string& stage, const CaptureSize& size) {
   const StageCost* cost = CostOf(stage);
   if (cost == nullptr) return 0;
   const double network_s = (size.native_bfloat16 ? 1 : 2) * cost->network_s;
-  return cost->start_s + network_s + cost->photograph_s * size.photographs +
+  const int alike = std::min(size.photographs, kMostPaired);
+  return cost->start_s + network_s + cost->photograph_pair_s * alike * alike +
          kMicro * (cost->photograph_px_us * size.photographs * size.photograph_px +
                    cost->texel_us * size.texels +
                    cost->photograph_texel_us * size.photographs * size.texels);

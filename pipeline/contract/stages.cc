@@ -13,7 +13,7 @@ constexpr StageKind kStages[] = {
      "rectified top views of the sample in linear radiance",
      {0.4, 0, 0, 0.012, 0, 0.13, 170, 8, 0, 5, 70}},
     {"fit", "material maps by latent or classic fitting", {1, 0, 7, 0, 1, 0, 330, 0, 60, 0, 190}},
-    {"refine", "material maps per texel", {0.6, 0.45, 0, 0, 7.2, 0.3, 140, 0, 300, 16, 1300}, true},
+    {"refine", "material maps per texel", {0.2, 0.026, 0, 0, 3, 0.15, 140, 0, 300, 16, 1300}, true},
     {"tile",
      "seamlessly tiling maps ([tile] section in capture.toml)",
      {0.2, 0, 0, 0, 3.2, 0, 140, 0, 300, 0, 0}},

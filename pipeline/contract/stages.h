@@ -13,7 +13,8 @@ namespace glint {
 // bfloat16 (docs/experiments/run-time.md).
 struct StageCost {
   double start_s;              // programs, weights, files
-  double photograph_s;         // per photograph, whatever its size and the maps'
+  double photograph_pair_s;    // per pair of photographs, whatever their size and the maps'; beyond
+                               // 40 photographs no more: fewer texels are then taken for them
   double network_s;            // in the networks; twice as long without bfloat16
   double photograph_px_us;     // per pixel of every photograph
   double texel_us;             // per texel
