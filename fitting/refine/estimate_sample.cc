@@ -178,10 +178,10 @@ void Estimator::Describe(std::span<const SampleTask> tasks, const SampleRequest&
     if (sampled.views == 0) continue;
     if (of_views) sampled.of_views = OfViews(texels[i], lane, request.views, *worker);
     sampled.squares = photographs.Squares(lane);
+    auto element = sampled.inverse.begin();
     for (int row = 0; row < kTexelParameters; ++row) {
       for (int column = 0; column < kTexelParameters; ++column) {
-        sampled.inverse[static_cast<size_t>(row * kTexelParameters + column)] =
-            inverse.at(row, column, lane);
+        *element++ = inverse.at(row, column, lane);
       }
     }
     TexelGram prior{};

@@ -120,6 +120,7 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
         std::vector<SampledTexel> solved(block);
         solver.solve(tasks, {.views = fitted, .near_minimum = true}, worker, solved);
         std::vector<TexelValues> values;
+        values.reserve(block);
         for (const SampledTexel& texel : solved) values.push_back(texel.values);
         predictions[first].push_back(solver.predict(middles_texels, values, held_out, worker));
       }

@@ -99,10 +99,10 @@ class BatchObservations {
  private:
   BatchRow* view(int v) { return rows_.data() + static_cast<size_t>(v) * kPlanes; }
 
-  int views_ = 0;
-  std::array<int, kBatch> seen_{};
   BatchRow place_mm_[2];
   std::vector<BatchRow> rows_;
+  std::array<int, kBatch> seen_{};
+  int views_ = 0;
 };
 
 // Products of the residuals' derivatives and of the residuals themselves, upper triangles row by
@@ -139,7 +139,8 @@ class BatchResiduals {
   };
   explicit BatchResiduals(int most_views) : rows_(static_cast<size_t>(3 * most_views) * kRows) {}
   double at(int view, int channel, Row row, int lane) const {
-    return rows_[static_cast<size_t>((3 * view + channel) * kRows + row)][lane];
+    return rows_[(3 * static_cast<size_t>(view) + static_cast<size_t>(channel)) * kRows + row]
+                [lane];
   }
   BatchRow* rows() { return rows_.data(); }  // [view][channel][row]
 

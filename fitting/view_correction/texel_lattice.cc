@@ -104,25 +104,23 @@ struct TexelLattice::Texel {
 
 struct TexelLattice::Worker {
   Worker(const KernelOptions& options, int views)
-      : kernel(options),
+      : batches(options, kTexelIterations, views, kTexelStarts),
         observations(views),
         residuals(views),
-        batches(options, kTexelIterations, views, kTexelStarts),
-        seen(static_cast<size_t>(3 * views * kBatch)) {
+        seen(3 * static_cast<size_t>(views) * kBatch),
+        kernel(options) {
     batches.SetNoise(kNoise);
   }
-  LookedUp& Seen(int view, int channel, int lane) {
-    return seen[static_cast<size_t>((3 * view + channel) * kBatch + lane)];
-  }
-  const LookedUp& Seen(int view, int channel, int lane) const {
-    return seen[static_cast<size_t>((3 * view + channel) * kBatch + lane)];
+  static size_t PlaceOf(int view, int channel, int lane) {
+    return (3 * static_cast<size_t>(view) + static_cast<size_t>(channel)) * kBatch +
+           static_cast<size_t>(lane);
   }
 
-  KernelOptions kernel;
+  BatchSearch batches;
   BatchObservations observations;
   BatchResiduals residuals;
-  BatchSearch batches;
-  std::vector<LookedUp> seen;  // by view, channel and lane
+  std::vector<LookedUp> seen;  // by PlaceOf()
+  KernelOptions kernel;
 };
 
 TexelLattice::~TexelLattice() = default;
@@ -212,7 +210,7 @@ void TexelLattice::Gather(std::span<const size_t> texels, const Eigen::VectorXd&
         seen.value = std::max(seen.value, 0.0);
         radiance[c] = static_cast<float>(seen.value);
         clipped[c] = photograph.ldr && seen.value >= kClipped;
-        worker->Seen(v, c, lane) = seen;
+        worker->seen[Worker::PlaceOf(v, c, lane)] = seen;
       }
       observations->Set(lane, v, radiance, clipped);
     }
@@ -309,7 +307,7 @@ void TexelLattice::AddResiduals(const Texel& texel, int lane, const Eigen::Vecto
                  texel.y_mm, radiance);
     const bool ldr = set_.photographs[static_cast<size_t>(v)].ldr;
     for (int c = 0; c < 3; ++c) {
-      const LookedUp& seen = worker.Seen(v, c, lane);
+      const LookedUp& seen = worker.seen[Worker::PlaceOf(v, c, lane)];
       radiance[c].a += ReflectRoom(texel, k, svbrdf, view.exposure, room, c, &by_room);
       const LogResidual residual(radiance[c].a, seen.value, worker.kernel.robust_scale);
       if (ldr && seen.value >= kClipped && residual.error > 0) continue;  // satisfied

@@ -126,17 +126,17 @@ struct Lanes {
 
   kernel::BatchViews Views() { return {observations.rows(), kViews, scratch.data()}; }
 
-  std::array<View, kViews> views;
+  BatchObservations observations;
+  BatchValues values;
+  BatchPrior prior;
+  KernelOptions options;
+  std::vector<BatchRow> scratch;
   std::array<std::array<double, 2>, kBatch> place_mm;
+  std::array<View, kViews> views;
   std::array<TexelValues, kBatch> texels;
   std::array<TexelPrior, kBatch> priors;
   std::array<std::array<std::array<double, 3>, kViews>, kBatch> radiance;
   std::array<std::array<std::array<bool, 3>, kViews>, kBatch> clipped;
-  KernelOptions options;
-  BatchObservations observations;
-  BatchValues values;
-  BatchPrior prior;
-  std::vector<BatchRow> scratch;
 };
 
 // The photographs' residual written once more, for Ceres' automatic differentiation.
@@ -465,7 +465,8 @@ TEST(BatchSearch, EveryTaskIsDoneWhateverTheirNumber) {
 }
 
 TEST(TexelParameters, ValuesStayInsideTheirBoundsAndComeBack) {
-  for (double u = -5.0; u < 5.0; u += 0.01) {
+  for (int i = -500; i < 500; ++i) {
+    const double u = 0.01 * i;
     double derivative;
     const double value = BoundedValue(kRoughnessBounds, u, &derivative);
     EXPECT_GE(value, kRoughnessBounds.low);
