@@ -14,6 +14,8 @@
 #include "datasets/evaluation/shipped_models.h"
 #include "datasets/evaluation/view_error.h"
 #include "datasets/statistics/population.h"
+#include "fitting/latent/fit_stage.h"
+#include "fitting/refine/refine_stage.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/contract/subprocess.h"
 #include "pipeline/contract/svbrdf_file.h"
@@ -146,7 +148,11 @@ class Runs {
                      {"encoding", views.encoding},
                      {"seed", common_.seed},
                      {"fit_arguments", method.fit_arguments}};
-    if (method.refine) settings["refine_arguments"] = method.refine_arguments;
+    settings["versions"] = {{"fit", kFitVersion}};
+    if (method.refine) {
+      settings["refine_arguments"] = method.refine_arguments;
+      settings["versions"]["refine"] = kRefineVersion;
+    }
     const Json disturbance = DisturbanceSettings(views);
     if (!disturbance.empty()) settings["disturbance"] = disturbance;
     for (const fs::path& file : method.files) settings["files"].push_back(HashFile(file));

@@ -10,6 +10,7 @@
 #include "datasets/evaluation/shipped_models.h"
 #include "datasets/evaluation/starts.h"
 #include "datasets/procedural/material.h"
+#include "fitting/latent/fit_stage.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/files/hash.h"
 #include "tests/support/process.h"
@@ -53,7 +54,8 @@ TEST(RunExperiment, AFinishedResultIsKept) {
                          {"bits", "8"},
                          {"encoding", "gamma2.2"},
                          {"seed", 0},
-                         {"fit_arguments", Json::array()}};
+                         {"fit_arguments", Json::array()},
+                         {"versions", {{"fit", kFitVersion}}}};
   const Json errors = {{"diffuse", 0.25}, {"specular", 0},         {"roughness", 0},
                        {"normal", 0},     {"map_average", 0.0625}, {"render", 0.5}};
   const fs::path file = folder.path() / "procedural_1000000000" / "n02" / "classic.json";
@@ -64,8 +66,8 @@ TEST(RunExperiment, AFinishedResultIsKept) {
   ASSERT_EQ(result.entries.size(), 1u);
   EXPECT_EQ(result.entries[0].errors.render, 0.5);
   EXPECT_THAT(said, HasSubstr("(kept)"));
-  // Another truth under the same name, weights that are gone, other settings: it has to run again,
-  // and no glint-fit knows this option.
+  // Another truth under the same name, weights that are gone, an older stage, other settings: it
+  // has to run again, and no glint-fit knows this option.
   const std::string done = test::ReadAll(file);
   experiment.methods[0].fit_arguments = {"--no-such-option"};
   Json marked = Json::parse(done);
@@ -78,6 +80,10 @@ TEST(RunExperiment, AFinishedResultIsKept) {
     test::WriteAll(file, json.dump());
     EXPECT_THROW(RunExperiment(experiment, OneThread(), kSilent), Error) << stale;
   }
+  Json older = marked;
+  older["settings"]["versions"]["fit"] = kFitVersion - 1;
+  test::WriteAll(file, older.dump());
+  EXPECT_THROW(RunExperiment(experiment, OneThread(), kSilent), Error);
   test::WriteAll(file, done);
   EXPECT_THROW(RunExperiment(experiment, OneThread(), kSilent), Error);
   test::WriteAll(file, marked.dump());
