@@ -1,5 +1,6 @@
 #include "fitting/refine/estimate_sample.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -37,6 +38,24 @@ std::vector<View> ViewsOf(const RefineProblem& problem) {
   std::vector<View> views;
   for (const RefineView& view : problem.views) views.push_back(view.view);
   return views;
+}
+
+// What nothing is known of, without a prior.
+constexpr double kUnknownInformation = 1e-9;
+
+using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
+
+// In double precision: what a substance's mean is known by is small differences of it
+// (UpdateMeans()).
+Matrix9 InverseOf(const TexelGram& gram) {
+  Matrix9 information;
+  for (int i = 0; i < kTexelParameters; ++i) {
+    for (int j = i; j < kTexelParameters; ++j) {
+      information(i, j) = information(j, i) = gram[static_cast<size_t>(i)][static_cast<size_t>(j)];
+    }
+    information(i, i) += kUnknownInformation;
+  }
+  return information.ldlt().solve(Matrix9::Identity());
 }
 
 // Solves sampled texels for the model, with views as the model says.
@@ -159,17 +178,7 @@ void Estimator::Describe(std::span<const SampleTask> tasks, const SampleRequest&
   for (size_t i = 0; of_views && i < nudged_.size(); ++i) {
     GramAt(nudged_[i], texels, values, request.views, worker, &worker->nudged[i]);
   }
-  const BatchGram photographs = GramAt(problem_, texels, values, request.views, worker,
-                                       of_views ? &worker->residuals : nullptr);
-  BatchPrior priors;
-  BatchValues batch;
-  for (size_t i = 0; i < tasks.size(); ++i) {
-    priors.SetLane(static_cast<int>(i), tasks[i].prior);
-    SetLane(static_cast<int>(i), values[i], &batch);
-  }
-  BatchInverse inverse;
-  worker->batches.evaluator().Inverse(photographs, priors, batch,
-                                      LeastInformation(model_.residuals().scale()), &inverse);
+  GramAt(problem_, texels, values, request.views, worker, &worker->residuals);
   for (size_t i = 0; i < tasks.size(); ++i) {
     const int lane = static_cast<int>(i);
     SampledTexel& sampled = solved[i];
@@ -177,14 +186,10 @@ void Estimator::Describe(std::span<const SampleTask> tasks, const SampleRequest&
     sampled.of_views.clear();
     if (sampled.views == 0) continue;
     if (of_views) sampled.of_views = OfViews(texels[i], lane, request.views, *worker);
-    sampled.squares = photographs.Squares(lane);
-    auto element = sampled.inverse.begin();
-    for (int row = 0; row < kTexelParameters; ++row) {
-      for (int column = 0; column < kTexelParameters; ++column) {
-        *element++ = inverse.at(row, column, lane);
-      }
-    }
-    TexelGram prior{};
+    TexelGram gram = worker->residuals.GramOf(lane, worker->observed.views()), prior{};
+    sampled.squares = gram[kTexelParameters][kTexelParameters];
+    tasks[i].prior.AddTo(sampled.values, &gram);
+    Eigen::Map<Matrix9>(sampled.inverse.data()) = InverseOf(gram);
     tasks[i].prior.AddTo(sampled.values, &prior);
     for (size_t k = 0; k < kTexelParameters; ++k) sampled.prior_diagonal[k] = prior[k][k];
   }

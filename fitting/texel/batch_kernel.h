@@ -22,7 +22,8 @@ inline constexpr LaneBits kAllLanes = (1u << kBatch) - 1;
 struct SolveOptions {
   int most_iterations = 40;
   // Where no step promises to lower the sum of squared residuals by so much a solve ends. A sum of
-  // squared logarithms: far below what 8 or 16 bit leave undetermined.
+  // squared logarithms: far below what 8 or 16 bit leave undetermined. At least what single
+  // precision rounds the sum by.
   float squares_tolerance = 1e-9f;
   float damping = 1;  // of the first step, relative to the diagonal of the normal equations
 };

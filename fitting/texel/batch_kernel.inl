@@ -543,7 +543,7 @@ struct VectorSolver {
       if (Any(last)) {
         Floats most;
         Step(normal, Broadcast(kLeastDamping), state->least, &most);
-        last &= most < least_gain;
+        last &= (most >= 0.0f) & (most < least_gain);
       }
       last |= active & (step_squares < least_step * least_step);
       converged |= last;
@@ -715,7 +715,7 @@ void Complete(const BatchView& view, const BatchRow place_mm[2], BatchRow* plane
     Floats attenuation = view.inverse_square ? light_inverse * light_inverse : Broadcast(1.0f);
     if (view.beam[0] != 0 || view.beam[1] != 0) {
       const Floats fall = (view.beam[0] * light[0] + view.beam[1] * light[1]) / light[2];
-      const Floats fallen = ExpOfNegative(-Abs(fall));
+      const Floats fallen = ExpOfNegative(-Min(Abs(fall), Broadcast(80.0f)));
       attenuation *= Where(fall > 0.0f, fallen, 1.0f / fallen);
     }
     Floats sum[3];

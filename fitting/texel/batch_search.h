@@ -1,8 +1,8 @@
 // More than one start per texel, many texels at once: the local minimum next to the start need not
-// be the best. Texels are solved in batches. Those that take longer than half of their batch go on
-// in one of their own, from which they leave as they end and in which others take their places; so
-// do those that their solution leaves unexplained, in a batch in which other starts are tried. No
-// texel's result depends on which others it is solved with.
+// be the best. Texels are solved in batches. Those that take longer than half of their vector go on
+// in a batch of their own, from which they leave as they end and in which others take their places;
+// so do those that their solution leaves unexplained, in a batch in which other starts are tried.
+// No texel's result depends on which others it is solved with.
 #pragma once
 
 #include <functional>
@@ -51,7 +51,8 @@ class BatchSearch {
   enum class From {
     kStart,        // the start; where that leaves it unexplained up to `starts − 1` other
                    // roughnesses, each with albedos fitted to it, and the normal that mirrors the
-                   // light into the view in which it is brightest. Never costlier than the start.
+                   // light into the view in which it is brightest. Never costlier than the start,
+                   // drawn off its bounds.
     kNearMinimum,  // the start, which is next to a minimum
     kNeighbours,   // likewise; where that leaves it unexplained, the neighbour's normal and
                    // roughness, or roughness alone, that promises least
@@ -60,7 +61,7 @@ class BatchSearch {
     size_t id = 0;
     TexelPrior prior;
     TexelValues start{};
-    bool converged = false;  // the start, where solving it again gains nothing
+    bool converged = false;  // whether the start is, where it is next to a minimum
     std::array<TexelValues, 4> neighbours{};
     int neighbour_count = 0;
   };
@@ -70,7 +71,8 @@ class BatchSearch {
     bool other_start = false;  // it did not come from the start itself
   };
   using Done = std::function<void(const Task& task, const Found& found)>;
-  // Sets the observations of the texels of these tasks, in this order.
+  // Replaces `observations` by those of the tasks with these ids (Task::id), in the lanes from 0
+  // on.
   using Gather = std::function<void(std::span<const size_t> ids, BatchObservations* observations)>;
 
   BatchSearch(const KernelOptions& options, int most_iterations, int most_views, int starts);

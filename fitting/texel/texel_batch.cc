@@ -1,7 +1,10 @@
 #include "fitting/texel/texel_batch.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "fitting/reflectance/log_radiance.h"
 #include "fitting/texel/batch_kernel.h"
@@ -53,6 +56,7 @@ BatchObservations::BatchObservations(int most_views)
     : rows_(static_cast<size_t>(most_views) * kPlanes) {}
 
 void BatchObservations::Clear(int views) {
+  assert(static_cast<size_t>(views) * kPlanes <= rows_.size());
   views_ = views;
   seen_.fill(0);
   for (BatchRow& row : place_mm_) row = BatchRow();
@@ -119,6 +123,27 @@ void kernel::BatchSolution::CopyLane(const BatchSolution& from, int from_lane, i
   const LaneBits bit = 1u << lane;
   converged = (converged & ~bit) | ((from.converged >> from_lane & 1u) << lane);
   finished = (finished & ~bit) | ((from.finished >> from_lane & 1u) << lane);
+}
+
+TexelGram BatchResiduals::GramOf(int lane, int views) const {
+  TexelGram gram{};
+  for (int v = 0; v < views; ++v) {
+    for (int c = 0; c < 3; ++c) {
+      const std::pair<size_t, double> columns[] = {
+          {DiffuseParameter(c), at(v, c, kByDiffuse, lane)},
+          {SpecularParameter(c), at(v, c, kBySpecular, lane)},
+          {kRough, at(v, c, kByRough, lane)},
+          {kSlopeX, at(v, c, kBySlopeX, lane)},
+          {kSlopeY, at(v, c, kBySlopeY, lane)},
+          {kTexelParameters, at(v, c, kResidual, lane)}};
+      for (size_t a = 0; a < std::size(columns); ++a) {
+        for (size_t b = a; b < std::size(columns); ++b) {
+          gram[columns[a].first][columns[b].first] += columns[a].second * columns[b].second;
+        }
+      }
+    }
+  }
+  return gram;
 }
 
 void BatchGram::Lane(int lane, TexelGram* gram) const {

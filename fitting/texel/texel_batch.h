@@ -69,7 +69,7 @@ class BatchObservations {
     kAmbient = 11,          // 3 planes: exposure·ambient, as the diffuse lobe receives it …
     kAmbientSpecular = 14,  // … 3 planes: and as the specular one does
     kLogTarget = 17,        // 3 planes: log(I + 0.01)
-    kInverseTarget = 20,    // 3 planes: 1/(I + 0.01)
+    kInverseTarget = 20,    // 3 planes: 1/(I + 0.01); I + 0.01 until Complete()
     kCeiling = 23,          // 3 planes: most the residual log(R + 0.01) − log(I + 0.01) can be; 0
                             // where the photograph clips: a brighter rendering satisfies it
     kWeight = 26,           // of the view's squared residuals
@@ -82,7 +82,8 @@ class BatchObservations {
   void Place(int lane, double x_mm, double y_mm);
   // `radiance` linear, ≥ 0; `clipped`: the sensor's limit was reached in that channel.
   void Set(int lane, int view, const float radiance[3], const bool clipped[3]);
-  // After all of a view's radiances are set: what follows from where each lane is.
+  // Once for each view, after all of its radiances are set and before CopyLane(): what follows from
+  // where each lane is.
   void Complete(int view, const BatchView& geometry);
   // After Complete(), in place of the view's own.
   void SetAmbient(int lane, int view, const double diffuse[3], const double specular[3]);
@@ -143,6 +144,9 @@ class BatchResiduals {
                 [lane];
   }
   BatchRow* rows() { return rows_.data(); }  // [view][channel][row]
+  // Their products, summed in double precision: exactly those of these rows, for factors that
+  // rounding must not make indefinite.
+  TexelGram GramOf(int lane, int views) const;
 
  private:
   std::vector<BatchRow> rows_;

@@ -352,11 +352,11 @@ NormalEquations TexelLattice::Reduce(const Eigen::VectorXd& x, const Values& val
     Worker* worker = workers_[static_cast<size_t>(at)].get();
     TexelReduction reduction(unknowns_.size(), unknowns_.kinds().room_terms);
     ForEachBatch(begin, end, [&](std::span<const size_t> texels) {
-      const BatchGram photographs = GramAt(texels, x, values, worker);
+      GramAt(texels, x, values, worker);
       for (size_t i = 0; i < texels.size(); ++i) {
         const size_t t = texels[i];
-        TexelGram gram;
-        photographs.Lane(static_cast<int>(i), &gram);
+        TexelGram gram =
+            worker->residuals.GramOf(static_cast<int>(i), worker->observations.views());
         PriorOf(texels_[t]).AddTo(values[t], &gram);
         reduction.Begin(values[t]);
         AddResiduals(texels_[t], static_cast<int>(i), x, values[t], *worker, &reduction);
