@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "base/parallel/parallel.h"
-#include "fitting/view_correction/texel_lattice.h"
+#include "fitting/view_correction/sampled_texels.h"
 #include "fitting/view_correction/view_holds.h"
 #include "fitting/view_correction/view_unknowns.h"
 
@@ -27,24 +27,24 @@ constexpr double kMostDamping = 1e6;
 // Channels have no share in what is left: rounding gives 1.0 to 1.13, errors of views 1.8 to 3 (and
 // so does rounding on grey materials, which are then believed less).
 constexpr double kLooksLikeNoise = 1.5;
-// The work on one texel grows with the square of the views: with more than these the lattice is
-// thinned.
-constexpr double kViewsOfFullLattice = 40;
+// The work on one texel grows with the square of the views: with more views than these fewer
+// texels are sampled.
+constexpr double kViewsOfAllSamples = 40;
 constexpr int kFewestTexels = 256;
 
-int LatticeTexels(int wanted, size_t views) {
-  const double share = std::min(1.0, kViewsOfFullLattice / static_cast<double>(views));
+int SampledCount(int wanted, size_t views) {
+  const double share = std::min(1.0, kViewsOfAllSamples / static_cast<double>(views));
   return std::max(std::min(wanted, kFewestTexels), static_cast<int>(wanted * share * share));
 }
 
-// One lattice and the descent of the views on it.
+// Some sampled texels and the descent of the views on them.
 class Adjustment {
  public:
   Adjustment(const PhotographSet& set, const SvbrdfMaps& maps, const ViewCorrectionOptions& options,
              bool registration, int texels, int threads)
       : options_(options),
         unknowns_(set, {options.light, options.exposure, registration, options.room_terms}),
-        lattice_(set, maps, unknowns_, texels, options.robust_scale, threads),
+        sampled_(set, maps, unknowns_, texels, options.robust_scale, threads),
         expected_(options.expected),
         x_(VectorXd::Zero(unknowns_.size())) {}
   Adjustment(const Adjustment&) = delete;  // its parts refer to each other
@@ -63,66 +63,66 @@ class Adjustment {
   double CostUncorrected();
 
   const VectorXd& x() const { return x_; }
-  bool empty() const { return lattice_.size() == 0; }
+  bool empty() const { return sampled_.size() == 0; }
   double cost() const { return cost_; }
   double RoundingCost() const {
-    return 0.5 * lattice_.residuals() * kRoundingSigma * kRoundingSigma;
+    return 0.5 * sampled_.residuals() * kRoundingSigma * kRoundingSigma;
   }
-  double residual_rms() const { return std::sqrt(2 * cost_ / lattice_.residuals()); }
-  double SharedNoise() { return lattice_.SharedNoise(x_, values_); }
+  double residual_rms() const { return std::sqrt(2 * cost_ / sampled_.residuals()); }
+  double SharedNoise() { return sampled_.SharedNoise(x_, values_); }
   ViewCorrections Corrections() const { return unknowns_.CorrectionsAt(x_); }
 
  private:
-  ViewHolds Holds() const { return ViewHolds(unknowns_, expected_, lattice_.UsableViews()); }
-  double HoldCost(const VectorXd& x, const TexelLattice::Values& values) const;
+  ViewHolds Holds() const { return ViewHolds(unknowns_, expected_, sampled_.UsableViews()); }
+  double HoldCost(const VectorXd& x, const SampledTexels::Values& values) const;
   NormalEquations Equations();
   std::vector<bool> Free() const;
   VectorXd Step(const NormalEquations& equations, double damping) const;
 
   const ViewCorrectionOptions& options_;
   ViewUnknowns unknowns_;
-  TexelLattice lattice_;
+  SampledTexels sampled_;
   ViewExpectations expected_;
   VectorXd x_;
-  TexelLattice::Values values_;
+  SampledTexels::Values values_;
   double cost_ = 0;    // of the texels
   double weight_ = 1;  // of that, against the expectations
 };
 
 void Adjustment::Weigh(double sigma, double evidence) {
-  lattice_.SetHold(sigma);
-  const double of_a_view = 3.0 * lattice_.size();
+  sampled_.SetHold(sigma);
+  const double of_a_view = 3.0 * sampled_.size();
   weight_ = std::min(1.0, evidence / of_a_view) / (sigma * sigma);
   MoveTo(x_);
 }
 
 void Adjustment::MoveTo(const VectorXd& x) {
   x_ = x;
-  if (values_.empty()) values_ = lattice_.Starts();
-  cost_ = lattice_.Fit(x_, nullptr, &values_);
+  if (values_.empty()) values_ = sampled_.Starts();
+  cost_ = sampled_.Fit(x_, nullptr, &values_);
 }
 
 double Adjustment::CostUncorrected() {
   const VectorXd none = VectorXd::Zero(x_.size());
-  TexelLattice::Values values = lattice_.Starts();
-  return lattice_.Fit(none, &values_, &values);
+  SampledTexels::Values values = sampled_.Starts();
+  return sampled_.Fit(none, &values_, &values);
 }
 
 void Adjustment::Learn() { expected_ = Holds().Learned(x_, options_.expected); }
 
-double Adjustment::HoldCost(const VectorXd& x, const TexelLattice::Values& values) const {
-  const double level = lattice_.MeanSlope(values).norm() / expected_.level;
+double Adjustment::HoldCost(const VectorXd& x, const SampledTexels::Values& values) const {
+  const double level = sampled_.MeanSlope(values).norm() / expected_.level;
   return Holds().Add(x, nullptr) + 0.5 * level * level;
 }
 
 NormalEquations Adjustment::Equations() {
-  NormalEquations equations = lattice_.Reduce(x_, values_);
+  NormalEquations equations = sampled_.Reduce(x_, values_);
   equations.hessian *= weight_;
   equations.gradient *= weight_;
   Holds().Add(x_, &equations);
-  const MatrixXd by = lattice_.MeanSlopeByViews() / expected_.level;
+  const MatrixXd by = sampled_.MeanSlopeByViews() / expected_.level;
   equations.hessian.noalias() += by.transpose() * by;
-  equations.gradient.noalias() += by.transpose() * (lattice_.MeanSlope(values_) / expected_.level);
+  equations.gradient.noalias() += by.transpose() * (sampled_.MeanSlope(values_) / expected_.level);
   return equations;
 }
 
@@ -130,7 +130,7 @@ std::vector<bool> Adjustment::Free() const {
   std::vector<bool> free(static_cast<size_t>(unknowns_.size()), true);
   const auto hold = [&](int first, int count) { std::fill_n(free.begin() + first, count, false); };
   const UnknownKinds& kinds = unknowns_.kinds();
-  const std::vector<bool> usable = lattice_.UsableViews();
+  const std::vector<bool> usable = sampled_.UsableViews();
   for (int v = 0; v < unknowns_.views(); ++v) {
     if (usable[static_cast<size_t>(v)]) continue;
     if (kinds.light) hold(unknowns_.light(v), 3);
@@ -168,8 +168,8 @@ void Adjustment::Descend(double tolerance) {
     if (!equations) equations = std::make_unique<NormalEquations>(Equations());
     const VectorXd step = Step(*equations, damping);
     if (!step.allFinite()) break;
-    TexelLattice::Values values = lattice_.Follow(step, values_);
-    const double cost = lattice_.Fit(x_ + step, &values_, &values);
+    SampledTexels::Values values = sampled_.Follow(step, values_);
+    const double cost = sampled_.Fit(x_ + step, &values_, &values);
     const double after = weight_ * cost + HoldCost(x_ + step, values);
     if (!(after < total)) {
       damping *= 8;
@@ -199,7 +199,7 @@ ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
                             const ViewCorrectionOptions& options, const Adjustment& coarse,
                             int threads) {
   const double sigma = std::max(kLeastSigma, coarse.residual_rms());
-  const int texels = LatticeTexels(options.last_texels, set.photographs.size());
+  const int texels = SampledCount(options.last_texels, set.photographs.size());
   const auto make = [&](bool registration) {
     auto made = std::make_unique<Adjustment>(set, maps, options, registration, texels, threads);
     made->Weigh(sigma, options.evidence);
@@ -283,7 +283,7 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
     throw std::invalid_argument("view correction: as many corrections as photographs are needed");
   }
   Adjustment coarse(set, maps, options, options.registration,
-                    LatticeTexels(options.texels, set.photographs.size()), threads);
+                    SampledCount(options.texels, set.photographs.size()), threads);
   ViewCorrectionResult result;
   result.corrections.views.resize(set.photographs.size());
   if (coarse.empty()) return result;

@@ -5,7 +5,7 @@
 //   min over views  Σ_texels min over texel Σ_views ρ( log(R(texel; view) + 0.01) − log(I + 0.01) )
 //       + expectations of the views' errors
 //
-// over a lattice of texels; residuals as in fitting/texel/batch_kernel.h. Every cost is that of
+// over sampled texels; residuals as in fitting/texel/batch_kernel.h. Every cost is that of
 // texels that are fitted anew to the views as they then are (variable projection: Golub and
 // Pereyra, "The differentiation of pseudo-inverses and nonlinear least squares problems whose
 // variables separate", SIAM J. Numer. Anal. 1973), each by the search that refinement uses. Texels
@@ -67,8 +67,8 @@ struct ViewCorrectionOptions {
   double evidence = 20;
   // … but as so many where what is left looks like noise, in which the channels have no share.
   double noise_evidence = 200;
-  int texels = 1024;          // of the lattice, about …
-  int last_texels = 2304;     // … and of the one that the last descent is made with
+  int texels = 1024;          // sampled, about …
+  int last_texels = 2304;     // … and for the last descent
   int iterations = 25;        // Levenberg–Marquardt steps of one descent, at most
   double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
   // Displacements that lower the squared residuals by a smaller share, beside what looking up
@@ -81,14 +81,14 @@ struct ViewCorrectionOptions {
 
 struct ViewCorrectionResult {
   ViewCorrections corrections;
-  // Half the sum of squared residuals of the last lattice, its texels fitted to the views as they
+  // Half the sum of squared residuals of the texels sampled last, fitted to the views as they
   // were and as they are now.
   double cost_before = 0, cost_after = 0;
   double rounding_cost = 0;  // what rounding to 8 bits would add
   // Share of noise that the displacements leave in the pictures: less noise is no better explained.
   double noise_left = 1;
 
-  // Relative fall of a cost of the same lattice, its pictures where they were, to this one;
+  // Relative fall of a cost of the same texels, their pictures where they were, to this one;
   // rounding included: where photographs are explained better than that, nothing is gained.
   double GainOver(double cost) const {
     return (cost - cost_after / noise_left) / (cost + rounding_cost);

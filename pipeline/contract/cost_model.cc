@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr double kMega = 1e6;
 
-// Refinement looks at fewer texels for wrong views where photographs are more (kViewsOfFullLattice,
+// Refinement looks at fewer texels for wrong views where photographs are more (kViewsOfAllSamples,
 // fitting/view_correction).
 constexpr int kMostPaired = 40;
 

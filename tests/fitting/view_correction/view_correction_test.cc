@@ -177,7 +177,7 @@ TEST(CorrectViews, FindsAnExposureThatIsOffWhereItMay) {
 TEST(CorrectViews, LeavesRightViewsRight) {
   const DisturbedSet right = Disturb(8, 0, 0, false);
   ViewCorrectionOptions options = Few();
-  options.last_texels = 3600;  // all: a lattice of fewer is not as level as the sample
+  options.last_texels = 3600;  // all: fewer are not as level as the sample
   const ViewCorrectionResult found = Correct(right, options);
   for (const ViewCorrection& c : found.corrections.views) {
     for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(c.light_offset_mm[k], 0, 1e-3);

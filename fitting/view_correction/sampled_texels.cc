@@ -1,4 +1,4 @@
-#include "fitting/view_correction/texel_lattice.h"
+#include "fitting/view_correction/sampled_texels.h"
 
 #include <ceres/jet.h>
 
@@ -91,7 +91,7 @@ void ForEachBatch(size_t begin, size_t end, const Visit& visit) {
 
 }  // namespace
 
-struct TexelLattice::Texel {
+struct SampledTexels::Texel {
   int column, row;
   double x_mm, y_mm;
   double corner_weights[4];
@@ -102,7 +102,7 @@ struct TexelLattice::Texel {
   std::vector<RoomHarmonics> room_specular;  // by view that sees it
 };
 
-struct TexelLattice::Worker {
+struct SampledTexels::Worker {
   Worker(const KernelOptions& options, int views)
       : batches(options, kTexelIterations, views, kTexelStarts),
         observations(views),
@@ -123,13 +123,13 @@ struct TexelLattice::Worker {
   KernelOptions kernel;
 };
 
-TexelLattice::~TexelLattice() = default;
+SampledTexels::~SampledTexels() = default;
 
-int TexelLattice::size() const { return static_cast<int>(texels_.size()); }
+int SampledTexels::size() const { return static_cast<int>(texels_.size()); }
 
-TexelLattice::TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps,
-                           const ViewUnknowns& unknowns, int texels, double robust_scale,
-                           int threads)
+SampledTexels::SampledTexels(const PhotographSet& set, const SvbrdfMaps& maps,
+                             const ViewUnknowns& unknowns, int texels, double robust_scale,
+                             int threads)
     : set_(set), unknowns_(unknowns), threads_(std::max(threads, 1)) {
   const int width = set.plane.width, height = set.plane.height;
   const int stride = std::max(
@@ -167,7 +167,7 @@ TexelLattice::TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps,
   }
 }
 
-std::vector<bool> TexelLattice::UsableViews() const {
+std::vector<bool> SampledTexels::UsableViews() const {
   std::vector<bool> usable(static_cast<size_t>(unknowns_.views()), false);
   for (const Texel& texel : texels_) {
     for (const int v : texel.views) usable[static_cast<size_t>(v)] = true;
@@ -175,18 +175,18 @@ std::vector<bool> TexelLattice::UsableViews() const {
   return usable;
 }
 
-TexelLattice::Values TexelLattice::Starts() const {
+SampledTexels::Values SampledTexels::Starts() const {
   Values values;
   for (const Texel& texel : texels_) values.push_back(texel.start);
   return values;
 }
 
-TexelPrior TexelLattice::PriorOf(const Texel& texel) const {
+TexelPrior SampledTexels::PriorOf(const Texel& texel) const {
   return TexelPrior(TexelGaussian(texel.start, ErrorsOfStart()), hold_);
 }
 
-void TexelLattice::Gather(std::span<const size_t> texels, const Eigen::VectorXd& x, Worker* worker,
-                          BatchObservations* observations) const {
+void SampledTexels::Gather(std::span<const size_t> texels, const Eigen::VectorXd& x, Worker* worker,
+                           BatchObservations* observations) const {
   const SamplePlane& plane = set_.plane;
   const size_t all = static_cast<size_t>(plane.width) * plane.height;
   const RoomLight room = unknowns_.RoomAt(x);
@@ -236,8 +236,8 @@ void TexelLattice::Gather(std::span<const size_t> texels, const Eigen::VectorXd&
 }
 
 // The sum of the texels' costs.
-double TexelLattice::FitBlock(size_t first, size_t count, const Eigen::VectorXd& x,
-                              const Values* others, Worker* worker, Values* values) const {
+double SampledTexels::FitBlock(size_t first, size_t count, const Eigen::VectorXd& x,
+                               const Values* others, Worker* worker, Values* values) const {
   const Values starts(values->begin() + static_cast<std::ptrdiff_t>(first),
                       values->begin() + static_cast<std::ptrdiff_t>(first + count));
   std::vector<double> costs(count, std::numeric_limits<double>::infinity());
@@ -266,7 +266,7 @@ double TexelLattice::FitBlock(size_t first, size_t count, const Eigen::VectorXd&
   return sum;
 }
 
-double TexelLattice::Fit(const Eigen::VectorXd& x, const Values* others, Values* values) {
+double SampledTexels::Fit(const Eigen::VectorXd& x, const Values* others, Values* values) {
   const size_t pieces = (texels_.size() + kTexelsPerPiece - 1) / kTexelsPerPiece;
   std::vector<double> costs(pieces);
   ForEachPieceByWorker(static_cast<int>(pieces), threads_, [&](int piece, int at) {
@@ -279,8 +279,8 @@ double TexelLattice::Fit(const Eigen::VectorXd& x, const Values* others, Values*
   return sum;
 }
 
-BatchGram TexelLattice::GramAt(std::span<const size_t> texels, const Eigen::VectorXd& x,
-                               const Values& values, Worker* worker) const {
+BatchGram SampledTexels::GramAt(std::span<const size_t> texels, const Eigen::VectorXd& x,
+                                const Values& values, Worker* worker) const {
   Gather(texels, x, worker, &worker->observations);
   BatchValues batch;
   for (size_t i = 0; i < texels.size(); ++i) {
@@ -291,9 +291,9 @@ BatchGram TexelLattice::GramAt(std::span<const size_t> texels, const Eigen::Vect
   return gram;
 }
 
-void TexelLattice::AddResiduals(const Texel& texel, int lane, const Eigen::VectorXd& x,
-                                const TexelValues& values, const Worker& worker,
-                                TexelReduction* reduction) const {
+void SampledTexels::AddResiduals(const Texel& texel, int lane, const Eigen::VectorXd& x,
+                                 const TexelValues& values, const Worker& worker,
+                                 TexelReduction* reduction) const {
   const TexelSvbrdf<double> svbrdf = TexelFromValues(values.data());
   const UnknownKinds& kinds = unknowns_.kinds();
   const RoomLight room = unknowns_.RoomAt(x);
@@ -329,9 +329,9 @@ void TexelLattice::AddResiduals(const Texel& texel, int lane, const Eigen::Vecto
   }
 }
 
-double TexelLattice::ReflectRoom(const Texel& texel, size_t k, const TexelSvbrdf<double>& svbrdf,
-                                 double exposure, const RoomLight& room, int channel,
-                                 Eigen::VectorXd* by_term) const {
+double SampledTexels::ReflectRoom(const Texel& texel, size_t k, const TexelSvbrdf<double>& svbrdf,
+                                  double exposure, const RoomLight& room, int channel,
+                                  Eigen::VectorXd* by_term) const {
   const double diffuse =
       exposure * DiffuseLobe(svbrdf, set_.convention.diffuse_weight, channel).value;
   const double specular = exposure * svbrdf.specular[channel] * kInversePi;
@@ -344,7 +344,7 @@ double TexelLattice::ReflectRoom(const Texel& texel, size_t k, const TexelSvbrdf
   return radiance;
 }
 
-NormalEquations TexelLattice::Reduce(const Eigen::VectorXd& x, const Values& values) {
+NormalEquations SampledTexels::Reduce(const Eigen::VectorXd& x, const Values& values) {
   std::vector<NormalEquations> sums(kSums, NormalEquations(0));
   ForEachPieceByWorker(kSums, threads_, [&](int piece, int at) {
     const size_t k = static_cast<size_t>(piece);
@@ -376,7 +376,8 @@ NormalEquations TexelLattice::Reduce(const Eigen::VectorXd& x, const Values& val
   return total;
 }
 
-TexelLattice::Values TexelLattice::Follow(const Eigen::VectorXd& step, const Values& values) const {
+SampledTexels::Values SampledTexels::Follow(const Eigen::VectorXd& step,
+                                            const Values& values) const {
   Values followed = values;
   for (size_t k = 0; k < texels_.size(); ++k) {
     const Eigen::Matrix<double, kTexelParameters, 1> by =
@@ -392,13 +393,13 @@ TexelLattice::Values TexelLattice::Follow(const Eigen::VectorXd& step, const Val
   return followed;
 }
 
-Eigen::Vector2d TexelLattice::MeanSlope(const Values& values) const {
+Eigen::Vector2d SampledTexels::MeanSlope(const Values& values) const {
   Eigen::Vector2d mean(0, 0);
   for (const TexelValues& v : values) mean += Eigen::Vector2d(v[kSlopeX], v[kSlopeY]);
   return mean / std::max<double>(1, static_cast<double>(values.size()));
 }
 
-Eigen::MatrixXd TexelLattice::MeanSlopeByViews() const {
+Eigen::MatrixXd SampledTexels::MeanSlopeByViews() const {
   Eigen::MatrixXd by = Eigen::MatrixXd::Zero(2, unknowns_.size());
   for (const TexelFollowing& following : following_) {
     by -= following.by_views.middleRows<2>(kSlopeX);
@@ -406,7 +407,7 @@ Eigen::MatrixXd TexelLattice::MeanSlopeByViews() const {
   return by / std::max(1, size());
 }
 
-double TexelLattice::SharedNoise(const Eigen::VectorXd& x, const Values& values) {
+double SampledTexels::SharedNoise(const Eigen::VectorXd& x, const Values& values) {
   Worker* worker = workers_.front().get();
   ResidualNoise noise;
   ForEachBatch(0, texels_.size(), [&](std::span<const size_t> texels) {

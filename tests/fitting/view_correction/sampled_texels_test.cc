@@ -1,4 +1,4 @@
-#include "fitting/view_correction/texel_lattice.h"
+#include "fitting/view_correction/sampled_texels.h"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ VectorXd SomeCorrections(const ViewUnknowns& unknowns) {
   return x;
 }
 
-// A lattice whose texels follow the views closely.
+// Sampled texels that follow the views closely.
 struct Case {
   explicit Case(bool inverse_square, bool registration = true, double hold = 0.02)
       : disturbed(test::Disturb(kViews, 0.05, 0.3, true)) {
@@ -42,31 +42,31 @@ struct Case {
     }
     unknowns = std::make_unique<ViewUnknowns>(disturbed.set,
                                               UnknownKinds{true, true, registration, kTerms});
-    lattice = std::make_unique<TexelLattice>(disturbed.set, disturbed.maps, *unknowns, 36, 0.1, 1);
-    lattice->SetHold(hold);
+    sampled = std::make_unique<SampledTexels>(disturbed.set, disturbed.maps, *unknowns, 36, 0.1, 1);
+    sampled->SetHold(hold);
     x = SomeCorrections(*unknowns);
-    values = lattice->Starts();
-    for (int i = 0; i < 4; ++i) cost = lattice->Fit(x, nullptr, &values);
+    values = sampled->Starts();
+    for (int i = 0; i < 4; ++i) cost = sampled->Fit(x, nullptr, &values);
   }
   double CostAt(const VectorXd& at) {
-    TexelLattice::Values fitted = values;
+    SampledTexels::Values fitted = values;
     double least = 0;
-    for (int i = 0; i < 3; ++i) least = lattice->Fit(at, nullptr, &fitted);
+    for (int i = 0; i < 3; ++i) least = sampled->Fit(at, nullptr, &fitted);
     return least;
   }
   test::DisturbedSet disturbed;
   std::unique_ptr<ViewUnknowns> unknowns;
-  std::unique_ptr<TexelLattice> lattice;
+  std::unique_ptr<SampledTexels> sampled;
   VectorXd x;
-  TexelLattice::Values values;
+  SampledTexels::Values values;
   double cost = 0;
 };
 
-TEST(TexelLattice, TheGradientIsThatOfTheCostOfTexelsFittedAnew) {
+TEST(SampledTexels, TheGradientIsThatOfTheCostOfTexelsFittedAnew) {
   for (const bool inverse_square : {false, true}) {
     // Held so firmly that no texel jumps to another minimum.
     Case c(inverse_square, true, 0.2);
-    const VectorXd gradient = c.lattice->Reduce(c.x, c.values).gradient;
+    const VectorXd gradient = c.sampled->Reduce(c.x, c.values).gradient;
     for (int i = 0; i < c.unknowns->size(); ++i) {
       const double step = i < c.unknowns->first_shift() ? 1e-3 : 1e-2;
       VectorXd above = c.x, below = c.x;
@@ -80,40 +80,40 @@ TEST(TexelLattice, TheGradientIsThatOfTheCostOfTexelsFittedAnew) {
 }
 
 // One Gauss–Newton step of the views from near the truth takes most of the cost away.
-TEST(TexelLattice, AStepOfTheReducedEquationsLowersTheCost) {
+TEST(SampledTexels, AStepOfTheReducedEquationsLowersTheCost) {
   Case c(false);
-  NormalEquations equations = c.lattice->Reduce(c.x, c.values);
+  NormalEquations equations = c.sampled->Reduce(c.x, c.values);
   ViewExpectations wide;
   wide.light = wide.distance = wide.ambient = wide.exposure = 1;
-  ViewHolds(*c.unknowns, wide, c.lattice->UsableViews()).Add(c.x, &equations);
+  ViewHolds(*c.unknowns, wide, c.sampled->UsableViews()).Add(c.x, &equations);
   const VectorXd step = -equations.hessian.ldlt().solve(equations.gradient);
-  TexelLattice::Values followed = c.lattice->Follow(step, c.values);
-  EXPECT_LT(c.lattice->Fit(c.x + step, nullptr, &followed), 0.5 * c.cost);
+  SampledTexels::Values followed = c.sampled->Follow(step, c.values);
+  EXPECT_LT(c.sampled->Fit(c.x + step, nullptr, &followed), 0.5 * c.cost);
 }
 
 // Texels are summed in batches within pieces: none, some, and just as many as fill them.
-TEST(TexelLattice, AnyNumberOfTexelsIsReducedByAnyNumberOfThreads) {
+TEST(SampledTexels, AnyNumberOfTexelsIsReducedByAnyNumberOfThreads) {
   const test::DisturbedSet disturbed = test::Disturb(2, 0.05, 0.3, false);
   const ViewUnknowns unknowns(disturbed.set, {});
   const VectorXd x = VectorXd::Zero(unknowns.size());
   for (const int texels : {1, 4, 36, 144, 3600}) {
-    TexelLattice one(disturbed.set, disturbed.maps, unknowns, texels, 0.1, 1);
-    TexelLattice lattice(disturbed.set, disturbed.maps, unknowns, texels, 0.1, 3);
-    const NormalEquations equations = lattice.Reduce(x, lattice.Starts());
-    EXPECT_TRUE(equations.hessian.allFinite()) << lattice.size();
-    EXPECT_GT(equations.gradient.norm(), 0) << lattice.size();
-    EXPECT_EQ(equations.hessian, one.Reduce(x, one.Starts()).hessian) << lattice.size();
+    SampledTexels one(disturbed.set, disturbed.maps, unknowns, texels, 0.1, 1);
+    SampledTexels sampled(disturbed.set, disturbed.maps, unknowns, texels, 0.1, 3);
+    const NormalEquations equations = sampled.Reduce(x, sampled.Starts());
+    EXPECT_TRUE(equations.hessian.allFinite()) << sampled.size();
+    EXPECT_GT(equations.gradient.norm(), 0) << sampled.size();
+    EXPECT_EQ(equations.hessian, one.Reduce(x, one.Starts()).hessian) << sampled.size();
   }
 }
 
-TEST(TexelLattice, TexelsAndTheirMeanSlopeFollowAsPredicted) {
+TEST(SampledTexels, TexelsAndTheirMeanSlopeFollowAsPredicted) {
   Case c(false, false);
-  c.lattice->Reduce(c.x, c.values);
+  c.sampled->Reduce(c.x, c.values);
   VectorXd step = VectorXd::Zero(c.unknowns->size());
   for (int v = 0; v < kViews; ++v) step[c.unknowns->light(v)] = 0.01;
-  const TexelLattice::Values followed = c.lattice->Follow(step, c.values);
-  TexelLattice::Values fitted = c.values;
-  for (int i = 0; i < 3; ++i) c.lattice->Fit(c.x + step, nullptr, &fitted);
+  const SampledTexels::Values followed = c.sampled->Follow(step, c.values);
+  SampledTexels::Values fitted = c.values;
+  for (int i = 0; i < 3; ++i) c.sampled->Fit(c.x + step, nullptr, &fitted);
   double missed = 0, moved = 0;
   for (size_t k = 0; k < fitted.size(); ++k) {
     for (int i = kSlopeX; i <= kSlopeY; ++i) {
@@ -123,14 +123,14 @@ TEST(TexelLattice, TexelsAndTheirMeanSlopeFollowAsPredicted) {
     }
   }
   EXPECT_LT(missed, 0.2 * moved);
-  const Eigen::Vector2d predicted = c.lattice->MeanSlopeByViews() * step;
-  const Eigen::Vector2d actual = c.lattice->MeanSlope(fitted) - c.lattice->MeanSlope(c.values);
+  const Eigen::Vector2d predicted = c.sampled->MeanSlopeByViews() * step;
+  const Eigen::Vector2d actual = c.sampled->MeanSlope(fitted) - c.sampled->MeanSlope(c.values);
   EXPECT_NEAR(predicted[0], actual[0], 0.1 * std::abs(actual[0]));
 }
 
 TEST(ViewHolds, TheGradientIsThatOfTheCost) {
   Case c(false);
-  const ViewHolds holds(*c.unknowns, {}, c.lattice->UsableViews());
+  const ViewHolds holds(*c.unknowns, {}, c.sampled->UsableViews());
   NormalEquations equations(c.unknowns->size());
   const double cost = holds.Add(c.x, &equations);
   EXPECT_DOUBLE_EQ(cost, holds.Add(c.x, nullptr));
@@ -146,7 +146,7 @@ TEST(ViewHolds, TheGradientIsThatOfTheCost) {
 // Lights that are off together cost their common offset alone, whatever their directions.
 TEST(ViewHolds, ASharedOffsetIsNotHeldByEveryLight) {
   Case c(false, false);
-  const ViewHolds holds(*c.unknowns, {}, c.lattice->UsableViews());
+  const ViewHolds holds(*c.unknowns, {}, c.sampled->UsableViews());
   VectorXd shared = VectorXd::Zero(c.unknowns->size());
   shared[c.unknowns->shared_light()] = 0.1;
   for (int v = 0; v < kViews; ++v) {

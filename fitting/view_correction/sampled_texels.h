@@ -1,4 +1,4 @@
-// A lattice of texels that follow the views: what all texels together say of the views.
+// Sampled texels that follow the views: what all texels together say of the views.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,12 +13,12 @@
 
 namespace glint {
 
-class TexelLattice {
+class SampledTexels {
  public:
   // About `texels` of the set's, each starting from `maps`. `set` and `unknowns` must outlive this.
-  TexelLattice(const PhotographSet& set, const SvbrdfMaps& maps, const ViewUnknowns& unknowns,
-               int texels, double robust_scale, int threads);
-  ~TexelLattice();
+  SampledTexels(const PhotographSet& set, const SvbrdfMaps& maps, const ViewUnknowns& unknowns,
+                int texels, double robust_scale, int threads);
+  ~SampledTexels();
 
   int size() const;
   double residuals() const { return residuals_; }  // of all texels
