@@ -11,6 +11,7 @@ namespace glint {
 namespace {
 
 using test::DisturbedMaps;
+using test::LevelSubstance;
 using test::MeanSquare;
 using test::Photograph;
 using test::QuarteredMaps;
@@ -19,15 +20,7 @@ using test::SyntheticScene;
 // One substance under a smooth disturbance of its initial maps: where no photograph shows its
 // highlight it is what it is elsewhere.
 TEST(Refine, OneSubstanceBecomesNearlyHomogeneous) {
-  SvbrdfMaps truth(32, 32);
-  for (size_t t = 0; t < truth.texels(); ++t) {
-    truth.plane(kNormalZ)[t] = 1;
-    truth.plane(kRoughness)[t] = 0.3f;
-    for (int c = 0; c < 3; ++c) {
-      truth.plane(kDiffuseR + c)[t] = 0.15f + 0.05f * static_cast<float>(t % 7) / 7;
-      truth.plane(kSpecularR + c)[t] = 0.05f;
-    }
-  }
+  const SvbrdfMaps truth = LevelSubstance(32, 0.3f);
   const SyntheticScene scene = Photograph(truth, 5, 8);
   SvbrdfMaps start = truth;
   for (size_t t = 0; t < truth.texels(); ++t) {

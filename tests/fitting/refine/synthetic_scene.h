@@ -31,6 +31,20 @@ struct SyntheticScene {
   }
 };
 
+// One level glossy substance whose diffuse albedo varies a little.
+inline SvbrdfMaps LevelSubstance(int size, float roughness) {
+  SvbrdfMaps maps(size, size);
+  for (size_t t = 0; t < maps.texels(); ++t) {
+    maps.plane(kNormalZ)[t] = 1;
+    maps.plane(kRoughness)[t] = roughness;
+    for (int c = 0; c < 3; ++c) {
+      maps.plane(kDiffuseR + c)[t] = 0.15f + 0.05f * static_cast<float>(t % 7) / 7;
+      maps.plane(kSpecularR + c)[t] = 0.05f;
+    }
+  }
+  return maps;
+}
+
 // Four materials in quarters, each with noise; normals tilted up to about 30°.
 inline SvbrdfMaps QuarteredMaps(int size, unsigned seed) {
   std::mt19937 random(seed);

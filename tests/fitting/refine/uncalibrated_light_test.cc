@@ -12,6 +12,7 @@ namespace glint {
 namespace {
 
 using test::DisturbedMaps;
+using test::LevelSubstance;
 using test::MeanSquare;
 using test::Photograph;
 using test::QuarteredMaps;
@@ -19,15 +20,7 @@ using test::SyntheticScene;
 
 // A flash that stands beside where all views say it does: highlights of a level sample tell.
 TEST(Refine, FindsWhereTheFlashStands) {
-  SvbrdfMaps truth(32, 32);
-  for (size_t t = 0; t < truth.texels(); ++t) {
-    truth.plane(kNormalZ)[t] = 1;
-    truth.plane(kRoughness)[t] = 0.2f;
-    for (int c = 0; c < 3; ++c) {
-      truth.plane(kDiffuseR + c)[t] = 0.15f + 0.05f * static_cast<float>(t % 7) / 7;
-      truth.plane(kSpecularR + c)[t] = 0.05f;
-    }
-  }
+  const SvbrdfMaps truth = LevelSubstance(32, 0.2f);
   const SharedLightValues offset{0.05, -0.025};
   SyntheticScene scene = Photograph(truth, 10, 8, 5, {.values = offset, .distance_mm = 2.4});
   RefineOptions options;
