@@ -243,7 +243,7 @@ int Main() {
     ratios.push_back(refine.rate / ceres.rate);
     if (round + 1 == kRounds) {
       fmt::print(
-          "ratio {:.1f} (wanted: 30 or more with AVX-512, 18 with AVX2), mean cost {:.6f} against "
+          "ratio {:.1f} (target: 30 or more with AVX-512, 18 with AVX2), mean cost {:.6f} against "
           "{:.6f}\n",
           Median(ratios), refine.cost, ceres.cost);
     }

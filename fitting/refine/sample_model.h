@@ -90,7 +90,8 @@ class SampleModel {
   TexelPrior PriorOf(size_t texel, const SvbrdfMaps& maps) const;
 
   // What the texel's substances' means leave open: those are uncertain themselves, and all their
-  // texels share what they are wrong by. `inverse`: of the normal equations with PriorOf(texel).
+  // texels share what they are wrong by. `inverse`: of the normal equations with
+  // PriorOf(texel) and LeastInformation().
   TexelCovariance CommonCovariance(size_t texel, const BatchInverse& inverse, int lane) const;
 
   void Describe(RefineSummary* summary) const;

@@ -146,25 +146,4 @@ TexelGram BatchResiduals::GramOf(int lane, int views) const {
   return gram;
 }
 
-void BatchGram::Lane(int lane, TexelGram* gram) const {
-  for (auto& row : *gram) row.fill(0.0);
-  for (int c = 0; c < 3; ++c) {
-    int next = 0;
-    for (const int row : {DiffuseParameter(c), SpecularParameter(c)}) {
-      auto& into = (*gram)[static_cast<size_t>(row)];
-      for (int column = row; column <= SpecularParameter(c); ++column) {
-        into[static_cast<size_t>(column)] = own[c][next++][lane];
-      }
-      for (size_t column = kRough; column < kGramSize; ++column)
-        into[column] = own[c][next++][lane];
-    }
-  }
-  int next = 0;
-  for (size_t row = kRough; row < kGramSize; ++row) {
-    for (size_t column = row; column < kGramSize; ++column) {
-      (*gram)[row][column] = shared[next++][lane];
-    }
-  }
-}
-
 }  // namespace glint

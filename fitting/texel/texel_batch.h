@@ -113,7 +113,6 @@ struct BatchGram {
   static constexpr int kOwn = 6 + 5, kShared = 4 + 3 + 2 + 1;
   BatchRow own[3][kOwn];
   BatchRow shared[kShared];
-  void Lane(int lane, TexelGram* gram) const;
   double Squares(int lane) const { return shared[kShared - 1][lane]; }
 };
 

@@ -171,6 +171,30 @@ std::array<double, kTexelParameters> Derivatives(const BatchResiduals& residuals
   return by;
 }
 
+TexelGram GramOfLane(const BatchGram& batch, int lane) {
+  TexelGram gram;
+  for (auto& row : gram) row.fill(0.0);
+  for (int c = 0; c < 3; ++c) {
+    int next = 0;
+    for (const int row : {DiffuseParameter(c), SpecularParameter(c)}) {
+      auto& into = gram[static_cast<size_t>(row)];
+      for (int column = row; column <= SpecularParameter(c); ++column) {
+        into[static_cast<size_t>(column)] = batch.own[c][next++][lane];
+      }
+      for (size_t column = kRough; column < kGramSize; ++column) {
+        into[column] = batch.own[c][next++][lane];
+      }
+    }
+  }
+  int next = 0;
+  for (size_t row = kRough; row < kGramSize; ++row) {
+    for (size_t column = row; column < kGramSize; ++column) {
+      gram[row][column] = batch.shared[next++][lane];
+    }
+  }
+  return gram;
+}
+
 TEST(BatchKernel, ResidualsAgreeWithAutodiffOfTheReflectanceModelAtAThousandPoints) {
   for (const InstructionSet set : Sets()) {
     std::mt19937 random(11);
@@ -216,23 +240,12 @@ TEST(BatchKernel, ProductsAreThoseOfAllResiduals) {
       kernel::BatchKernelFor(set).gram(lanes.options, lanes.Views(), lanes.values, &products,
                                        residuals.rows());
       for (int lane = 0; lane < kBatch; ++lane) {
-        TexelGram gram;
-        products.Lane(lane, &gram);
-        Eigen::Matrix<double, 3 * kViews, kGramSize> all;
-        all.setZero();
-        for (int v = 0; v < kViews; ++v) {
-          if (!lanes.observations.sees(v, lane)) continue;
-          for (int c = 0; c < 3; ++c) {
-            const auto by = Derivatives(residuals, v, c, lane);
-            for (int p = 0; p < kTexelParameters; ++p) all(3 * v + c, p) = by[p];
-            all(3 * v + c, kTexelParameters) = residuals.at(v, c, Row::kResidual, lane);
-          }
-        }
-        const Eigen::MatrixXd expected = all.transpose() * all;
-        for (int a = 0; a < kGramSize; ++a) {
-          for (int b = a; b < kGramSize; ++b) {
-            const double size = std::sqrt(expected(a, a) * expected(b, b));
-            EXPECT_NEAR(gram[a][b], expected(a, b), 3e-6 * size);
+        const TexelGram gram = GramOfLane(products, lane);
+        const TexelGram expected = residuals.GramOf(lane, kViews);
+        for (size_t a = 0; a < kGramSize; ++a) {
+          for (size_t b = a; b < kGramSize; ++b) {
+            const double size = std::sqrt(expected[a][a] * expected[b][b]);
+            EXPECT_NEAR(gram[a][b], expected[a][b], 3e-6 * size);
           }
         }
       }
@@ -252,8 +265,7 @@ TEST(BatchKernel, SatisfiedClippingCostsNothing) {
       .gram(lanes.options, lanes.Views(), lanes.values, &gram, nullptr);
   for (int lane = 0; lane < kBatch; ++lane) {
     EXPECT_EQ(gram.Squares(lane), 0.0);
-    TexelGram products;
-    gram.Lane(lane, &products);
+    const TexelGram products = GramOfLane(gram, lane);
     EXPECT_EQ(products[kRough][kRough], 0.0);
   }
 }
@@ -270,8 +282,8 @@ TEST(BatchKernel, InverseIsThatOfTheNormalEquationsWithThePrior) {
     kernel.inverse(photographs, lanes.prior, lanes.values, 1e-3f, &inverse);
     for (int lane = 0; lane < kBatch; ++lane) {
       const size_t k = static_cast<size_t>(lane);
-      TexelGram gram;
-      photographs.Lane(lane, &gram);
+
+      TexelGram gram = GramOfLane(photographs, lane);
       lanes.priors[k].AddTo(lanes.texels[k], &gram);
       EXPECT_NEAR(inverse.squares[lane], gram[kTexelParameters][kTexelParameters],
                   1e-5 * gram[kTexelParameters][kTexelParameters]);
