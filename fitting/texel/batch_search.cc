@@ -1,5 +1,6 @@
 #include "fitting/texel/batch_search.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -24,7 +25,8 @@ constexpr double kWorthwhile = 0.98;
 // Gain of a step against one residual's noise: narrow valleys (diffuse light against a rough lobe)
 // are walked in short steps.
 constexpr double kWorthStep = 0.005;
-constexpr double kExplained = 1.5;  // squared residuals against noise alone
+constexpr double kExplained = 1.5;    // squared residuals against noise alone
+constexpr double kLeastRcond = 1e-6;  // of lights that tell a normal
 
 // Dampings of the first step. Full Gauss–Newton steps from a rough start throw texels into corners
 // that hold them (no specular at all; the smoothest lobe): with a damping of 1e-4 a third of texels
@@ -73,6 +75,36 @@ bool TurnToBrightest(const BatchObservations& observations, int lane, TexelValue
   if (!(half[2] > 1 / kMostSlope)) return false;
   (*values)[kSlopeX] = half[0] / half[2];
   (*values)[kSlopeY] = half[1] / half[2];
+  return true;
+}
+
+// Turns the normal to the one whose shading the views show, were there diffuse light alone
+// (photometric stereo, Woodham 1980), differences weighed as the logarithm weighs them. Where a
+// surface is steep a level normal explains shading by a wide specular lobe without diffuse light,
+// and stays there.
+bool TurnToShading(const BatchObservations& observations, int lane, TexelValues* values) {
+  using Obs = BatchObservations;
+  const auto at = [&](int view, int plane) {
+    return static_cast<double>(observations.rows()[view * Obs::kPlanes + plane][lane]);
+  };
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d seen = Eigen::Vector3d::Zero();
+  for (int v = 0; v < observations.views(); ++v) {
+    if (!(at(v, Obs::kWeight) > 0)) continue;
+    const Eigen::Vector3d light(at(v, Obs::kLightX), at(v, Obs::kLightY), at(v, Obs::kLightZ));
+    for (int c = 0; c < 3; ++c) {
+      const double weight = at(v, Obs::kIrradiance + c) * at(v, Obs::kInverseTarget + c);
+      const double relative = 1 - kLogOffset * at(v, Obs::kInverseTarget + c);
+      information += weight * weight * light * light.transpose();
+      seen += weight * relative * light;
+    }
+  }
+  const Eigen::LDLT<Eigen::Matrix3d> solver(information);
+  if (solver.rcond() < kLeastRcond) return false;
+  const Eigen::Vector3d normal = solver.solve(seen);
+  if (!(normal.z() > normal.norm() / kMostSlope)) return false;
+  (*values)[kSlopeX] = normal.x() / normal.z();
+  (*values)[kSlopeY] = normal.y() / normal.z();
   return true;
 }
 
@@ -222,7 +254,7 @@ void BatchSearch::Conclude(Batch* batch, int lane) {
 void BatchSearch::RunSecond() {
   if (second_.taken == 0) return;
   if (from_ == From::kStart) {
-    TryOtherRoughnesses();
+    TryOtherStarts();
   } else {
     TryNeighbours();
   }
@@ -335,18 +367,35 @@ void BatchSearch::TryRoughnesses(LaneBits lanes, const std::array<TexelValues, k
   }
 }
 
-void BatchSearch::TryOtherRoughnesses() {
-  const LaneBits all = second_.taken;
+// From what is known of the texel beforehand: a start may lie far from where all other texels of
+// its substance do.
+void BatchSearch::TryPriorMeans() {
+  Candidates means;
+  for (size_t i = 0; i < means.size(); ++i) {
+    means[i].values = second_.found[i].solution.values;
+    const TexelPrior& prior = second_.tasks[i].prior;
+    for (int p = 0; p < kTexelParameters; ++p) {
+      if (prior.weight(p) > 0) means[i].values[p] = prior.mean()[p];
+    }
+  }
+  TrySolve(second_.taken, means);
+}
+
+void BatchSearch::TryOtherStarts() {
+  TryPriorMeans();
+  const LaneBits all = UnexplainedOf(second_.taken);
   std::array<TexelValues, kBatch> from;
   for (size_t i = 0; i < from.size(); ++i) from[i] = second_.found[i].solution.values;
-  TryRoughnesses(all, from);
-  LaneBits turned = 0;
-  ForEachLane(UnexplainedOf(all), [&](int lane) {
-    const size_t i = static_cast<size_t>(lane);
-    from[i] = second_.found[i].solution.values;
-    if (TurnToBrightest(second_.observations, lane, &from[i])) turned |= 1u << lane;
-  });
-  if (turned != 0) TryRoughnesses(turned, from);
+  if (all != 0) TryRoughnesses(all, from);
+  for (const auto& turn : {TurnToBrightest, TurnToShading}) {
+    LaneBits turned = 0;
+    ForEachLane(UnexplainedOf(all), [&](int lane) {
+      const size_t i = static_cast<size_t>(lane);
+      from[i] = second_.found[i].solution.values;
+      if (turn(second_.observations, lane, &from[i])) turned |= 1u << lane;
+    });
+    if (turned != 0) TryRoughnesses(turned, from);
+  }
 }
 
 void BatchSearch::TryNeighbours() {

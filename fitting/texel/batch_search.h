@@ -117,7 +117,8 @@ class BatchSearch {
   void RunSecond();
   // A texel whose solve has ended: done, or to be searched further.
   void Conclude(Batch* batch, int lane);
-  void TryOtherRoughnesses();
+  void TryPriorMeans();
+  void TryOtherStarts();
   void TryNeighbours();
   // Those of `lanes` that Unexplained().
   kernel::LaneBits UnexplainedOf(kernel::LaneBits lanes) const;
