@@ -112,18 +112,16 @@ void Estimator::Run() {
     }
   };
   solver.predict = [&](std::span<const size_t> texels, std::span<const TexelValues> values,
-                       std::span<const int> views, int worker) {
+                       std::span<const int> views, int worker, std::span<double> squares) {
     RefineWorker* w = workers_[static_cast<size_t>(worker)].get();
-    Prediction sum;
     for (size_t first = 0; first < texels.size(); first += kBatch) {
       const size_t count = std::min<size_t>(kBatch, texels.size() - first);
       const BatchGram gram =
           GramAt(problem_, texels.subspan(first, count), values.subspan(first, count), views, w);
       for (int lane = 0; lane < static_cast<int>(count); ++lane) {
-        sum += {gram.Squares(lane), 3 * w->observed.seen(lane)};
+        squares[first + static_cast<size_t>(lane)] = gram.Squares(lane);
       }
     }
-    return sum;
   };
   solver.deviate = [&](const ViewDeviations& deviations) { SetViews(deviations); };
   if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);

@@ -14,7 +14,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 26;
+inline constexpr int kRefineVersion = 27;
 
 struct RefineStageOptions {
   RefineOptions refine;

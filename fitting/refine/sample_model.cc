@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "base/parallel/parallel.h"
@@ -191,11 +193,14 @@ SampleModel::Sampling SampleModel::Sample(size_t most, const SampleSolver& solve
 
 SampleModel::Sampling SampleModel::SamplingOf(std::vector<size_t> texels,
                                               const SampleSolver& solver, int threads) const {
-  Sampling sampling{std::move(texels), {}, 0, &solver, threads};
+  Sampling sampling;
+  sampling.texels = std::move(texels);
+  sampling.solver = &solver;
+  sampling.threads = threads;
   for (const size_t texel : sampling.texels) {
     sampling.solved.emplace_back().values = ReadTexel(part_->initial(), texel);
   }
-  sampling.half_vectors = HalfVectors(sampling.texels);
+  TellHalfVectorsApart(&sampling);
   return sampling;
 }
 
@@ -243,24 +248,30 @@ void SampleModel::UpdateSubstances(const Sampling& sampling) {
   UpdateMeans(samples, SampleWorth(sampling), &means_);
 }
 
-// Cells of half the length scale over which discrepancy stays alike.
-size_t SampleModel::HalfVectors(const std::vector<size_t>& texels) const {
+// Of half the length scale over which discrepancy stays alike.
+SampleModel::HalfVectorCell SampleModel::CellOf(size_t texel, size_t view) const {
   const double cell = 0.5 * residuals_.options().half_vector_deg * std::numbers::pi / 180;
-  std::vector<std::pair<int, int>> cells;
-  for (const size_t t : texels) {
-    const int row = static_cast<int>(t) / part_->initial().width;
-    const int column = static_cast<int>(t) % part_->initial().width;
-    for (const RefineView& view : part_->problem().views) {
-      const TexelGeometry<double> g = TexelGeometryInView<double>(
-          view.view, part_->problem().convention.falloff, part_->problem().plane.x_mm(column),
-          part_->problem().plane.y_mm(row));
-      cells.emplace_back(static_cast<int>(std::floor(g.half[0] / cell)),
-                         static_cast<int>(std::floor(g.half[1] / cell)));
-    }
+  const RefineProblem& problem = part_->problem();
+  const int row = static_cast<int>(texel) / part_->initial().width;
+  const int column = static_cast<int>(texel) % part_->initial().width;
+  const TexelGeometry<double> g =
+      TexelGeometryInView<double>(problem.views[view].view, problem.convention.falloff,
+                                  problem.plane.x_mm(column), problem.plane.y_mm(row));
+  return {static_cast<int>(std::floor(g.half[0] / cell)),
+          static_cast<int>(std::floor(g.half[1] / cell))};
+}
+
+// Texels with like half vectors in one view have like ones in all: they are neighbours.
+void SampleModel::TellHalfVectorsApart(Sampling* sampling) const {
+  std::map<HalfVectorCell, size_t> places;
+  std::set<HalfVectorCell> all;
+  for (const size_t texel : sampling->texels) {
+    const auto place = places.emplace(CellOf(texel, 0), places.size()).first;
+    sampling->places.push_back(place->second);
+    for (const int view : all_views_) all.insert(CellOf(texel, static_cast<size_t>(view)));
   }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return cells.size();
+  sampling->place_count = places.size();
+  sampling->half_vectors = all.size();
 }
 
 // Discrepancy is a function of the half vector, common to a substance: a mean over n texels and

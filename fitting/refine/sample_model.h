@@ -6,9 +6,11 @@
 #include <array>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "fitting/refine/confidence.h"
+#include "fitting/refine/held_out_errors.h"
 #include "fitting/refine/refine.h"
 #include "fitting/refine/residual_model.h"
 #include "fitting/refine/sample_part.h"
@@ -28,18 +30,6 @@ struct SampledTexel {
   std::array<double, kTexelParameters * kTexelParameters> inverse{};
   std::array<double, kTexelParameters> prior_diagonal{};  // … and the prior's part before inversion
   std::vector<DeviationProducts> of_views;  // where deviations of views are looked for
-};
-
-// How well values predict views that they were not solved with.
-struct Prediction {
-  double squares = 0;  // of residuals, g²
-  int residuals = 0;
-
-  void operator+=(const Prediction& other) {
-    squares += other.squares;
-    residuals += other.residuals;
-  }
-  double MeanSquare() const { return squares / std::max(residuals, 1); }
 };
 
 // A texel to be solved.
@@ -63,8 +53,9 @@ struct SampleSolver {
   std::function<void(std::span<const SampleTask> tasks, const SampleRequest& request, int worker,
                      std::span<SampledTexel> solved)>
       solve;
-  std::function<Prediction(std::span<const size_t> texels, std::span<const TexelValues> values,
-                           std::span<const int> views, int worker)>
+  // Each texel's squared residuals g² in those views.
+  std::function<void(std::span<const size_t> texels, std::span<const TexelValues> values,
+                     std::span<const int> views, int worker, std::span<double> squares)>
       predict;
   // From now on views deviate so from what is said of them.
   std::function<void(const ViewDeviations& deviations)> deviate;
@@ -100,13 +91,17 @@ class SampleModel {
   struct Sampling {  // sampled texels and what solves them
     std::vector<size_t> texels;
     std::vector<SampledTexel> solved;
-    size_t half_vectors;  // that can be told apart, of all views
-    const SampleSolver* solver;
-    int threads;
+    std::vector<size_t> places;  // of texels: those of a place have like half vectors
+    size_t place_count = 0;
+    size_t half_vectors = 0;  // that can be told apart, of all views
+    const SampleSolver* solver = nullptr;
+    int threads = 1;
   };
   Sampling Sample(size_t most, const SampleSolver& solver, int threads) const;
   Sampling SamplingOf(std::vector<size_t> texels, const SampleSolver& solver, int threads) const;
-  size_t HalfVectors(const std::vector<size_t>& texels) const;
+  using HalfVectorCell = std::pair<int, int>;
+  HalfVectorCell CellOf(size_t texel, size_t view) const;
+  void TellHalfVectorsApart(Sampling* sampling) const;
   // Rounds of solving the sampled texels by `views` and updating the substances. In the folds of
   // cross-validation no more than that (`update_residuals` false), and from the second round on
   // without other starts; else the residuals' variance and what else is being learned too.
@@ -125,14 +120,11 @@ class SampleModel {
   // views held out, one fold after the other.
   template <class Visit>
   void ForEachFold(const Sampling& sampling, const Visit& visit) const;
-  // Mean squared residual of held-out views.
-  double CrossValidate(const Sampling& sampling) const;
-  Prediction Predict(const Sampling& sampling, std::span<const int> views) const;
+  HeldOutErrors CrossValidate(const Sampling& sampling) const;
   SampleModel ScaledBy(const SpreadFactors& factors) const;
   void ChooseSpreads(const Sampling& sampling);
   // Of texels and their neighbours, about `most` in all.
   void ChooseNeighbourSpread(size_t most, const SampleSolver& solver, int threads);
-  double CrossValidatedResiduals(const Sampling& sampling) const;
 
   TexelGaussian Knowledge(size_t texel) const;
   struct Neighbour {

@@ -39,26 +39,21 @@ void SampleModel::ForEachFold(const Sampling& sampling, const Visit& visit) cons
   }
 }
 
-Prediction SampleModel::Predict(const Sampling& sampling, std::span<const int> views) const {
-  std::vector<TexelValues> values;
-  for (const SampledTexel& solved : sampling.solved) values.push_back(solved.values);
-  std::vector<Prediction> by_block(sampling.texels.size());  // at the block's first texel
-  ForEachSampleBlock(values.size(), sampling.threads, [&](size_t first, size_t count, int worker) {
-    by_block[first] = sampling.solver->predict(
-        std::span(sampling.texels).subspan(first, count),
-        std::span<const TexelValues>(values).subspan(first, count), views, worker);
+HeldOutErrors SampleModel::CrossValidate(const Sampling& sampling) const {
+  HeldOutErrors errors(sampling.place_count);
+  std::vector<double> squares(sampling.texels.size());
+  ForEachFold(sampling, [&](const SampleModel&, const Sampling& part, const std::vector<int>&,
+                            const std::vector<int>& held_out) {
+    ForEachSampleBlock(squares.size(), part.threads, [&](size_t first, size_t count, int worker) {
+      std::vector<TexelValues> values;
+      for (size_t k = first; k < first + count; ++k) values.push_back(part.solved[k].values);
+      part.solver->predict(std::span(part.texels).subspan(first, count), values, held_out, worker,
+                           std::span(squares).subspan(first, count));
+    });
+    errors.BeginFold();
+    for (size_t k = 0; k < squares.size(); ++k) errors.Add(part.places[k], squares[k]);
   });
-  Prediction sum;
-  for (const Prediction& p : by_block) sum += p;
-  return sum;
-}
-
-double SampleModel::CrossValidate(const Sampling& sampling) const {
-  Prediction sum;
-  ForEachFold(sampling,
-              [&](const SampleModel& model, const Sampling& part, const std::vector<int>&,
-                  const std::vector<int>& held_out) { sum += model.Predict(part, held_out); });
-  return sum.MeanSquare();
+  return errors;
 }
 
 SampleModel SampleModel::ScaledBy(const SpreadFactors& factors) const {
@@ -72,13 +67,12 @@ SampleModel SampleModel::ScaledBy(const SpreadFactors& factors) const {
 }
 
 void SampleModel::ChooseSpreads(const Sampling& sampling) {
-  const double independent = CrossValidatedResiduals(sampling);
-  const auto error = [&](const SpreadPowers& powers) {
+  const auto tried = SearchSpreads([&](const SpreadPowers& powers) {
     SpreadFactors factors;
     for (size_t i = 0; i < kSpreadKinds; ++i) factors[i] = std::exp2(powers[i]);
     return ScaledBy(factors).CrossValidate(sampling);
-  };
-  *this = ScaledBy(ProbableFactors(SearchSpreads(error, independent), independent));
+  });
+  *this = ScaledBy(ProbableFactors(tried));
 }
 
 // Texels are solved once without their neighbours, and the one in the middle of each cross by them
@@ -95,15 +89,16 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
   centres.push_back(texels.size());
   const Sampling crosses = SamplingOf(std::move(texels), solver, threads);
   const size_t count = kNeighbourFactors.size();
-  std::vector<Prediction> sums(count);
+  std::vector<HeldOutErrors> errors(count, HeldOutErrors(crosses.place_count));
   ForEachFold(crosses, [&](const SampleModel& model, const Sampling& part,
                            const std::vector<int>& fitted, const std::vector<int>& held_out) {
     std::vector<SampleModel> tried(count, model);
     for (size_t f = 0; f < count; ++f) tried[f].neighbour_spread_ *= kNeighbourFactors[f];
     const size_t crosses_count = centres.size() - 1;
-    std::vector<std::vector<Prediction>> predictions(crosses_count);  // at a block's first
+    std::vector<std::vector<double>> squares(count, std::vector<double>(crosses_count));
     ForEachSampleBlock(crosses_count, threads, [&](size_t first, size_t block, int worker) {
-      for (const SampleModel& one : tried) {
+      for (size_t f = 0; f < count; ++f) {
+        const SampleModel& one = tried[f];
         std::vector<SampleTask> tasks;
         std::vector<size_t> middles_texels;
         for (size_t k = first; k < first + block; ++k) {
@@ -122,27 +117,19 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
         std::vector<TexelValues> values;
         values.reserve(block);
         for (const SampledTexel& texel : solved) values.push_back(texel.values);
-        predictions[first].push_back(solver.predict(middles_texels, values, held_out, worker));
+        solver.predict(middles_texels, values, held_out, worker,
+                       std::span(squares[f]).subspan(first, block));
       }
     });
-    for (const auto& p : predictions) {
-      for (size_t f = 0; f < p.size(); ++f) sums[f] += p[f];
+    for (size_t f = 0; f < count; ++f) {
+      errors[f].BeginFold();
+      for (size_t k = 0; k < crosses_count; ++k) {
+        errors[f].Add(part.places[centres[k]], squares[f][k]);
+      }
     }
   });
-  std::vector<double> errors(count);
-  for (size_t f = 0; f < count; ++f) errors[f] = sums[f].MeanSquare();
   // Information beside all else that is known of a texel is taken at its mean.
-  neighbour_spread_ *=
-      FactorOfMeanPrecision(kNeighbourFactors, errors, CrossValidatedResiduals(middles));
-}
-
-// Residuals that are worth something of their own: those that are not discrepancy, and of
-// discrepancy as many as there are half vectors to be told apart, each once and not by channel.
-double SampleModel::CrossValidatedResiduals(const Sampling& sampling) const {
-  const double views = static_cast<double>(all_views_.size());
-  const double channels =
-      3 / (1 + 2 * residuals_.options().channel_correlation * residuals_.discrepancy_share());
-  return SampleWorth(sampling) * static_cast<double>(sampling.texels.size()) * views * channels;
+  neighbour_spread_ *= FactorOfMeanPrecision(kNeighbourFactors, errors);
 }
 
 }  // namespace glint

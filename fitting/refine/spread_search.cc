@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <set>
 
 namespace glint {
 namespace {
@@ -17,64 +19,92 @@ constexpr double kInitialisationOctaves = 1;
 // Roughness varies within many substances whose specular albedo does not.
 constexpr std::array<SpreadPowers, 5> kDirections = {
     {{1, 1, 0, 0, 0}, {0, 0, 1, 0, 0}, {0, 1, 0, 0, 0}, {0, 0, 0, 1, 0}, {0, 0, 0, 0, 1}}};
-constexpr int kPasses = 3;
+// Difference of negative logarithms: of what lies beyond, less than e⁻³ = 5 % is left out.
+constexpr double kImprobable = 3;
 
-// Negative logarithm of Gauss's likelihood of `independent` residuals of unknown variance, whose
-// mean square is `error` (0 where all photographs that were held out are masked).
-double LikelihoodEnergy(double error, double independent) {
-  return 0.5 * independent * std::log(std::max(error, 1e-300));
+// Of what is known beforehand.
+double PriorEnergy(const SpreadPowers& powers) {
+  const double octaves = powers[kInitialisationError] / kInitialisationOctaves;
+  return 0.5 * octaves * octaves;
 }
 
-double Energy(const TriedSpreads& tried, double independent) {
-  const double octaves = tried.powers[kInitialisationError] / kInitialisationOctaves;
-  return LikelihoodEnergy(tried.error, independent) + 0.5 * octaves * octaves;
+bool InRange(const SpreadPowers& powers) {
+  for (size_t i = 0; i < powers.size(); ++i) {
+    if (powers[i] < kLeast[i] || powers[i] > kMost[i]) return false;
+  }
+  return true;
+}
+
+SpreadPowers Moved(SpreadPowers powers, const SpreadPowers& direction, int sign) {
+  for (size_t i = 0; i < powers.size(); ++i) powers[i] += sign * direction[i];
+  return powers;
 }
 
 class Search {
  public:
-  Search(const std::function<double(const SpreadPowers&)>& error, double independent)
-      : error_(error), independent_(independent) {
-    least_ = EnergyAt(at_);
-  }
+  explicit Search(const std::function<HeldOutErrors(const SpreadPowers&)>& predict)
+      : predict_(predict) {}
 
-  // As far along a direction as energies fall, one way or the other; false: nowhere.
+  // As far along a direction as others are better, one way or the other; false: nowhere.
   bool Descend(const SpreadPowers& direction) {
     return DescendBy(direction, -1) || DescendBy(direction, 1);
   }
 
-  std::vector<TriedSpreads> tried() const {
-    std::vector<TriedSpreads> all;
-    for (const auto& [powers, error] : errors_) all.push_back({powers, error});
-    return all;
+  // All along the axes through the best, each way until it is improbable. true: something better
+  // was met, which is the best now.
+  bool Surround() {
+    around_ = {{at_, 0.0}};
+    for (size_t i = 0; i < kSpreadKinds; ++i) {
+      SpreadPowers axis{};
+      axis[i] = 1;
+      for (const int sign : {-1, 1}) {
+        for (SpreadPowers next = Moved(at_, axis, sign); InRange(next);
+             next = Moved(next, axis, sign)) {
+          if (MoveIfBetter(next)) return true;
+          around_.push_back({next, EnergyAt(next)});
+          if (around_.back().energy > kImprobable) break;
+        }
+      }
+    }
+    return false;
   }
 
+  const std::vector<TriedSpreads>& around() const { return around_; }
+
  private:
+  const HeldOutErrors& At(const SpreadPowers& powers) {
+    auto known = known_.find(powers);
+    if (known == known_.end()) known = known_.emplace(powers, predict_(powers)).first;
+    return known->second;
+  }
+
+  // Against the best as it is.
   double EnergyAt(const SpreadPowers& powers) {
-    auto known = errors_.find(powers);
-    if (known == errors_.end()) known = errors_.emplace(powers, error_(powers)).first;
-    return Energy({powers, known->second}, independent_);
+    return At(powers).EnergyAgainst(At(at_)) + PriorEnergy(powers) - PriorEnergy(at_);
+  }
+
+  // Never back to one that something was better than: a may be better than b, b than c and c than
+  // a.
+  bool MoveIfBetter(const SpreadPowers& next) {
+    if (left_.contains(next) || !(EnergyAt(next) < 0)) return false;
+    left_.insert(at_);
+    at_ = next;
+    return true;
   }
 
   bool DescendBy(const SpreadPowers& direction, int sign) {
     bool moved = false;
     for (;; moved = true) {
-      SpreadPowers next = at_;
-      for (size_t i = 0; i < next.size(); ++i) {
-        next[i] += sign * direction[i];
-        if (next[i] < kLeast[i] || next[i] > kMost[i]) return moved;
-      }
-      const double energy = EnergyAt(next);
-      if (!(energy < least_)) return moved;
-      at_ = next;
-      least_ = energy;
+      const SpreadPowers next = Moved(at_, direction, sign);
+      if (!InRange(next) || !MoveIfBetter(next)) return moved;
     }
   }
 
-  const std::function<double(const SpreadPowers&)>& error_;
-  const double independent_;
-  std::map<SpreadPowers, double> errors_;
+  const std::function<HeldOutErrors(const SpreadPowers&)>& predict_;
+  std::map<SpreadPowers, HeldOutErrors> known_;
+  std::set<SpreadPowers> left_;
   SpreadPowers at_{};
-  double least_ = 0;
+  std::vector<TriedSpreads> around_;
 };
 
 // Of such negative logarithms; sum 1.
@@ -92,42 +122,42 @@ std::vector<double> Probabilities(const std::vector<double>& energies) {
 }  // namespace
 
 std::vector<TriedSpreads> SearchSpreads(
-    const std::function<double(const SpreadPowers& powers)>& error, double independent) {
-  Search search(error, independent);
-  for (int pass = 0; pass < kPasses; ++pass) {
-    bool moved = false;
+    const std::function<HeldOutErrors(const SpreadPowers& powers)>& predict) {
+  Search search(predict);
+  for (bool moved = true; moved;) {
+    moved = false;
     for (const SpreadPowers& direction : kDirections) moved |= search.Descend(direction);
-    if (!moved) break;
+    moved = moved || search.Surround();
   }
-  return search.tried();
+  return search.around();
 }
 
-SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried, double independent) {
-  std::vector<double> energies(tried.size());
-  std::transform(tried.begin(), tried.end(), energies.begin(),
-                 [&](const TriedSpreads& one) { return Energy(one, independent); });
-  const std::vector<double> probabilities = Probabilities(energies);
-  SpreadFactors variances{}, logarithms{}, factors;
-  for (size_t t = 0; t < tried.size(); ++t) {
-    for (size_t i = 0; i < kSpreadKinds; ++i) {
-      variances[i] += probabilities[t] * std::exp2(2 * tried[t].powers[i]);
-      logarithms[i] += probabilities[t] * tried[t].powers[i];
-    }
-  }
+SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried) {
+  const SpreadPowers& best = tried.front().powers;
+  SpreadFactors factors;
   for (size_t i = 0; i < kSpreadKinds; ++i) {
-    // Where photographs say nearly all, large factors predict as well as larger ones, and a mean
-    // variance is nearly the largest one's.
-    const bool open = i == kDiffuseSpread || i == kInitialisationError;
-    factors[i] = open ? std::exp2(logarithms[i]) : std::sqrt(variances[i]);
+    std::vector<double> energies, alternatives;
+    for (const TriedSpreads& one : tried) {
+      SpreadPowers elsewhere = one.powers;
+      elsewhere[i] = best[i];
+      if (elsewhere != best) continue;
+      energies.push_back(one.energy);
+      alternatives.push_back(std::exp2(one.powers[i]));
+    }
+    const std::vector<double> probabilities = Probabilities(energies);
+    factors[i] =
+        std::inner_product(alternatives.begin(), alternatives.end(), probabilities.begin(), 0.0);
   }
   return factors;
 }
 
-double FactorOfMeanPrecision(std::span<const double> factors, const std::vector<double>& errors,
-                             double independent) {
-  std::vector<double> energies(errors.size());
-  std::transform(errors.begin(), errors.end(), energies.begin(),
-                 [&](double error) { return LikelihoodEnergy(error, independent); });
+double FactorOfMeanPrecision(std::span<const double> factors,
+                             std::span<const HeldOutErrors> errors) {
+  const auto best = std::min_element(
+      errors.begin(), errors.end(),
+      [](const HeldOutErrors& a, const HeldOutErrors& b) { return a.sum() < b.sum(); });
+  std::vector<double> energies;
+  for (const HeldOutErrors& one : errors) energies.push_back(one.EnergyAgainst(*best));
   const std::vector<double> probabilities = Probabilities(energies);
   double precision = 0;
   for (size_t i = 0; i < factors.size(); ++i) {

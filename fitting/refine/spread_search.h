@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "fitting/refine/held_out_errors.h"
+
 namespace glint {
 
 // What cross-validation chooses of a sample (sample_model.h).
@@ -24,23 +26,23 @@ using SpreadFactors = std::array<double, kSpreadKinds>;
 
 struct TriedSpreads {
   SpreadPowers powers;
-  double error;  // mean square of what is predicted
+  double energy;  // against the best: negative logarithm of how probable they are
 };
 
 // Coordinate descent on the negative log posterior, from factors of 1: roughness and specular
 // albedo together, normals, specular albedo alone, diffuse albedo, the initialisation; then again
-// until nothing is better, at most three times. Returns all that were tried, each once: the best
-// and, nearly always, those next to it. `independent`: residuals in each mean square. The
-// initialisation is expected to err by as much as is said, within a factor of two.
+// until nothing is better. Returns the best, and along the axes through it all that is not
+// improbable; the way to it, which rounding decides, is not told. The initialisation is expected to
+// err by as much as is said, within a factor of two.
 std::vector<TriedSpreads> SearchSpreads(
-    const std::function<double(const SpreadPowers& powers)>& error, double independent);
+    const std::function<HeldOutErrors(const SpreadPowers& powers)>& predict);
 
-// Factors over all that were tried, by how probable each is: what predicts nearly as well as the
-// best is nearly as probable, and to take the best alone would state deviations that are too small.
-SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried, double independent);
+// Of each kind the mean along the axis through the best, by how probable each factor is: what
+// predicts nearly as well as the best is nearly as probable.
+SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried);
 
-// The factor for `errors[i]`, a mean square that was found with factors[i], at its mean precision.
-double FactorOfMeanPrecision(std::span<const double> factors, const std::vector<double>& errors,
-                             double independent);
+// The factor at its mean precision; `errors[i]` were found with factors[i].
+double FactorOfMeanPrecision(std::span<const double> factors,
+                             std::span<const HeldOutErrors> errors);
 
 }  // namespace glint

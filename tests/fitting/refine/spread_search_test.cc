@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <set>
 #include <vector>
 
@@ -23,13 +24,31 @@ double Bowl(const SpreadPowers& powers, const SpreadPowers& lowest, double sides
   return sum + sides * std::pow(off[kSpecularSpread] + off[kDiffuseSpread], 2);
 }
 
-constexpr double kMany = 1e6;  // residuals: what is expected beforehand does not matter
+// At so many places, where errors scatter by a tenth: the fewer they are, the less sure it is which
+// of two sums is smaller (energies of 100 · places · L²).
+class Places {
+ public:
+  explicit Places(size_t count) : count_(count) {}
 
-TriedSpreads Best(const std::vector<TriedSpreads>& tried) {
-  return *std::min_element(
-      tried.begin(), tried.end(),
-      [](const TriedSpreads& a, const TriedSpreads& b) { return a.error < b.error; });
-}
+  HeldOutErrors operator()(double error) {
+    HeldOutErrors errors(count_);
+    errors.BeginFold();
+    errors.BeginFold();
+    std::normal_distribution<double> scatter(1, 0.1);
+    std::vector<double> squares(count_);
+    double sum = 0;
+    for (double& one : squares) sum += one = scatter(random_);
+    for (size_t i = 0; i < count_; ++i) errors.Add(i, error * squares[i] / sum);
+    return errors;
+  }
+
+ private:
+  size_t count_;
+  std::mt19937 random_;
+};
+constexpr size_t kMany = 100000;  // what is expected beforehand does not matter
+
+SpreadPowers Best(const std::vector<TriedSpreads>& tried) { return tried.front().powers; }
 
 // With diffuse albedo's spread as it is at first, narrower ones of roughness and specular albedo
 // are better than those that are best beside a narrow one: directions are tried again.
@@ -37,13 +56,15 @@ TEST(SpreadSearch, FindsSpreadsThatStandInForEachOther) {
   const SpreadPowers lowest = {0, -1, 1, -2, 3};
   const auto error = [&](const SpreadPowers& p) { return Bowl(p, lowest, 0.08); };
   ASSERT_LT(error({-1, -2, 1, 0, 0}), error({0, -1, 1, 0, 0}));
-  EXPECT_EQ(Best(SearchSpreads(error, kMany)).powers, lowest);
+  Places at(kMany);
+  EXPECT_EQ(Best(SearchSpreads([&](const SpreadPowers& p) { return at(error(p)); })), lowest);
 }
 
 TEST(SpreadSearch, SpecularAlbedosSpreadReachesFurtherDownThanRoughnesss) {
-  const SpreadPowers lowest = {-9, -9, -2, 0, 0};
-  const SpreadPowers best =
-      Best(SearchSpreads([&](const SpreadPowers& p) { return Bowl(p, lowest, 0); }, kMany)).powers;
+  Places at(kMany);
+  const SpreadPowers best = Best(SearchSpreads([&](const SpreadPowers& p) {
+    return at(Bowl(p, {-9, -9, -2, 0, 0}, 0));
+  }));
   EXPECT_LT(best[kSpecularSpread], best[kRoughnessSpread]);
 }
 
@@ -52,16 +73,14 @@ bool OutOfRange(const SpreadPowers& powers) { return powers[kInitialisationError
 
 TEST(SpreadSearch, TriesEachOnceAndTheBestOnesNeighbours) {
   std::set<SpreadPowers> asked;
-  const auto error = [&](const SpreadPowers& powers) {
+  Places at(kMany);
+  const SpreadPowers best = Best(SearchSpreads([&](const SpreadPowers& powers) {
     EXPECT_TRUE(asked.insert(powers).second);
-    return Bowl(powers, {-1, 0, 0, 0, 0});
-  };
-  const auto tried = SearchSpreads(error, kMany);
-  EXPECT_EQ(tried.size(), asked.size());
-  const SpreadPowers best = Best(tried).powers;
+    return at(Bowl(powers, {-1, 0, 0, 0, 0}));
+  }));
   for (const SpreadPowers& direction :
-       {SpreadPowers{1, 1, 0, 0, 0}, SpreadPowers{0, 0, 1, 0, 0}, SpreadPowers{0, 1, 0, 0, 0},
-        SpreadPowers{0, 0, 0, 1, 0}, SpreadPowers{0, 0, 0, 0, 1}}) {
+       {SpreadPowers{1, 1, 0, 0, 0}, SpreadPowers{1, 0, 0, 0, 0}, SpreadPowers{0, 0, 1, 0, 0},
+        SpreadPowers{0, 1, 0, 0, 0}, SpreadPowers{0, 0, 0, 1, 0}, SpreadPowers{0, 0, 0, 0, 1}}) {
     for (const int sign : {-1, 1}) {
       SpreadPowers next = best;
       for (size_t i = 0; i < kSpreadKinds; ++i) next[i] += sign * direction[i];
@@ -71,12 +90,13 @@ TEST(SpreadSearch, TriesEachOnceAndTheBestOnesNeighbours) {
 }
 
 TEST(SpreadSearch, EndsWhereErrorsFallForEver) {
-  const auto error = [](const SpreadPowers& powers) {
-    return 1.0 / (1 + std::exp2(powers[0]) + std::exp2(-powers[3]) + std::exp2(powers[4]));
-  };
-  const auto tried = SearchSpreads(error, kMany);
-  EXPECT_LT(tried.size(), 40u);
-  const SpreadPowers best = Best(tried).powers;
+  int tried = 0;
+  Places at(kMany);
+  const SpreadPowers best = Best(SearchSpreads([&](const SpreadPowers& powers) {
+    ++tried;
+    return at(1.0 / (1 + std::exp2(powers[0]) + std::exp2(-powers[3]) + std::exp2(powers[4])));
+  }));
+  EXPECT_LT(tried, 60);
   EXPECT_EQ(best[kRoughnessSpread], 1);
   EXPECT_EQ(best[kDiffuseSpread], -3);
   EXPECT_EQ(best[kInitialisationError], 4);
@@ -85,35 +105,116 @@ TEST(SpreadSearch, EndsWhereErrorsFallForEver) {
 // A rough specular lobe in place of diffuse light predicts as well: what is said of the
 // initialisation's errors tells the two apart.
 TEST(SpreadSearch, TheInitialisationErrsAsIsSaidWherePhotographsDoNotTell) {
-  const auto error = [](const SpreadPowers& p) { return 1 - 0.002 * p[kInitialisationError]; };
-  constexpr double kFew = 300;
-  const auto tried = SearchSpreads(error, kFew);
-  EXPECT_EQ(Best(tried).powers[kInitialisationError], 1);  // of the two that were tried
-  EXPECT_LT(ProbableFactors(tried, kFew)[kInitialisationError], 1.5);
-  EXPECT_GT(ProbableFactors(SearchSpreads(error, kMany), kMany)[kInitialisationError], 15);
+  const auto factor = [](size_t places) {
+    Places at(places);
+    return ProbableFactors(SearchSpreads([&](const SpreadPowers& p) {
+      return at(1 - 0.002 * p[kInitialisationError]);
+    }))[kInitialisationError];
+  };
+  EXPECT_LT(factor(300), 2);
+  EXPECT_GT(factor(kMany), 15);
 }
 
 // All photographs held out are masked: nothing is told apart, and nothing is not a number.
 TEST(SpreadSearch, WhereNothingIsPredictedAllAreAsLikely) {
-  const SpreadFactors factors = ProbableFactors({{{-1, 0, 0, 0, 0}, 0}, {{1, 0, 0, 0, 0}, 0}}, 1e3);
-  EXPECT_NEAR(factors[kRoughnessSpread], std::sqrt((0.25 + 4) / 2), 1e-12);
+  Places at(10);
+  const auto tried = SearchSpreads([&](const SpreadPowers&) { return at(0); });
+  const SpreadFactors factors = ProbableFactors(tried);
+  EXPECT_NEAR(factors[kRoughnessSpread], (0.25 + 0.5 + 1 + 2) / 4, 1e-12);
 }
 
 TEST(SpreadSearch, OneThatPredictsFarBetterIsTaken) {
   const SpreadFactors factors =
-      ProbableFactors({{{0, 0, 0, 0, 0}, 1}, {{1, -2, 0, -3, 2}, .5}}, 1e3);
+      ProbableFactors({{{1, -2, 0, -3, 2}, 0}, {{0, -2, 0, -3, 2}, 300}, {{1, -2, 0, -3, 1}, 300}});
   const SpreadFactors expected = {2, 0.25, 1, 0.125, 4};
   for (size_t i = 0; i < kSpreadKinds; ++i) EXPECT_NEAR(factors[i], expected[i], 1e-9) << i;
 }
 
-// What is as likely widens a spread more than it narrows one.
-TEST(SpreadSearch, WhatIsAsLikelyCountsByItsVariance) {
+// Which way is taken to the best rounding decides, and it must not decide what is taken.
+TEST(SpreadSearch, OnlyWhatLiesAroundTheBestCounts) {
+  Places at(kMany);
+  const auto tried = SearchSpreads([&](const SpreadPowers& p) {
+    return at(Bowl(p, {-1, -3, 0, -2, 0}, 0.08));
+  });
+  for (const TriedSpreads& one : tried) {
+    int differing = 0;
+    for (size_t i = 0; i < kSpreadKinds; ++i) differing += one.powers[i] != Best(tried)[i];
+    EXPECT_LE(differing, 1);
+  }
+}
+
+TEST(SpreadSearch, AllThatMayBeProbableIsTried) {
+  const auto farthest = [](size_t places) {
+    Places at(places);
+    const auto tried = SearchSpreads([&](const SpreadPowers& p) {
+      return at(1 + 0.1 * Bowl(p, {0, 0, 0, -3, 0}, 0));
+    });
+    int most = 0;
+    for (const TriedSpreads& one : tried) {
+      most = std::max(most, one.powers[kDiffuseSpread] - Best(tried)[kDiffuseSpread]);
+    }
+    return most;
+  };
+  EXPECT_EQ(farthest(kMany), 1);  // the first that is improbable
+  EXPECT_EQ(farthest(100), 2);    // energies of about 1 and 16
+}
+
+TEST(SpreadSearch, WhatIsAsLikelyCountsAsMuch) {
   const SpreadFactors factors =
-      ProbableFactors({{{-1, 0, 0, -1, 0}, 1}, {{1, 0, 0, 1, 0}, 1}}, 1e3);
-  EXPECT_NEAR(factors[kRoughnessSpread], std::sqrt((0.25 + 4) / 2), 1e-12);
-  EXPECT_NEAR(factors[kDiffuseSpread], 1, 1e-12);
-  EXPECT_NEAR(FactorOfMeanPrecision(std::array{0.5, 2.0}, {1, 1}, 1e3),
+      ProbableFactors({{{-1, 0, 0, -1, 0}, 0}, {{1, 0, 0, -1, 0}, 0}, {{-1, 0, 0, 1, 0}, 30}});
+  EXPECT_NEAR(factors[kRoughnessSpread], 1.25, 1e-12);
+  EXPECT_NEAR(factors[kDiffuseSpread], 0.5, 1e-12);
+  HeldOutErrors same(1);
+  same.BeginFold();
+  same.Add(0, 1);
+  EXPECT_NEAR(FactorOfMeanPrecision(std::array{0.5, 2.0}, std::array{same, same}),
               1 / std::sqrt((0.25 + 4) / 2), 1e-12);
+}
+
+HeldOutErrors ErrorsOf(const std::vector<std::vector<double>>& by_fold_and_place) {
+  HeldOutErrors errors(by_fold_and_place.front().size());
+  for (const auto& fold : by_fold_and_place) {
+    errors.BeginFold();
+    for (size_t place = 0; place < fold.size(); ++place) errors.Add(place, fold[place]);
+  }
+  return errors;
+}
+
+TEST(HeldOutErrors, TheWorseHasTheEnergyTheBetterLacks) {
+  const HeldOutErrors a = ErrorsOf({{1, 2, 3}, {2, 2, 1}}), b = ErrorsOf({{1, 1, 3}, {2, 1, 1}});
+  EXPECT_GT(a.EnergyAgainst(b), 0);
+  EXPECT_NEAR(a.EnergyAgainst(b), -b.EnergyAgainst(a), 1e-9);
+  EXPECT_EQ(a.EnergyAgainst(a), 0);
+}
+
+// The same sums: 12 against 9.
+TEST(HeldOutErrors, WhatAllPlacesAndPhotographsSayIsSurerThanWhatOneSays) {
+  const HeldOutErrors best = ErrorsOf({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}});
+  const double all =
+      ErrorsOf({{1.4, 1.3, 1.3}, {1.3, 1.4, 1.3}, {1.3, 1.3, 1.4}}).EnergyAgainst(best);
+  const double place = ErrorsOf({{2, 1, 1}, {2, 1, 1}, {2, 1, 1}}).EnergyAgainst(best);
+  const double fold = ErrorsOf({{2, 2, 2}, {1, 1, 1}, {1, 1, 1}}).EnergyAgainst(best);
+  EXPECT_GT(all, 100 * place);
+  EXPECT_NEAR(place, fold, 1e-12);
+}
+
+// Errors that scatter by so much say which of two spreads they come from as firmly as they should:
+// where the two differ by chance alone, the energy is about one.
+TEST(HeldOutErrors, ChanceAloneLeavesBothProbable) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> scatter(1, 0.2);
+  int firm = 0;
+  constexpr int kTrials = 400;
+  for (int i = 0; i < kTrials; ++i) {
+    std::vector<std::vector<double>> a(7, std::vector<double>(50)), b = a;
+    for (auto* errors : {&a, &b}) {
+      for (auto& fold : *errors) {
+        for (double& one : fold) one = scatter(random);
+      }
+    }
+    firm += std::abs(ErrorsOf(a).EnergyAgainst(ErrorsOf(b))) > 3;
+  }
+  EXPECT_LT(firm, 0.2 * kTrials);
 }
 
 }  // namespace

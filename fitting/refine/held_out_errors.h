@@ -1,0 +1,37 @@
+// How wrong held-out views were predicted, and how much better one prediction is than another.
+//
+// The second is measured rather than assumed. With S_a, S_b the sums of squares of two, the
+// logarithm L = log S_a − log S_b has the variance that its parts show: those of the held-out
+// photographs, which may be others next time, and those of places on the sample, since texels of
+// like half vectors err alike,
+//   v = Σ_folds (s_a/S_a − s_b/S_b)² + Σ_places (s_a/S_a − s_b/S_b)².
+// What both predict alike tells nothing, and where a few highlights make nearly all of the error, a
+// few highlights decide. The energy of the worse one is 2 L²/v, as of a composite likelihood with
+// Godambe's information for Fisher's (Pauli, Racugno and Ventura 2011): of two points δ apart, one of
+// them the best, L = ½Hδ² and v = Jδ², so that ½ (H²/J) δ² = 2 L²/v.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace glint {
+
+// Sums of squared residuals g². Two that are compared have the same folds and places.
+class HeldOutErrors {
+ public:
+  explicit HeldOutErrors(size_t places) : by_place_(places, 0.0) {}
+
+  void BeginFold() { by_fold_.push_back(0.0); }
+  // Of the fold begun last.
+  void Add(size_t place, double squares);
+
+  double sum() const;
+  // The negative logarithm of how probable this is when `other` is one; below 0 where this is the
+  // better one, 0 where nothing tells them apart.
+  double EnergyAgainst(const HeldOutErrors& other) const;
+
+ private:
+  std::vector<double> by_fold_, by_place_;
+};
+
+}  // namespace glint
