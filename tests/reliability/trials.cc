@@ -88,7 +88,7 @@ TEST_F(Trials, Interrupt) {
   for (const auto& [name, signal] : {std::pair{"SIGINT", SIGINT}, std::pair{"SIGTERM", SIGTERM}}) {
     RunTrials(std::string(name) +
                   " to `glint run`, at any moment: nothing goes on, exit code 128 + signal",
-              20, [&](int i) {
+              20, [&, signal = signal](int i) {
                 fs::remove_all(capture() / "glint");
                 const pid_t pid = Begin(Run());
                 Sleep(Moment(run_seconds()));
@@ -247,7 +247,7 @@ TEST_F(Trials, InvalidationMatrix) {
         const auto& [stage, toml] = options[static_cast<size_t>(i)];
         Reset();
         if (stage == "fit") EditToml("iterations = 12", "iterations = 13");
-        if (stage == "refine") EditToml("iterations = 8", "iterations = 9");
+        if (stage == "refine") EditToml("iterations = 30", "iterations = 31");
         if (stage == "export") EditToml("[export]\n", "[export]\nbits = \"16\"\n");
         WriteAll(capture() / "capture.toml", ReadAll(capture() / "capture.toml") + toml);
         const Outcome outcome = RunCapture({"--json"});
@@ -282,7 +282,7 @@ TEST_F(Trials, MutatedImages) {
     double longest_s = 0;
     RunTrials("an EXR with bytes changed, put in or left out (" + std::string(target) +
                   "): read or refused within 10 s",
-              600, [&](int) {
+              600, [&, target = target](int) {
                 std::string bytes = original;
                 for (int changes = 1 + static_cast<int>(random_() % 4); changes > 0; --changes) {
                   // By turns in the header, whose bytes decide about the others, and anywhere.
