@@ -106,7 +106,7 @@ void Estimator::Run() {
                      std::span<SampledTexel> solved) {
     RefineWorker* w = workers_[static_cast<size_t>(worker)].get();
     Solve(tasks, request, w, solved);
-    for (size_t first = 0; first < tasks.size(); first += kBatch) {
+    for (size_t first = 0; !request.values_alone && first < tasks.size(); first += kBatch) {
       const size_t count = std::min<size_t>(kBatch, tasks.size() - first);
       Describe(tasks.subspan(first, count), request, w, solved.subspan(first, count));
     }

@@ -7,8 +7,8 @@
 //   v = Σ_folds (s_a/S_a − s_b/S_b)² + Σ_places (s_a/S_a − s_b/S_b)².
 // What both predict alike tells nothing, and where a few highlights make nearly all of the error, a
 // few highlights decide. The energy of the worse one is 2 L²/v, as of a composite likelihood with
-// Godambe's information for Fisher's (Pauli, Racugno and Ventura 2011): of two points δ apart, one of
-// them the best, L = ½Hδ² and v = Jδ², so that ½ (H²/J) δ² = 2 L²/v.
+// Godambe's information for Fisher's (Pauli, Racugno and Ventura 2011): of two points δ apart, one
+// of them the best, L = ½Hδ² and v = Jδ², so that ½ (H²/J) δ² = 2 L²/v.
 #pragma once
 
 #include <cstddef>

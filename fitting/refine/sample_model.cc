@@ -204,26 +204,26 @@ SampleModel::Sampling SampleModel::SamplingOf(std::vector<size_t> texels,
   return sampling;
 }
 
-void SampleModel::Fit(std::span<const int> views, int rounds, bool update_residuals,
-                      Sampling* sampling) {
-  const size_t count = sampling->texels.size();
-  for (int round = 0; round < rounds; ++round) {
-    const SampleRequest request{views, !update_residuals && round > 0,
-                                update_residuals ? 0 : std::sqrt(residuals_.variance()),
-                                update_residuals && finds_views_};
-    ForEachSampleBlock(count, sampling->threads, [&](size_t first, size_t block, int worker) {
-      std::vector<SampleTask> tasks;
-      for (size_t k = first; k < first + block; ++k) {
-        const size_t texel = sampling->texels[k];
-        tasks.push_back({texel, PriorOf(texel), sampling->solved[k].values});
-      }
-      sampling->solver->solve(tasks, request, worker,
-                              std::span(sampling->solved).subspan(first, block));
-    });
+void SampleModel::Solve(const SampleRequest& request, Sampling* sampling) const {
+  ForEachSampleBlock(sampling->texels.size(), sampling->threads,
+                     [&](size_t first, size_t block, int worker) {
+                       std::vector<SampleTask> tasks;
+                       for (size_t k = first; k < first + block; ++k) {
+                         const size_t texel = sampling->texels[k];
+                         tasks.push_back({texel, PriorOf(texel), sampling->solved[k].values});
+                       }
+                       sampling->solver->solve(tasks, request, worker,
+                                               std::span(sampling->solved).subspan(first, block));
+                     });
+}
+
+void SampleModel::Fit(Sampling* sampling) {
+  for (int round = 0; round < options_.estimation_rounds; ++round) {
+    Solve({.views = all_views_, .of_views = finds_views_}, sampling);
     UpdateSubstances(*sampling);
-    if (update_residuals && finds_views_) UpdateDeviations(*sampling);
-    if (update_residuals && learns_normals_) UpdateNormalSpreads(*sampling);
-    if (update_residuals) UpdateResiduals(*sampling);
+    if (finds_views_) UpdateDeviations(*sampling);
+    if (learns_normals_) UpdateNormalSpreads(*sampling);
+    UpdateResiduals(*sampling);
   }
 }
 
@@ -395,7 +395,7 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
 void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   Sampling sampling = Sample(kSampled, solver, threads);
   learns_normals_ = has_sample_priors_;
-  Fit(all_views_, options_.estimation_rounds, true, &sampling);
+  Fit(&sampling);
   learns_normals_ = false;
   if (all_views_.size() < kLeastValidatedViews) return;
   HoldViews(kExpectedDiffuseSpread, sampling);
@@ -406,10 +406,10 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
     // its departures are alike in neighbouring texels, and views would be moved to make them even.
     const double chosen = std::exchange(means_.diffuse_spread, kUnknownSpread);
     finds_views_ = true;
-    Fit(all_views_, options_.estimation_rounds, true, &sampling);
+    Fit(&sampling);
     HoldViews(chosen, sampling);
   }
-  Fit(all_views_, options_.estimation_rounds, true, &sampling);
+  Fit(&sampling);
 }
 
 void SampleModel::HoldViews(double diffuse_spread, const Sampling& sampling) {

@@ -44,6 +44,7 @@ struct SampleRequest {
   std::span<const int> views;  // those to take
   bool near_minimum = false;   // `from` is next to one: no other starts
   double explained_sigma = 0;  // other starts where residuals are larger
+  bool values_alone = false;   // nothing else of SampledTexel is wanted
   bool of_views = false;       // SampledTexel::of_views are wanted
 };
 
@@ -102,10 +103,10 @@ class SampleModel {
   using HalfVectorCell = std::pair<int, int>;
   HalfVectorCell CellOf(size_t texel, size_t view) const;
   void TellHalfVectorsApart(Sampling* sampling) const;
-  // Rounds of solving the sampled texels by `views` and updating the substances. In the folds of
-  // cross-validation no more than that (`update_residuals` false), and from the second round on
-  // without other starts; else the residuals' variance and what else is being learned too.
-  void Fit(std::span<const int> views, int rounds, bool update_residuals, Sampling* sampling);
+  void Solve(const SampleRequest& request, Sampling* sampling) const;
+  // Rounds of solving the sampled texels by all views and of updating what is being learned:
+  // substances and the residuals' variance, and scatter of normals and views' deviations.
+  void Fit(Sampling* sampling);
   void UpdateSubstances(const Sampling& sampling);
   void UpdateResiduals(const Sampling& sampling);
   void UpdateNormalSpreads(const Sampling& sampling);

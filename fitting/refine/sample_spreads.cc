@@ -14,7 +14,7 @@
 namespace glint {
 namespace {
 
-constexpr int kMostFolds = 7, kFoldRounds = 2;
+constexpr int kMostFolds = 7;
 constexpr size_t kCross = 5;  // a texel and its neighbours
 
 // By which what neighbours differ by is tried.
@@ -34,7 +34,12 @@ void SampleModel::ForEachFold(const Sampling& sampling, const Visit& visit) cons
     for (size_t k = 0; k < part.texels.size(); ++k) {
       part.solved[k].values = PriorOf(part.texels[k]).mean();
     }
-    model.Fit(fitted, kFoldRounds, false, &part);
+    const double explained = std::sqrt(residuals_.variance());
+    model.Solve({.views = fitted, .explained_sigma = explained}, &part);
+    model.UpdateSubstances(part);
+    model.Solve(
+        {.views = fitted, .near_minimum = true, .explained_sigma = explained, .values_alone = true},
+        &part);
     visit(model, part, fitted, held_out);
   }
 }

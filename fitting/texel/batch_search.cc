@@ -371,14 +371,17 @@ void BatchSearch::TryRoughnesses(LaneBits lanes, const std::array<TexelValues, k
 // its substance do.
 void BatchSearch::TryPriorMeans() {
   Candidates means;
-  for (size_t i = 0; i < means.size(); ++i) {
-    means[i].values = second_.found[i].solution.values;
-    const TexelPrior& prior = second_.tasks[i].prior;
+  LaneBits others = 0;
+  ForEachLane(second_.taken, [&](int lane) {
+    const size_t i = static_cast<size_t>(lane);
+    const Task& task = second_.tasks[i];
+    TexelValues& mean = means[i].values = task.start;
     for (int p = 0; p < kTexelParameters; ++p) {
-      if (prior.weight(p) > 0) means[i].values[p] = prior.mean()[p];
+      if (task.prior.weight(p) > 0) mean[p] = task.prior.mean()[p];
     }
-  }
-  TrySolve(second_.taken, means);
+    if (mean != task.start) others |= 1u << lane;
+  });
+  TrySolve(others, means);
 }
 
 void BatchSearch::TryOtherStarts() {
