@@ -328,7 +328,8 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "maximum number of Levenberg-Marquardt steps per solve");
   set->AddRange("starts", &refine->starts, 1, 8,
                 "solver runs per texel: one from the initial maps, the others from other initial "
-                "roughness values; with two or more also from other initial normals");
+                "roughness values; with two or more also from what all texels share and from "
+                "other initial normals");
   set->AddRange("neighbour-passes", &refine->neighbour_passes, 0, 16,
                 "how many times a texel tries its neighbours' solutions");
   set->AddRange("substances", &refine->substances, 1, kMostSubstances,

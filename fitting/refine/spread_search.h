@@ -31,14 +31,14 @@ struct TriedSpreads {
 
 // Coordinate descent on the negative log posterior, from factors of 1: roughness and specular
 // albedo together, normals, specular albedo alone, diffuse albedo, the initialisation; then again
-// until nothing is better. Returns the best, and along the axes through it all that is not
+// until nothing is better. Returns the best first, then along the axes through it all that is not
 // improbable; the way to it, which rounding decides, is not told. The initialisation is expected to
 // err by as much as is said, within a factor of two.
 std::vector<TriedSpreads> SearchSpreads(
     const std::function<HeldOutErrors(const SpreadPowers& powers)>& predict);
 
 // Of each kind the mean along the axis through the best, by how probable each factor is: what
-// predicts nearly as well as the best is nearly as probable.
+// predicts nearly as well as the best is nearly as probable. `tried`: of SearchSpreads().
 SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried);
 
 // The factor at its mean precision; `errors[i]` were found with factors[i].

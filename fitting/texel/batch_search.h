@@ -49,10 +49,11 @@ class BatchSearch {
  public:
   // What is tried for each texel.
   enum class From {
-    kStart,        // the start; where that leaves it unexplained up to `starts − 1` other
-                   // roughnesses, each with albedos fitted to it, and the normal that mirrors the
-                   // light into the view in which it is brightest. Never costlier than the start,
-                   // drawn off its bounds.
+    kStart,        // the start; where that leaves it unexplained the prior's mean, up to
+                   // `starts − 1` other roughnesses, each with albedos fitted to it, and as many
+                   // with the normal that mirrors the light into the view in which the texel is
+                   // brightest and with the one whose diffuse shading the views show. Never
+                   // costlier than the start, drawn off its bounds.
     kNearMinimum,  // the start, which is next to a minimum
     kNeighbours,   // likewise; where that leaves it unexplained, the neighbour's normal and
                    // roughness, or roughness alone, that promises least
