@@ -247,7 +247,7 @@ TEST_F(Trials, InvalidationMatrix) {
         const auto& [stage, toml] = options[static_cast<size_t>(i)];
         Reset();
         if (stage == "fit") EditToml("iterations = 12", "iterations = 13");
-        if (stage == "refine") EditToml("iterations = 30", "iterations = 31");
+        if (stage == "refine") EditToml("iterations = 8", "iterations = 9");
         if (stage == "export") EditToml("[export]\n", "[export]\nbits = \"16\"\n");
         WriteAll(capture() / "capture.toml", ReadAll(capture() / "capture.toml") + toml);
         const Outcome outcome = RunCapture({"--json"});
