@@ -25,8 +25,9 @@ constexpr double kWorthwhile = 0.98;
 // Gain of a step against one residual's noise: narrow valleys (diffuse light against a rough lobe)
 // are walked in short steps.
 constexpr double kWorthStep = 0.005;
-constexpr double kExplained = 1.5;    // squared residuals against noise alone
-constexpr double kLeastRcond = 1e-6;  // of lights that tell a normal
+constexpr double kExplained = 1.5;  // squared residuals against noise alone
+// Lights that tell a normal: the square of the angle between them, a milliradian.
+constexpr double kLeastRcond = 1e-6;
 
 // Dampings of the first step. Full Gauss–Newton steps from a rough start throw texels into corners
 // that hold them (no specular at all; the smoothest lobe): with a damping of 1e-4 a third of texels
@@ -43,14 +44,16 @@ void ForEachLane(LaneBits lanes, const Visit& visit) {
   }
 }
 
+double ObservedAt(const BatchObservations& observations, int lane, int view, int plane) {
+  return observations.rows()[view * BatchObservations::kPlanes + plane][lane];
+}
+
 // Turns the normal so that it mirrors the light into the camera of the view in which the texel is
 // brightest for the light it receives. A normal far from the true one has no slope toward it where
 // the lobe is narrow: the highlight is either missed or explained by diffuse light.
 bool TurnToBrightest(const BatchObservations& observations, int lane, TexelValues* values) {
   using Obs = BatchObservations;
-  const auto at = [&](int view, int plane) {
-    return static_cast<double>(observations.rows()[view * Obs::kPlanes + plane][lane]);
-  };
+  const auto at = [&](int view, int plane) { return ObservedAt(observations, lane, view, plane); };
   int brightest = -1;
   double most = 0;
   for (int v = 0; v < observations.views(); ++v) {
@@ -84,9 +87,7 @@ bool TurnToBrightest(const BatchObservations& observations, int lane, TexelValue
 // and stays there.
 bool TurnToShading(const BatchObservations& observations, int lane, TexelValues* values) {
   using Obs = BatchObservations;
-  const auto at = [&](int view, int plane) {
-    return static_cast<double>(observations.rows()[view * Obs::kPlanes + plane][lane]);
-  };
+  const auto at = [&](int view, int plane) { return ObservedAt(observations, lane, view, plane); };
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d seen = Eigen::Vector3d::Zero();
   for (int v = 0; v < observations.views(); ++v) {
