@@ -43,7 +43,8 @@ Tensor DecodeTexelsTorch(const Tensor& encoded) {
   TORCH_CHECK(encoded.dim() == 4 && encoded.size(1) == kEncodedChannels &&
                   encoded.scalar_type() == torch::kFloat32,
               "encoded: [B, 9, H, W] of float32 is expected");
-  return DecodeFunction::apply(encoded);
+  return encoded.device().is_cpu() ? DecodeFunction::apply(encoded)
+                                   : DecodeTexelsReference(encoded);
 }
 
 Tensor DecodeTexelsReference(const Tensor& encoded) {

@@ -70,8 +70,20 @@ Tensor DownConvolve(const Tensor& x, const Tensor& weight, const Tensor& bias,
   return at::conv2d(x, AsType(weight, compute), bias.to(compute), 2, 1);
 }
 
+Tensor InterleavedByTorch(const Tensor& wide) {
+  const int64_t n = wide.size(0), c = wide.size(1) / 4, h = wide.size(2), w = wide.size(3);
+  return wide.contiguous()
+      .view({n, 2, 2, c, h, w})
+      .permute({0, 3, 4, 1, 5, 2})
+      .reshape({n, c, 2 * h, 2 * w})
+      .slice(2, 1, 2 * h - 1)
+      .slice(3, 1, 2 * w - 1)
+      .contiguous(torch::MemoryFormat::ChannelsLast);
+}
+
 Tensor UpConvolve(const Tensor& x, const Tensor& weight, const Tensor& bias, torch::Dtype compute) {
-  return Interleave::apply(at::conv2d(x, AsType(weight, compute), bias.to(compute), 1, 1));
+  const Tensor wide = at::conv2d(x, AsType(weight, compute), bias.to(compute), 1, 1);
+  return wide.device().is_cpu() ? Interleave::apply(wide) : InterleavedByTorch(wide);
 }
 
 // A 3×3 kernel [out, in, 3, 3] after nearest upsampling, as the 2×2 kernels of the four phases.
@@ -93,6 +105,8 @@ Tensor PhaseKernels(const Tensor& kernel) {
   return torch::cat(phases, 0);
 }
 
-torch::Dtype FastComputeType() { return NativeBfloat16() ? torch::kBFloat16 : torch::kFloat32; }
+torch::Dtype FastComputeType(torch::Device device) {
+  return !device.is_cpu() || NativeBfloat16() ? torch::kBFloat16 : torch::kFloat32;
+}
 
 }  // namespace glint

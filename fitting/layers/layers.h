@@ -24,10 +24,15 @@ torch::Tensor DownConvolve(const torch::Tensor& x, const torch::Tensor& weight,
 torch::Tensor UpConvolve(const torch::Tensor& x, const torch::Tensor& weight,
                          const torch::Tensor& bias, torch::Dtype compute);
 
+// UpConvolve's interleaving of `wide` [B, 4·out, h+1, w+1] by torch's own operations, as it is done
+// on GPUs: [B, out, 2h, 2w].
+torch::Tensor InterleavedByTorch(const torch::Tensor& wide);
+
 // The up-convolution's weight that equals nearest upsampling followed by `kernel` [out, in, 3, 3].
 torch::Tensor PhaseKernels(const torch::Tensor& kernel);
 
-// bfloat16 where the CPU multiplies it natively (AVX512_BF16 or AMX), float32 elsewhere.
-torch::Dtype FastComputeType();
+// bfloat16 on GPUs and where the CPU multiplies it natively (AVX512_BF16 or AMX), float32
+// elsewhere.
+torch::Dtype FastComputeType(torch::Device device = torch::kCPU);
 
 }  // namespace glint

@@ -7,6 +7,7 @@
 
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/render/batch.h"
+#include "fitting/render/render_reference.h"
 
 namespace glint {
 namespace {
@@ -220,6 +221,7 @@ void CheckOptions(const TensorLossOptions& options) {
 }  // namespace
 
 Tensor RenderBatch(const Tensor& maps, const ViewBatch& batch) {
+  if (!maps.device().is_cpu()) return RenderReference(maps, Tensor(), batch);
   CheckBatch(maps, batch);
   return RenderFunction::apply(maps.contiguous(), c10::make_intrusive<BatchHolder>(batch));
 }
@@ -242,8 +244,13 @@ Tensor LogLossBatch(const Tensor& maps, const Tensor& images, const Tensor& mask
 
 Tensor LogLossBetweenMaps(const Tensor& maps, const Tensor& target_maps, const ViewBatch& batch,
                           const TensorLossOptions& options) {
-  CheckBatch(maps, batch);
   CheckOptions(options);
+  if (!maps.device().is_cpu()) {
+    return LogLossReference(RenderReference(maps, Tensor(), batch),
+                            RenderReference(target_maps.detach(), Tensor(), batch), Tensor(),
+                            options);
+  }
+  CheckBatch(maps, batch);
   CheckTensor("target_maps", target_maps, maps.sizes());
   return LogLossFunction::apply(maps.contiguous(), torch::empty({0}), torch::empty({0}),
                                 torch::empty({0}), target_maps.detach().contiguous(), batch,

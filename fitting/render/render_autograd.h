@@ -1,9 +1,10 @@
 // The fused CPU renderer as functions of torch's autograd.
 //
 // maps is [B, 10, H, W], contiguous float32 on the CPU, planes as in SvbrdfPlane (linear; unit
-// normals). Each batch element has its own V views: ViewBatch::views is [B][V], row-major.
-// Gradients with respect to the normal take its components as free variables: normalise before.
-// Work is shared among torch's intra-op threads; results do not depend on their number.
+// normals). RenderBatch and LogLossBetweenMaps take maps on a GPU too and render them by
+// render_reference.h there. Each batch element has its own V views: ViewBatch::views is [B][V],
+// row-major. Gradients with respect to the normal take its components as free variables: normalise
+// before. Work is shared among torch's intra-op threads; results do not depend on their number.
 // Wrong shapes, types or devices throw c10::Error (TORCH_CHECK) that names the argument.
 #pragma once
 

@@ -2,48 +2,14 @@
 
 #include <torch/torch.h>
 
-#include <vector>
-
 #include "fitting/reflectance/brdf_constants.h"
 #include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/render/view_tensors.h"
 
 namespace glint {
 namespace {
 
 using torch::Tensor;
-using torch::indexing::None;
-using torch::indexing::Slice;
-
-// A value of every view as [B, V, 3, 1, 1], like `maps` in type and device.
-Tensor PerView(const ViewBatch& batch, const Tensor& maps, Vec3d View::*member) {
-  std::vector<double> values;
-  for (const View& view : batch.views) {
-    values.insert(values.end(), (view.*member).begin(), (view.*member).end());
-  }
-  return torch::tensor(values, torch::kFloat64)
-      .view({maps.size(0), batch.views_per_element, 3, 1, 1})
-      .to(maps.options());
-}
-
-Tensor Exposures(const ViewBatch& batch, const Tensor& maps) {
-  std::vector<double> values;
-  for (const View& view : batch.views) values.push_back(view.exposure);
-  return torch::tensor(values, torch::kFloat64)
-      .view({maps.size(0), batch.views_per_element, 1, 1, 1})
-      .to(maps.options());
-}
-
-// Texel positions [3, H, W].
-Tensor Positions(const SamplePlane& plane, const Tensor& maps) {
-  Tensor x = torch::empty({plane.width}, torch::kFloat64);
-  Tensor y = torch::empty({plane.height}, torch::kFloat64);
-  for (int i = 0; i < plane.width; ++i) x.data_ptr<double>()[i] = plane.x_mm(i);
-  for (int i = 0; i < plane.height; ++i) y.data_ptr<double>()[i] = plane.y_mm(i);
-  const auto size = {static_cast<int64_t>(plane.height), static_cast<int64_t>(plane.width)};
-  return torch::stack({x.index({None, Slice()}).expand(size), y.index({Slice(), None}).expand(size),
-                       torch::zeros(size, torch::kFloat64)})
-      .to(maps.options());
-}
 
 Tensor Dot(const Tensor& a, const Tensor& b) { return (a * b).sum(2, /*keepdim=*/true); }
 
@@ -67,14 +33,7 @@ Tensor SpecularFactor(const Tensor& normal, const Tensor& half, const Tensor& n_
 
 Tensor RenderReference(const Tensor& maps, const Tensor& light_rgb, const ViewBatch& batch) {
   TORCH_CHECK(maps.dim() == 4 && maps.size(1) == kSvbrdfPlanes, "maps: expected [B, 10, H, W]");
-  const Tensor position = Positions(batch.plane, maps);
-  const Tensor to_light = PerView(batch, maps, &View::light_in_sample_mm) - position;
-  const Tensor to_camera = PerView(batch, maps, &View::camera_in_sample_mm) - position;
-  const Tensor light_distance_squared = Dot(to_light, to_light);
-  const Tensor light = to_light / light_distance_squared.sqrt();
-  const Tensor camera = to_camera / Dot(to_camera, to_camera).sqrt();
-  const Tensor sum = light + camera;
-  const Tensor half = sum / Dot(sum, sum).sqrt().clamp_min(1e-10);
+  const auto [light, camera, half, light_distance_squared] = DirectionsOf(batch, maps.options());
 
   const Tensor texels = maps.unsqueeze(1);  // [B, 1, 10, H, W]
   const Tensor normal = texels.slice(2, kNormalX, kDiffuseR);
@@ -93,12 +52,13 @@ Tensor RenderReference(const Tensor& maps, const Tensor& light_rgb, const ViewBa
   }
   const Tensor brdf = lobe + SpecularFactor(normal, half, n_dot_l, n_dot_v, roughness) * fresnel;
   Tensor irradiance = light_rgb.defined() ? light_rgb.unsqueeze(-1).unsqueeze(-1)
-                                          : PerView(batch, maps, &View::light_rgb);
+                                          : PerView(batch, &View::light_rgb, maps.options());
   if (batch.convention.falloff == LightFalloff::kInverseSquare) {
     irradiance = irradiance / light_distance_squared;
   }
-  const Tensor ambient = PerView(batch, maps, &View::ambient_rgb) * (lobe + specular * kInversePi);
-  return Exposures(batch, maps) * (irradiance * brdf * n_dot_l + ambient);
+  const Tensor ambient =
+      PerView(batch, &View::ambient_rgb, maps.options()) * (lobe + specular * kInversePi);
+  return ExposuresOf(batch, maps.options()) * (irradiance * brdf * n_dot_l + ambient);
 }
 
 Tensor LogLossReference(const Tensor& rendered, const Tensor& images, const Tensor& masks,

@@ -18,7 +18,7 @@ void CopyTensors(const NamedTensors& from, const NamedTensors& to) {
 }
 
 TensorRecord ToRecord(const std::string& name, const Tensor& tensor, bool bf16) {
-  const Tensor t = tensor.detach().to(torch::kFloat32).contiguous();
+  const Tensor t = tensor.detach().to(torch::kCPU, torch::kFloat32).contiguous();
   return MakeRecord(name, t.sizes().vec(), {t.data_ptr<float>(), static_cast<size_t>(t.numel())},
                     bf16);
 }

@@ -89,6 +89,15 @@ TEST(Network, UpConvolutionIsTheTransposedConvolution) {
             1e-12);
 }
 
+TEST(Network, UpConvolutionOnGpusIsTheSame) {
+  const Tensor x = torch::randn({2, 6, 3, 5}), weight = torch::randn({4 * 3, 6, 2, 2});
+  const Tensor bias = torch::randn({4 * 3});
+  const Tensor ours = UpConvolve(AsType(x, torch::kFloat32), weight, bias, torch::kFloat32);
+  const Tensor theirs = InterleavedByTorch(at::conv2d(x, weight, bias, 1, 1));
+  ASSERT_EQ(ours.sizes(), theirs.sizes());
+  EXPECT_LT((ours - theirs).abs().max().item<float>(), 1e-5f);
+}
+
 TEST(Network, FusedDecodingOfTexelsAgreesWithTorchOperations) {
   const Tensor encoded = torch::rand({2, 9, 5, 7}) * 1.9 - 0.95;
   const Tensor weights = torch::randn({2, 10, 5, 7});
