@@ -76,7 +76,7 @@ Scene MakeScene(int size, int photographs, int threads) {
   }
   const Estimator estimator = Estimator::Load(FindModel("estimator.safetensors"));
   const auto given = std::span(scene.set.photographs).first(1);
-  scene.start = estimator.Estimate(given, scene.set.plane, scene.set.convention, threads).maps;
+  scene.start = estimator.Estimate(given, scene.set.plane, scene.set.convention, {}, threads).maps;
   return scene;
 }
 

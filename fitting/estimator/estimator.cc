@@ -48,7 +48,8 @@ bool Estimator::single_photograph() const { return impl_->loaded.single_photogra
 
 SvbrdfEstimate Estimator::Estimate(std::span<const Photograph> photographs,
                                    const SamplePlane& plane,
-                                   const ReflectanceConvention& convention, int threads) const {
+                                   const ReflectanceConvention& convention,
+                                   const EstimatorConditions& conditions, int threads) const {
   torch::NoGradGuard no_gradient;
   if (threads > 0) torch::set_num_threads(threads);
   const auto count = static_cast<int64_t>(photographs.size());
@@ -61,7 +62,10 @@ SvbrdfEstimate Estimator::Estimate(std::span<const Photograph> photographs,
     CopyPadded(one, height, width, features[0][i].data_ptr<float>());
     std::copy(one.profile.begin(), one.profile.end(), profiles[0][i].data_ptr<float>());
   }
-  const EstimatorOutput out = impl_->loaded.network.Forward(features, profiles, torch::kFloat32);
+  const Tensor known = torch::tensor(
+      {{conditions.metals_rare ? 1.0f : 0.0f, conditions.light_calibrated ? 1.0f : 0.0f}});
+  const EstimatorOutput out =
+      impl_->loaded.network.Forward(features, profiles, known, torch::kFloat32);
   return {DecodeMaps(CroppedMaps(out.maps.contiguous(), plane.width, plane.height)),
           CroppedMaps(out.log_scale.exp().contiguous(), plane.width, plane.height)};
 }

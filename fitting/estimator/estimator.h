@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fitting/encoding/encoding.h"
+#include "fitting/estimator/estimator_conditions.h"
 #include "fitting/photographs/photographs.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
@@ -35,7 +36,8 @@ class Estimator {
   // their last texel. Maps for diffuse weight 1. float32; the same bits for any `threads`, and for
   // any order of the photographs up to the rounding of their mean.
   SvbrdfEstimate Estimate(std::span<const Photograph> photographs, const SamplePlane& plane,
-                          const ReflectanceConvention& convention, int threads) const;
+                          const ReflectanceConvention& convention,
+                          const EstimatorConditions& conditions, int threads) const;
 
   // Whether the weights were trained on one photograph per sample; give it one.
   bool single_photograph() const;

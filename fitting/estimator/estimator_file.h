@@ -9,7 +9,7 @@
 
 namespace glint {
 
-inline constexpr char kEstimatorArchitecture[] = "glint-estimator v2";
+inline constexpr char kEstimatorArchitecture[] = "glint-estimator v3";
 // One photograph's estimator; its files are still read.
 inline constexpr char kSinglePhotographArchitecture[] = "glint-estimator v1";
 

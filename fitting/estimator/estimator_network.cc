@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "fitting/encoding/encoding.h"
+#include "fitting/estimator/estimator_conditions.h"
 #include "fitting/estimator/photograph_features.h"
 #include "fitting/layers/layers.h"
 
@@ -26,8 +27,10 @@ constexpr int kOutputs = 2 * kEncodedChannels;
 constexpr int kPooledInputs = 3 * kFeaturePlanes;  // mean, maximum, minimum over photographs
 
 Tensor Normalised(const Tensor& features) {
-  const auto row = [](const float* values) {
-    return torch::from_blob(const_cast<float*>(values), {1, kFeaturePlanes, 1, 1}).clone();
+  const auto row = [&](const float* values) {
+    return torch::from_blob(const_cast<float*>(values), {1, kFeaturePlanes, 1, 1})
+        .clone()
+        .to(features.device());
   };
   return (features - row(kFeatureMean)) * row(kFeatureScale);
 }
@@ -48,6 +51,11 @@ int FullInput(const EstimatorChannels& c, int k) {
 
 Tensor Spread(const Tensor& global, const Tensor& weight) {
   return torch::matmul(global, weight.t()).unsqueeze(2).unsqueeze(3);
+}
+
+// `x` and, added to it, a 3×3 convolution of it.
+Tensor Mixed(const Tensor& x, const Tensor& weight, const Tensor& bias, torch::Dtype compute) {
+  return x + at::leaky_relu(at::conv2d(x, AsType(weight, compute), bias.to(compute), 1, 1), kLeak);
 }
 
 // [B·N, …] → mean and maximum over N, side by side: [B, 2·…].
@@ -92,13 +100,19 @@ EstimatorNetwork EstimatorNetwork::Random(const EstimatorChannels& channels, std
     const int in = i == 0 ? kFeaturePlanes : channels.levels[i - 1], out = channels.levels[i];
     net.down_weights.push_back(draw({out, in, 4, 4}, in * 16.0, 1));
     net.down_biases.push_back(torch::zeros({out}));
-    const int seen = out + (i == 0 ? kProfileValues : channels.global);
+    const int seen = out + (i == 0 ? kProfileValues + kEstimatorConditions : channels.global);
     net.global_weights.push_back(draw({channels.global, seen}, seen, 1));
     net.global_biases.push_back(torch::zeros({channels.global}));
     net.feed_weights.push_back(draw({out, channels.global}, channels.global, 0.3));
     const int up_in = UpInput(channels, i), up_out = UpOutput(channels, i);
     net.up_weights.push_back(PhaseKernels(draw({up_out, up_in, 3, 3}, up_in * 9.0, 0.75)));
     net.up_biases.push_back(torch::zeros({4 * up_out}));
+    constexpr double kMixGain = 0.3;
+    net.down_mix_weights.push_back(draw({out, out, 3, 3}, out * 9.0, kMixGain));
+    net.down_mix_biases.push_back(torch::zeros({out}));
+    if (i >= kMixedUpLevels) continue;
+    net.up_mix_weights.push_back(draw({out, out, 3, 3}, out * 9.0, kMixGain));
+    net.up_mix_biases.push_back(torch::zeros({out}));
   }
   net.photograph_weight = draw({channels.full, kFeaturePlanes, 3, 3}, kFeaturePlanes * 9.0, 1);
   net.photograph_bias = torch::zeros({channels.full});
@@ -123,7 +137,11 @@ void EstimatorNetwork::AdoptSinglePhotograph(const std::map<std::string, Tensor>
   // first outputs (the maps). The weights of new inputs begin at 0.
   for (auto& [name, to] : State()) {
     const auto from = v1.find(name);
-    if (from == v1.end()) continue;  // per photograph at full resolution: new
+    if (from == v1.end()) {
+      // Per photograph at full resolution: as drawn. What mixes a level's features: nothing yet.
+      if (name.find("mix") != std::string::npos) to->zero_();
+      continue;
+    }
     Tensor outputs = to->slice(0, 0, from->second.size(0));
     if (to->dim() == 1) {
       outputs.copy_(from->second);
@@ -146,6 +164,10 @@ NamedTensors EstimatorNetwork::State() {
   add("down.bias", &down_biases, kEstimatorLevels);
   add("up.weight", &up_weights, kEstimatorLevels);
   add("up.bias", &up_biases, kEstimatorLevels);
+  add("down_mix.weight", &down_mix_weights, kEstimatorLevels);
+  add("down_mix.bias", &down_mix_biases, kEstimatorLevels);
+  add("up_mix.weight", &up_mix_weights, kMixedUpLevels);
+  add("up_mix.bias", &up_mix_biases, kMixedUpLevels);
   add("global.weight", &global_weights, kEstimatorLevels);
   add("global.bias", &global_biases, kEstimatorLevels);
   add("feed.weight", &feed_weights, kEstimatorLevels);
@@ -158,16 +180,18 @@ NamedTensors EstimatorNetwork::State() {
 }
 
 EstimatorOutput EstimatorNetwork::Forward(const Tensor& features, const Tensor& profiles,
-                                          torch::Dtype compute) const {
+                                          const Tensor& conditions, torch::Dtype compute) const {
   const int64_t photographs = features.size(1);
   const Tensor input = AsType(Normalised(features.flatten(0, 1)), compute);
-  Tensor global = profiles.flatten(0, 1) * kProfileScale, x = input;
+  const Tensor known = conditions.unsqueeze(1).expand({-1, photographs, -1}).flatten(0, 1);
+  Tensor global = torch::cat({profiles.flatten(0, 1) * kProfileScale, known}, 1), x = input;
   std::vector<Tensor> skips;
   for (int i = 0; i < kEstimatorLevels; ++i) {
     x = DownConvolve(x, down_weights[i], down_biases[i], compute);
     const Tensor seen = torch::cat({x.to(torch::kFloat32).mean({2, 3}), global}, 1);
     global = at::leaky_relu(torch::addmm(global_biases[i], seen, global_weights[i].t()), kLeak);
     x = at::leaky_relu(x + Spread(global, feed_weights[i]).to(compute), kLeak);
+    x = Mixed(x, down_mix_weights[i], down_mix_biases[i], compute);
     skips.push_back(Pooled(x, photographs));
   }
   const auto channels_last = [](const Tensor& t) {
@@ -177,6 +201,7 @@ EstimatorOutput EstimatorNetwork::Forward(const Tensor& features, const Tensor& 
   for (int i = kEstimatorLevels - 1; i >= 0; --i) {
     if (i < kEstimatorLevels - 1) x = torch::cat({x, skips[i]}, 1);
     x = at::leaky_relu(UpConvolve(channels_last(x), up_weights[i], up_biases[i], compute), kLeak);
+    if (i > 0) x = Mixed(x, up_mix_weights[i - 1], up_mix_biases[i - 1], compute);
   }
   const auto convolve = [&](const Tensor& y, const Tensor& weight, const Tensor& bias) {
     return at::conv2d(channels_last(y), AsType(weight, compute), bias.to(compute), 1, 1);

@@ -5,8 +5,9 @@
 // 2018), whose encoder runs once per photograph. What the decoder reads are mean and maximum over
 // the photographs of each level's features (Deschaintre et al. 2019, "Flexible SVBRDF capture with
 // a multi-image deep network"), so neither order nor number of photographs matters. The global
-// track starts from each photograph's highlight profile (photograph_features.h). Fully
-// convolutional: any size, multiples of 32 inside.
+// track starts from each photograph's highlight profile (photograph_features.h) and from what is
+// known of the capture beforehand. Each level mixes its features by one more convolution, added to
+// what it reads (He et al. 2016). Fully convolutional: any size, multiples of 32 inside.
 #pragma once
 
 #include <torch/torch.h>
@@ -21,12 +22,13 @@
 namespace glint {
 
 inline constexpr int kEstimatorLevels = 5;
+inline constexpr int kMixedUpLevels = kEstimatorLevels - 1;  // all but the finest
 inline constexpr int kEstimatorDownsampling = 32;
 
 struct EstimatorChannels {
-  std::array<int, kEstimatorLevels> levels{24, 48, 96, 160, 256};
-  int full = 16;     // at the photographs' own resolution
-  int global = 128;  // of the global track
+  std::array<int, kEstimatorLevels> levels{32, 64, 128, 224, 320};
+  int full = 24;     // at the photographs' own resolution
+  int global = 192;  // of the global track
 };
 
 struct EstimatorOutput {
@@ -36,8 +38,11 @@ struct EstimatorOutput {
 
 struct EstimatorNetwork {
   EstimatorChannels channels;
-  std::vector<torch::Tensor> down_weights, down_biases;      // [out, in, 4, 4]
-  std::vector<torch::Tensor> up_weights, up_biases;          // [4·out, in, 2, 2]
+  std::vector<torch::Tensor> down_weights, down_biases;  // [out, in, 4, 4]
+  std::vector<torch::Tensor> up_weights, up_biases;      // [4·out, in, 2, 2]
+  // 3×3 convolutions whose results are added to a level's features: [c, c, 3, 3].
+  std::vector<torch::Tensor> down_mix_weights, down_mix_biases;
+  std::vector<torch::Tensor> up_mix_weights, up_mix_biases;  // what level i + 1 gives to level i
   std::vector<torch::Tensor> global_weights, global_biases;  // [global, in]
   std::vector<torch::Tensor> feed_weights;                   // [level's channels, global]
   // 3×3 convolutions at full resolution: per photograph, and the decoder's last two.
@@ -55,9 +60,10 @@ struct EstimatorNetwork {
 
   NamedTensors State();  // all learned
 
-  // features [B, N, 11, H, W] and profiles [B, N, 72] of the N photographs of B samples.
+  // features [B, N, 11, H, W] and profiles [B, N, 72] of the N photographs of B samples, and what
+  // is known of each capture, [B, 2] (estimator_conditions.h).
   EstimatorOutput Forward(const torch::Tensor& features, const torch::Tensor& profiles,
-                          torch::Dtype compute) const;
+                          const torch::Tensor& conditions, torch::Dtype compute) const;
 };
 
 EstimatorNetwork Clone(EstimatorNetwork* network);

@@ -10,14 +10,9 @@
 namespace glint {
 namespace {
 
-constexpr std::array<double, kProfileBins> kBinEndDegrees{1.5, 3,  5,  7.5, 10.5, 14,
-                                                          18,  23, 29, 36,  45,   90};
-constexpr double kBrightest = 4.0;  // of π·I/(E·NoL)
-constexpr double kClipped = 0.99;
+using namespace features;
+
 constexpr float kMaskedBright = 0.25f;  // radiance of a texel of which any pixel may have clipped
-constexpr double kFeatureOffset = 0.003;
-constexpr double kLeastCosine = 0.02;
-constexpr double kLogIrradianceRange = 3.0;
 
 struct Ring {
   double sum[3] = {0, 0, 0}, square = 0, clipped = 0, count = 0;
@@ -77,7 +72,7 @@ PhotographFeatures FeaturesOf(const Photograph& photograph, const SamplePlane& p
     put(8, i, g.camera[1]);
     put(9, i, angle);
     put(10, i,
-        std::clamp(std::log(std::max(1e-9, mean_e * cosine / std::numbers::pi)),
+        std::clamp(std::log(std::max(kLeastIrradiance, mean_e * cosine / std::numbers::pi)),
                    -kLogIrradianceRange, kLogIrradianceRange));
     bool clipped = MaskedByClipping(photograph, i);
     if (photograph.mask[i] < 0.5f && !clipped) continue;
@@ -85,10 +80,11 @@ PhotographFeatures FeaturesOf(const Photograph& photograph, const SamplePlane& p
     for (int c = 0; c < 3; ++c) {
       const double radiance = std::max(0.0f, photograph.rgb[c * texels + i]);
       clipped |= photograph.ldr && radiance >= kClipped;
-      const double albedo = std::min(
-          kBrightest, std::numbers::pi * radiance / std::max(1e-9, g.irradiance[c] * cosine));
+      const double albedo =
+          std::min(kBrightest, std::numbers::pi * radiance /
+                                   std::max(kLeastIrradiance, g.irradiance[c] * cosine));
       put(c, i, std::sqrt(albedo));
-      const double log_albedo = std::log(albedo + kFeatureOffset);
+      const double log_albedo = std::log(albedo + kOffset);
       ring.sum[c] += log_albedo;
       if (c == 1) ring.square += log_albedo * log_albedo;
     }

@@ -1,4 +1,4 @@
-// What the single-photo estimator is shown of a photograph: planes of features, one value a texel,
+// What the estimator is shown of a photograph: planes of features, one value a texel,
 // and a profile of the whole.
 //
 //   plane 0–2  √(π·I / (E·NoL)) of R, G, B, at most 2: the albedo's root of a matte, flat texel
@@ -14,6 +14,7 @@
 // width and height, and so roughness and specular albedo, are read off it.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "fitting/photographs/photographs.h"
@@ -23,6 +24,18 @@ namespace glint {
 inline constexpr int kFeaturePlanes = 11;
 inline constexpr int kProfileBins = 12;
 inline constexpr int kProfileValues = 6 * kProfileBins;
+
+// What both forms of the features share (photograph_features_torch.h).
+namespace features {
+inline constexpr std::array<double, kProfileBins> kBinEndDegrees{1.5, 3,  5,  7.5, 10.5, 14,
+                                                                 18,  23, 29, 36,  45,   90};
+inline constexpr double kBrightest = 4.0;  // of π·I/(E·NoL)
+inline constexpr double kClipped = 0.99;
+inline constexpr double kOffset = 0.003;
+inline constexpr double kLeastCosine = 0.02;
+inline constexpr double kLeastIrradiance = 1e-9;
+inline constexpr double kLogIrradianceRange = 3.0;
+}  // namespace features
 
 struct PhotographFeatures {
   int width = 0;

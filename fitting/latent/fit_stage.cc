@@ -96,13 +96,13 @@ fs::path EstimatorWeights(const FitStageOptions& options) {
 }
 
 SvbrdfMaps EstimatedStart(const FitStageOptions& options, const PhotographSet& photographs,
-                          int threads) {
+                          const EstimatorConditions& conditions, int threads) {
   const fs::path weights = EstimatorWeights(options);
   const Estimator estimator = AsUserError([&] { return Estimator::Load(weights); });
   std::span<const Photograph> seen = photographs.photographs;
   if (estimator.single_photograph()) seen = seen.subspan(BestStartingPhotograph(photographs), 1);
   SvbrdfMaps maps =
-      estimator.Estimate(seen, photographs.plane, photographs.convention, threads).maps;
+      estimator.Estimate(seen, photographs.plane, photographs.convention, conditions, threads).maps;
   if (photographs.convention.diffuse_weight == DiffuseWeight::kOne) return maps;
   for (int c = 0; c < 3; ++c) {  // the same look with diffuse weight 1 − k_s
     for (size_t i = 0; i < maps.texels(); ++i) {
@@ -113,23 +113,27 @@ SvbrdfMaps EstimatedStart(const FitStageOptions& options, const PhotographSet& p
   return maps;
 }
 
-SvbrdfMaps Start(const FitStageOptions& options, const PhotographSet& photographs, int threads) {
+SvbrdfMaps Start(const FitStageOptions& options, const PhotographSet& photographs,
+                 const EstimatorConditions& conditions, int threads) {
   if (!options.start.empty()) return ReadSvbrdf(options.start);
-  if (options.bootstrap == "estimator") return EstimatedStart(options, photographs, threads);
+  if (options.bootstrap == "estimator") {
+    return EstimatedStart(options, photographs, conditions, threads);
+  }
   return EstimateMaps(photographs, threads);
 }
 
 // Where fitting begins, at the size of its first level: finer detail of the initial maps would be
 // averaged away. With the method `start` they are the result, and have all detail.
 SvbrdfMaps InitialMaps(const FitStageOptions& options, const FitOptions& fit,
-                       const PhotographSet& photographs, int threads) {
+                       const PhotographSet& photographs, const EstimatorConditions& conditions,
+                       int threads) {
   const SamplePlane& plane = photographs.plane;
   const auto [width, height] =
       LevelSizes(plane.width, plane.height, fit.coarse_size, fit.finest_size).front();
   const bool whole = options.method == "start" || !options.start.empty() ||
                      (width == plane.width && height == plane.height);
-  if (whole) return Start(options, photographs, threads);
-  return Start(options, Downsampled(photographs, width, height, threads), threads);
+  if (whole) return Start(options, photographs, conditions, threads);
+  return Start(options, Downsampled(photographs, width, height, threads), conditions, threads);
 }
 
 Json Metrics(const FitResult& fit, const std::vector<RectifiedView>& views) {
@@ -242,7 +246,8 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
   const PhotographSet photographs = Load(set, views, options, fit_options, threads);
 
   const auto began = std::chrono::steady_clock::now();
-  const SvbrdfMaps start = InitialMaps(options, fit_options, photographs, threads);
+  const EstimatorConditions conditions{options.metals == "rare", set.light_power_known};
+  const SvbrdfMaps start = InitialMaps(options, fit_options, photographs, conditions, threads);
   FitStageResult result;
   {
     std::unique_ptr<Progress> bar;

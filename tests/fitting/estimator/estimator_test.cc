@@ -28,7 +28,7 @@ class EstimatorFile : public testing::Test {
   }
   SvbrdfMaps Estimate(const PhotographSet& set, int threads = 1) const {
     return Estimator::Load(path_)
-        .Estimate(set.photographs, set.plane, set.convention, threads)
+        .Estimate(set.photographs, set.plane, set.convention, {}, threads)
         .maps;
   }
   const test::TemporaryFolder folder_;

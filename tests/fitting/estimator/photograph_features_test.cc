@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "fitting/estimator/photograph_features_torch.h"
 #include "tests/fitting/bootstrap/synthetic_set.h"
 
 namespace glint {
@@ -79,6 +80,44 @@ TEST(PhotographFeatures, MaskedTexelsSayNothing) {
   for (const float x : after.planes) EXPECT_TRUE(std::isfinite(x));
   for (const float x : after.profile) EXPECT_TRUE(std::isfinite(x));
   EXPECT_EQ(Plane(before, 0, 15, 15), Plane(after, 0, 15, 15));
+}
+
+// Training makes them for batches, fitting for one photograph after the other.
+TEST(PhotographFeatures, AreTheSameForBatches) {
+  for (const bool ldr : {true, false}) {
+    PhotographSet set = PhotographMaps(UniformMaps(40, 0.3f, 0.2f, 0.2f), 3, ldr, 1.5);
+    ViewBatch batch{set.plane, set.convention, 3, {}};
+    std::vector<torch::Tensor> radiance, mask;
+    for (Photograph& photo : set.photographs) {
+      for (size_t i = 0; i < 300; ++i) {
+        photo.mask[i] = 0;
+        for (size_t c = 0; c < 3; ++c) photo.rgb[c * 1600 + i] = 0;
+      }
+      photo.ldr = ldr;
+      batch.views.push_back(photo.view);
+      radiance.push_back(torch::from_blob(photo.rgb.data(), {3, 40, 40}).clone());
+      mask.push_back(torch::from_blob(photo.mask.data(), {1, 40, 40}).clone());
+    }
+    const auto stacked = [](const std::vector<torch::Tensor>& list) {
+      return torch::stack(list).unsqueeze(0);
+    };
+    const FeatureTensors all = FeaturesOfTensors(
+        {stacked(radiance), stacked(mask), torch::full({1, 3, 1, 1, 1}, ldr ? 1.0f : 0.0f)}, batch);
+    for (int n = 0; n < 3; ++n) {
+      const PhotographFeatures one =
+          FeaturesOf(set.photographs[static_cast<size_t>(n)], set.plane, set.convention);
+      const torch::Tensor planes = all.planes[0][n].contiguous();
+      ASSERT_EQ(static_cast<size_t>(planes.numel()), one.planes.size());
+      for (size_t i = 0; i < one.planes.size(); ++i) {
+        ASSERT_NEAR(planes.data_ptr<float>()[i], one.planes[i], 2e-5f) << n << " " << i;
+      }
+      const torch::Tensor profile = all.profiles[0][n].contiguous();
+      for (size_t i = 0; i < one.profile.size(); ++i) {
+        // A texel at a ring's border may be counted to its neighbour.
+        ASSERT_NEAR(profile.data_ptr<float>()[i], one.profile[i], 0.02f) << n << " " << i;
+      }
+    }
+  }
 }
 
 TEST(PhotographFeatures, ClippingIsForLdrPhotographsOnly) {

@@ -42,7 +42,7 @@ TEST(FitInputs, OfAnEstimatorThatIsGivenAreThatOne) {
 double EstimatedSpecular(const char* model, const PhotographSet& set) {
   const SvbrdfMaps maps =
       Estimator::Load(FindModel(model))
-          .Estimate(std::span(set.photographs).first(1), set.plane, set.convention, 1)
+          .Estimate(std::span(set.photographs).first(1), set.plane, set.convention, {}, 1)
           .maps;
   double sum = 0;
   for (const float s : maps.plane(kSpecularG)) sum += s;
