@@ -31,9 +31,16 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
   app->add_option("--minutes", o->minutes,
                   "training time in minutes, in total, over all resumed runs");
   app->add_option("--batch", o->batch, "number of crops per step")->capture_default_str();
-  app->add_option("--crop", o->crop, "crop size in texels, a multiple of 32")
+  app->add_option("--crop", o->crops,
+                  "crop sizes in texels, multiples of 32; each step takes one of them at random, "
+                  "with as many texels as --batch crops of the first size")
+      ->delimiter(',')
       ->capture_default_str();
   app->add_option("--lr", o->learning_rate, "peak learning rate")->capture_default_str();
+  app->add_option("--clip", o->most_gradient,
+                  "maximum norm of a step's gradient; longer ones are scaled down; 0: no maximum")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app->add_option("--warmup", o->warmup_steps, "steps over which the learning rate rises")
       ->capture_default_str();
   app->add_option("--warmup-from", o->warmup_from,
@@ -55,7 +62,7 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
       ->capture_default_str();
   app->add_option("--average-decay", o->average_decay, "decay of the weights' moving average")
       ->capture_default_str();
-  app->add_option("--bf16", o->bf16, "multiply in bf16 where the CPU supports it")
+  app->add_option("--bf16", o->bf16, "multiply in bf16 where the device supports it")
       ->capture_default_str();
   app->add_option("--pool-window", o->pool.window, "number of materials that a step chooses from")
       ->capture_default_str();
@@ -71,6 +78,13 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
   app->add_option("--seed", o->seed, "seed of weights, materials and crops")->capture_default_str();
   app->add_option("--threads", o->threads,
                   "torch threads; results are reproducible for a fixed number of threads")
+      ->capture_default_str();
+  app->add_option("--pool-threads", o->pool.threads,
+                  "threads that generate materials and cut crops; they do not change results")
+      ->capture_default_str();
+  app->add_option("--device", o->device,
+                  "cpu, or cuda if libtorch supports it; results are reproducible on a CPU only")
+      ->check(CLI::IsMember({"cpu", "cuda"}))
       ->capture_default_str();
 }
 

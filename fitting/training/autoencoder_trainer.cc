@@ -33,12 +33,13 @@ AutoencoderNetwork FirstWeights(const AutoencoderTrainOptions& options, std::int
   const Normalisation normalisation = ParseNormalisation(options.normalisation);
   const bool principal = options.principal_start && normalisation != Normalisation::kAll;
   if (first_batch == 0 && principal) {
-    return StartFromPrincipalComponents(options.channels, pool->SampleFirst(kFirstSamples),
-                                        normalisation);
+    return StartFromPrincipalComponents(
+        options.channels, pool->SampleFirst(kFirstSamples, options.crops[0]), normalisation);
   }
   AutoencoderNetwork drawn =
       AutoencoderNetwork::Random(options.channels, options.seed, normalisation);
-  if (first_batch == 0) MeasureStatistics(pool->SampleFirst(kFirstSamples), &drawn);
+  if (first_batch == 0)
+    MeasureStatistics(pool->SampleFirst(kFirstSamples, options.crops[0]), &drawn);
   return drawn;
 }
 
@@ -46,7 +47,7 @@ class AutoencoderTraining : public MapTraining<AutoencoderNetwork, AutoencoderTr
  public:
   AutoencoderTraining(const AutoencoderTrainOptions& options, std::int64_t first_batch,
                       const MaterialSource& materials, const MaterialSource& validation)
-      : MapTraining(options, first_batch, materials, validation,
+      : MapTraining(options, first_batch, materials, validation, {},
                     [&](MapBatches* pool) { return FirstWeights(options, first_batch, pool); }) {}
 
   size_t learned() const override { return AutoencoderNetwork(network_).Parameters().size(); }
@@ -72,7 +73,7 @@ class AutoencoderTraining : public MapTraining<AutoencoderNetwork, AutoencoderTr
           StreamSeed(options_.seed ^ kNoiseStream, static_cast<std::uint64_t>(step)));
       const Tensor part = z.slice(0, 0, twice);
       const Tensor noise =
-          torch::randn(part.sizes(), generator) * std::sqrt(options_.noise_variance);
+          torch::randn(part.sizes(), generator).to(device_) * std::sqrt(options_.noise_variance);
       codes = torch::cat({z, part + noise}, 0);
     }
     const Tensor decoded = network_.DecodeForTraining(codes, compute_, kBatchStatisticsMomentum);
@@ -81,7 +82,7 @@ class AutoencoderTraining : public MapTraining<AutoencoderNetwork, AutoencoderTr
     if (twice > 0) {
       const Tensor moved = decoded.slice(0, count, count + twice) - decoded.slice(0, 0, twice);
       const Tensor smoothness = WeightedL1(moved);
-      losses.smoothness = smoothness.item<double>();
+      losses.smoothness = smoothness.detach();
       Add(options_.smoothness * smoothness, &losses);
     }
     AddRenderLoss(plain, batch, step, &losses);

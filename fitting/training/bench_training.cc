@@ -66,7 +66,7 @@ AutoencoderTrainOptions Options(int threads, int views, int crop, int batch) {
   options.channels = {32, 64, 128, 256, 384};
   options.steps = kSteps;
   options.batch = batch;
-  options.crop = crop;
+  options.crops = {crop};
   options.render_views = views;
   options.threads = threads;
   options.principal_start = false;
@@ -146,7 +146,7 @@ class PlainTraining {
 
   Tensor RenderLoss(const Tensor& decoded, const Tensor& truth, std::uint64_t step) const {
     ViewBatch batch;
-    batch.plane = {options_.crop, options_.crop, 2.0, 2.0, TexelSampling::kPixelCentres};
+    batch.plane = {options_.crops[0], options_.crops[0], 2.0, 2.0, TexelSampling::kPixelCentres};
     batch.convention = {DiffuseWeight::kOne, LightFalloff::kNone, TexelSampling::kPixelCentres};
     batch.views_per_element = options_.render_views;
     Stream random(step);

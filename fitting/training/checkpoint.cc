@@ -11,7 +11,7 @@ using torch::Tensor;
 void ReadAll(const std::filesystem::path& path, const TensorFile& file, const std::string& prefix,
              const NamedTensors& tensors) {
   for (const auto& [name, tensor] : tensors) {
-    *tensor = ReadTensor(path, file, prefix + name, tensor->sizes().vec());
+    *tensor = ReadTensor(path, file, prefix + name, tensor->sizes().vec()).to(tensor->device());
   }
 }
 
@@ -71,8 +71,9 @@ void LoadCheckpoint(const std::filesystem::path& path,
   for (size_t i = 0; i < state->moment1.size(); ++i) {
     const std::string& name = state->network[i].first;
     const std::vector<std::int64_t> shape = state->moment1[i].sizes().vec();
-    state->moment1[i] = ReadTensor(path, file, "moment1." + name, shape);
-    state->moment2[i] = ReadTensor(path, file, "moment2." + name, shape);
+    const torch::Device device = state->moment1[i].device();
+    state->moment1[i] = ReadTensor(path, file, "moment1." + name, shape).to(device);
+    state->moment2[i] = ReadTensor(path, file, "moment2." + name, shape).to(device);
   }
   state->step = static_cast<std::int64_t>(Number(path, file, "step"));
   state->seconds = Number(path, file, "seconds");

@@ -26,14 +26,39 @@ EstimatorChannels ChannelsOf(const EstimatorTrainOptions& options) {
   return channels;
 }
 
+Stream ShotStream(const EstimatorTrainOptions& options, std::int64_t step) {
+  return Stream(StreamSeed(options.seed ^ kShotStream, static_cast<std::uint64_t>(step)));
+}
+
+int DrawPhotographs(Stream* random) {
+  return kPhotographCounts[random->Below(static_cast<int>(kPhotographCounts.size()))];
+}
+
+// Of `most` samples, so many that a step has no more photographs than it may.
+int SamplesOf(const EstimatorTrainOptions& options, int most, int photographs) {
+  const double share = static_cast<double>(options.batch_photographs) / options.batch / photographs;
+  return std::clamp(static_cast<int>(share * most), 1, most);
+}
+
+BatchShape ShapeOf(const EstimatorTrainOptions& options, std::int64_t step) {
+  BatchShape shape = BatchShapeOf(options, step);
+  Stream random = ShotStream(options, step);
+  shape.count = SamplesOf(options, shape.count, DrawPhotographs(&random));
+  return shape;
+}
+
 class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOptions> {
  public:
   EstimatorTraining(const EstimatorTrainOptions& options, std::int64_t first_batch,
                     const MaterialSource& materials, const MaterialSource& validation)
-      : MapTraining(options, first_batch, materials, validation, [&](MapBatches*) {
-          return options.from.empty() ? EstimatorNetwork::Random(ChannelsOf(options), options.seed)
-                                      : LoadEstimator(options.from).network;
-        }) {}
+      : MapTraining(
+            options, first_batch, materials, validation,
+            [options](std::int64_t step) { return ShapeOf(options, step); },
+            [&](MapBatches*) {
+              return options.from.empty()
+                         ? EstimatorNetwork::Random(ChannelsOf(options), options.seed)
+                         : LoadEstimator(options.from).network;
+            }) {}
 
   size_t learned() const override { return EstimatorNetwork(network_).State().size(); }
   std::map<std::string, std::string> Description() const override {
@@ -46,18 +71,19 @@ class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOpt
 
   double samples_per_batch() const override {
     double sum = 0;
-    for (const int photographs : kPhotographCounts) sum += SamplesOf(photographs);
+    for (const int photographs : kPhotographCounts) {
+      sum += SamplesOf(options_, options_.batch, photographs);
+    }
     return sum / kPhotographCounts.size();
   }
 
   StepLosses Forward(std::int64_t step) override {
-    Stream random(StreamSeed(options_.seed ^ kShotStream, static_cast<std::uint64_t>(step)));
-    const int photographs =
-        kPhotographCounts[random.Below(static_cast<int>(kPhotographCounts.size()))];
-    const int samples = SamplesOf(photographs);
-    const Tensor truth = pool_.Sample(step).slice(0, 0, samples).contiguous();
+    Stream random = ShotStream(options_, step);
+    const int photographs = DrawPhotographs(&random);
+    const Tensor truth = pool_.Sample(step);
     const CaptureBatch seen = PhotographMaps(truth, photographs, CaptureQuality::kDrawn, &random);
-    const EstimatorOutput out = network_.Forward(seen.features, seen.profiles, compute_);
+    const EstimatorOutput out =
+        network_.Forward(seen.features, seen.profiles, seen.conditions, compute_);
     StepLosses losses;
     AddMapLoss(out.maps, truth, &losses);
     AddRenderLoss(out.maps, truth, step, &losses);
@@ -67,16 +93,12 @@ class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOpt
   }
 
  private:
-  int SamplesOf(int photographs) const {
-    return std::clamp(options_.batch_photographs / photographs, 1, options_.batch);
-  }
-
   // Half of the validation materials are seen once, the others five times.
   Tensor AveragedMaps(const Tensor& truth, std::int64_t number) override {
     Stream random(static_cast<std::uint64_t>(number));
     const CaptureBatch seen =
         PhotographMaps(truth, number % 2 == 0 ? 1 : 5, CaptureQuality::kClean, &random);
-    return average_.Forward(seen.features, seen.profiles, compute_).maps;
+    return average_.Forward(seen.features, seen.profiles, seen.conditions, compute_).maps;
   }
 };
 

@@ -15,7 +15,8 @@
 namespace glint {
 
 struct EstimatorTrainOptions : TrainOptions {
-  std::vector<int> channels{24, 48, 96, 160, 256, 16, 128};  // five levels, full resolution, global
+  std::vector<int> channels{32,  64, 128, 224,
+                            320, 24, 192};  // five levels, full resolution, global
   double spread_weight = 0.05;
   // Photographs in a batch, at most (one sample has them all at least): time and memory.
   int batch_photographs = 16;

@@ -28,17 +28,20 @@ class MapTraining : public Trainable {
   }
 
  protected:
-  // `first_weights(MapBatches*)` makes the network to begin with.
+  // `shape_of` is of each step's batch, empty: as the options say; `first_weights(MapBatches*)`
+  // makes the network to begin with.
   template <class FirstWeights>
   MapTraining(const Options& options, std::int64_t first_batch, const MaterialSource& materials,
-              const MaterialSource& validation, const FirstWeights& first_weights)
+              const MaterialSource& validation, MapBatches::ShapeOf shape_of,
+              const FirstWeights& first_weights)
       : options_(options),
-        compute_(options.bf16 ? FastComputeType() : torch::kFloat32),
-        pool_(options, materials, first_batch),
-        network_(first_weights(&pool_)),
+        device_(options.device),
+        compute_(options.bf16 ? FastComputeType(device_) : torch::kFloat32),
+        pool_(options, materials, first_batch, std::move(shape_of)),
+        network_(OnDevice(first_weights(&pool_), device_)),
         average_(Clone(&network_)),
-        map_weights_(MapWeights(options)),
-        validation_maps_(ValidationMaps(validation, options.pool.material_size)) {}
+        map_weights_(MapWeights(options).to(device_)),
+        validation_maps_(ValidationMaps(validation, options.pool.material_size).to(device_)) {}
 
   // The maps that the averaged weights give for validation material `number`, [1, 9, S, S].
   virtual torch::Tensor AveragedMaps(const torch::Tensor& truth, std::int64_t number) = 0;
@@ -50,7 +53,7 @@ class MapTraining : public Trainable {
 
   void AddMapLoss(const torch::Tensor& maps, const torch::Tensor& truth, StepLosses* losses) const {
     const torch::Tensor map = WeightedL1(maps - truth);
-    losses->map = map.item<double>();
+    losses->map = map.detach();
     Add(options_.map_weight * map, losses);
   }
 
@@ -58,7 +61,7 @@ class MapTraining : public Trainable {
                      StepLosses* losses) const {
     if (options_.render_weight <= 0 || options_.render_views <= 0) return;
     const torch::Tensor render = RenderLossOf(maps, truth, options_, step);
-    losses->render = render.item<double>();
+    losses->render = render.detach();
     Add(options_.render_weight * render, losses);
   }
 
@@ -67,11 +70,17 @@ class MapTraining : public Trainable {
   }
 
   const Options options_;
+  const torch::Device device_;
   const torch::Dtype compute_;
   MapBatches pool_;
   Network network_, average_;
 
  private:
+  static Network OnDevice(Network network, torch::Device device) {
+    for (auto& [name, tensor] : network.State()) *tensor = tensor->to(device);
+    return network;
+  }
+
   const torch::Tensor map_weights_;
   const torch::Tensor validation_maps_;
 };

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/parallel/parallel.h"
 #include "fitting/encoding/encoding.h"
 #include "fitting/training/random.h"
 
 namespace glint {
 namespace {
 
-constexpr int kLookahead = 16;  // materials made before they are needed
+constexpr int kLookahead = 16;  // materials made before they are needed, at least
 constexpr int kMostInBatch = 4096;
 constexpr float kScale = 32767.0f;
 
@@ -46,12 +47,17 @@ Change DrawChange(Stream* random, int size, int crop) {
   return c;
 }
 
-// Where texel (row, column) of the changed crop lies in the material.
-size_t SourceTexel(const Change& c, int size, int crop, int row, int column) {
-  const int u = c.transpose ? column : row, v = c.transpose ? row : column;
-  const int i = c.row + (c.flip_y ? crop - 1 - u : u);
-  const int j = c.column + (c.flip_x ? crop - 1 - v : v);
-  return static_cast<size_t>(i) * size + j;
+// Where the texels of the changed crop lie in the material: first + row·by_row + column·by_column.
+struct SourceTexels {
+  std::ptrdiff_t first, by_row, by_column;
+};
+
+SourceTexels SourceTexelsOf(const Change& c, int size, int crop) {
+  const std::ptrdiff_t down = c.flip_y ? -size : size, right = c.flip_x ? -1 : 1;
+  const std::ptrdiff_t first =
+      static_cast<std::ptrdiff_t>(c.row + (c.flip_y ? crop - 1 : 0)) * size + c.column +
+      (c.flip_x ? crop - 1 : 0);
+  return c.transpose ? SourceTexels{first, right, down} : SourceTexels{first, down, right};
 }
 
 // The plane that supplies encoded channel k, and the sign it takes. Rows run to −y: the transpose
@@ -75,14 +81,15 @@ float ChangeValue(const Change& c, int k, float t) {
 
 void CutCrop(const std::vector<std::int16_t>& material, const Change& c, int size, int crop,
              float* out) {
+  const SourceTexels source = SourceTexelsOf(c, size, crop);
   for (int k = 0; k < kEncodedChannels; ++k) {
     float sign;
     const std::int16_t* plane =
         material.data() + SourcePlane(c, k, &sign) * static_cast<size_t>(size) * size;
     for (int row = 0; row < crop; ++row) {
-      for (int column = 0; column < crop; ++column) {
-        const float t = sign * plane[SourceTexel(c, size, crop, row, column)] / kScale;
-        *out++ = ChangeValue(c, k, t);
+      const std::int16_t* from = plane + source.first + row * source.by_row;
+      for (int column = 0; column < crop; ++column, from += source.by_column) {
+        *out++ = ChangeValue(c, k, sign * *from / kScale);
       }
     }
   }
@@ -97,10 +104,12 @@ MaterialPool::MaterialPool(const PoolOptions& options, MaterialSource source,
       options.material_size < 1) {
     throw std::runtime_error("material pool: window, first and size must be at least 1");
   }
-  slots_.resize(static_cast<size_t>(options.window) + kLookahead);
-  made_ = Oldest(first_step);
-  allowed_ = made_;
-  producer_ = std::thread([this] { Produce(); });
+  slots_.resize(static_cast<size_t>(options.window) + lookahead());
+  numbers_.resize(slots_.size());
+  made_ = begun_ = allowed_ = Oldest(first_step);
+  for (int i = 0; i < std::max(1, options.threads); ++i) {
+    producers_.emplace_back([this] { Produce(); });
+  }
 }
 
 MaterialPool::~MaterialPool() {
@@ -109,8 +118,10 @@ MaterialPool::~MaterialPool() {
     stop_ = true;
   }
   changed_.notify_all();
-  producer_.join();
+  for (std::thread& producer : producers_) producer.join();
 }
+
+int MaterialPool::lookahead() const { return std::max(kLookahead, 4 * options_.threads); }
 
 std::uint64_t MaterialPool::Available(std::int64_t step) const {
   return static_cast<std::uint64_t>(options_.first) +
@@ -125,9 +136,9 @@ std::uint64_t MaterialPool::Oldest(std::int64_t step) const {
 void MaterialPool::Produce() {
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return stop_ || made_ < allowed_; });
+    changed_.wait(lock, [this] { return stop_ || begun_ < allowed_; });
     if (stop_) return;
-    const std::uint64_t k = made_;
+    const std::uint64_t k = begun_++;
     lock.unlock();
     std::vector<std::int16_t> packed;
     std::exception_ptr failure;
@@ -143,9 +154,12 @@ void MaterialPool::Produce() {
     }
     lock.lock();
     slots_[k % slots_.size()] = std::move(packed);
-    failure_ = failure;
-    ++made_;
-    if (failure) stop_ = true;
+    numbers_[k % slots_.size()] = k + 1;
+    while (numbers_[made_ % slots_.size()] == made_ + 1) ++made_;
+    if (failure) {
+      failure_ = failure;
+      stop_ = true;
+    }
     changed_.notify_all();
   }
 }
@@ -163,7 +177,7 @@ void MaterialPool::Fill(std::uint64_t begin, std::uint64_t end, std::uint64_t st
                         int crop, std::span<float> batch) {
   {
     std::unique_lock lock(mutex_);
-    allowed_ = std::max(allowed_, end + kLookahead);
+    allowed_ = std::max(allowed_, end + static_cast<std::uint64_t>(lookahead()));
     changed_.notify_all();
     changed_.wait(lock, [&] { return failure_ || made_ >= end; });
     if (failure_) std::rethrow_exception(failure_);
@@ -173,12 +187,12 @@ void MaterialPool::Fill(std::uint64_t begin, std::uint64_t end, std::uint64_t st
   if (crop < 1 || crop > size || count > kMostInBatch || batch.size() != sample_values * count) {
     throw std::runtime_error("material pool: crop larger than the materials, or a wrong batch");
   }
-  for (int i = 0; i < count; ++i) {
+  ForEachPiece(count, std::max(1, options_.threads), [&](int i) {
     Stream random(StreamSeed(options_.seed, stream + static_cast<std::uint64_t>(i)));
     const std::uint64_t k = begin + random.Bits() % (end - begin);
     const Change change = DrawChange(&random, size, crop);
     CutCrop(slots_[k % slots_.size()], change, size, crop, batch.data() + i * sample_values);
-  }
+  });
 }
 
 }  // namespace glint

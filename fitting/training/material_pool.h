@@ -1,6 +1,6 @@
 // Training samples: crops of a moving window over an endless sequence of materials.
 //
-// A producer thread makes materials ahead of use. Which materials step s sees, and which crops and
+// Threads of its own make materials ahead of use. Which materials step s sees, and which crops and
 // changes of them, depends on the seed and s alone, so that a resumed training repeats.
 #pragma once
 
@@ -24,6 +24,7 @@ struct PoolOptions {
   int window = 2048;        // materials a step chooses from, once that many exist
   int first = 64;           // materials made before step 0
   double per_step = 1.0;    // new materials per step
+  int threads = 1;          // that make materials and cut crops
   std::uint64_t seed = 0;   // of choices and changes; the source has its own
 };
 
@@ -42,6 +43,7 @@ class MaterialPool {
   void SampleFirst(int count, int crop, std::span<float> batch);
 
  private:
+  int lookahead() const;
   std::uint64_t Available(std::int64_t step) const;
   std::uint64_t Oldest(std::int64_t step) const;
   void Produce();
@@ -51,13 +53,15 @@ class MaterialPool {
   PoolOptions options_;
   MaterialSource source_;
   std::vector<std::vector<std::int16_t>> slots_;  // encoded maps · 32767
+  std::vector<std::uint64_t> numbers_;            // of the material in each slot, plus one
   std::uint64_t made_ = 0;                        // materials [.., made_) exist
-  std::uint64_t allowed_ = 0;                     // the producer may make [made_, allowed_)
+  std::uint64_t begun_ = 0;                       // those below are made or being made
+  std::uint64_t allowed_ = 0;                     // those below may be made
   bool stop_ = false;
   std::exception_ptr failure_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::thread producer_;
+  std::vector<std::thread> producers_;
 };
 
 }  // namespace glint

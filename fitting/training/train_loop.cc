@@ -32,14 +32,21 @@ void CheckTrainOptions(const TrainOptions& o) {
   require(o.steps > 0 || o.minutes > 0, "found neither steps nor minutes; give one of them");
   require(o.batch >= 1 && o.batch <= 4096,
           "found batch " + std::to_string(o.batch) + "; it must be 1 to 4096");
-  require(o.crop >= kCropMultiple && o.crop % kCropMultiple == 0 && o.crop <= o.pool.material_size,
-          "found crop " + std::to_string(o.crop) +
-              "; it must be a multiple of 32 that fits the materials");
+  require(!o.crops.empty(), "found no crop size; give one or more");
+  for (const int crop : o.crops) {
+    require(crop >= kCropMultiple && crop % kCropMultiple == 0 && crop <= o.pool.material_size,
+            "found crop " + std::to_string(crop) +
+                "; it must be a multiple of 32 that fits the materials");
+  }
   require(o.render_weight >= 0 && o.map_weight >= 0 && o.render_weight + o.map_weight > 0,
           "found weights of maps and renderings below 0, or both 0; give one of them");
   require(o.accumulate >= 1 && o.accumulate <= 1024,
           "found accumulate " + std::to_string(o.accumulate) + "; it must be 1 to 1024");
   require(o.threads >= 1, "found threads below 1");
+  require(o.device == "cpu" || o.device == "cuda",
+          "found device " + o.device + "; it must be cpu or cuda");
+  require(o.device == "cpu" || torch::cuda::is_available(),
+          "found device cuda, and no GPU that this libtorch can use; take cpu");
 }
 
 namespace {
@@ -73,26 +80,34 @@ class Log {
 // Means of the losses since the last report.
 class Window {
  public:
-  void Add(const StepLosses& losses, double total) {
-    sum_.loss += total;
-    sum_.map_loss += losses.map;
-    sum_.smoothness_loss += losses.smoothness;
-    sum_.render_loss += losses.render;
+  void Add(const StepLosses& losses) {
+    AddTo(losses.total.detach(), &total_);
+    AddTo(losses.map, &map_);
+    AddTo(losses.smoothness, &smoothness_);
+    AddTo(losses.render, &render_);
     ++batches_;
   }
   int batches() const { return batches_; }
   TrainProgress Take() {
-    TrainProgress mean = sum_;
-    for (double* x : {&mean.loss, &mean.map_loss, &mean.smoothness_loss, &mean.render_loss}) {
-      *x /= std::max(1, batches_);
-    }
-    sum_ = {};
-    batches_ = 0;
+    TrainProgress mean;
+    mean.loss = Mean(total_);
+    mean.map_loss = Mean(map_);
+    mean.smoothness_loss = Mean(smoothness_);
+    mean.render_loss = Mean(render_);
+    *this = {};
     return mean;
   }
 
  private:
-  TrainProgress sum_;
+  // Sums stay on the training's device: to read one waits for all that is under way there.
+  static void AddTo(const Tensor& loss, Tensor* sum) {
+    if (loss.defined()) *sum = sum->defined() ? *sum + loss : loss;
+  }
+  double Mean(const Tensor& sum) const {
+    return sum.defined() ? sum.item<double>() / std::max(1, batches_) : 0;
+  }
+
+  Tensor total_, map_, smoothness_, render_;
   int batches_ = 0;
 };
 
@@ -165,36 +180,68 @@ class Loop {
     }
     for (int k = 0; k < options_.accumulate; ++k) {
       const StepLosses losses = trainable_->Forward(state_.step * options_.accumulate + k);
-      const double total = losses.total.item<double>();
-      if (!std::isfinite(total)) {
-        throw std::runtime_error("training: the loss is not finite at step " +
-                                 std::to_string(state_.step) + "; resume with a lower --lr");
-      }
       (losses.total / options_.accumulate).backward();
-      window_.Add(losses, total);
+      window_.Add(losses);
     }
     Update();
   }
 
+  // What a step's gradients are multiplied with: 1, or what brings their norm down to the most.
+  Tensor GradientScale() const {
+    std::vector<Tensor> norms;
+    for (size_t i = 0; i < state_.moment1.size(); ++i) {
+      norms.push_back(state_.network[i].second->grad().norm());
+    }
+    return (options_.most_gradient / torch::stack(norms).norm().clamp_min(1e-12)).clamp_max(1);
+  }
+
   void Update() {
     ++state_.step;
+    const bool cut = options_.most_gradient > 0;
+    const Tensor scale = cut ? GradientScale() : Tensor();
     const AdamOptions adam{LearningRate()};
     const double t = static_cast<double>(state_.step);
     const double decay = std::min(options_.average_decay, (1.0 + t) / (10.0 + t));
     for (size_t i = 0; i < state_.network.size(); ++i) {
       Tensor weights = state_.network[i].second->detach();
       if (i < state_.moment1.size()) {
-        const Tensor g = state_.network[i].second->grad().contiguous();
-        AdamStep(adam, state_.step, Span(g), Span(weights), Span(state_.moment1[i]),
-                 Span(state_.moment2[i]));
+        Tensor g = state_.network[i].second->grad().contiguous();
+        if (cut) g *= scale;
+        Learn(adam, g, weights, state_.moment1[i], state_.moment2[i]);
       }
-      MoveAverage(decay, Span(weights), Span(*state_.average[i].second));
+      Average(decay, weights, *state_.average[i].second);
+    }
+  }
+
+  // One step of Adam (adam.h), there or by torch's operations.
+  void Learn(const AdamOptions& adam, const Tensor& gradient, Tensor weights, Tensor moment1,
+             Tensor moment2) const {
+    if (gradient.device().is_cpu()) {
+      AdamStep(adam, state_.step, Span(gradient), Span(weights), Span(moment1), Span(moment2));
+      return;
+    }
+    const double t = static_cast<double>(state_.step);
+    moment1.lerp_(gradient, 1 - adam.beta1);
+    moment2.mul_(adam.beta2).addcmul_(gradient, gradient, 1 - adam.beta2);
+    const Tensor scale = (moment2 / (1 - std::pow(adam.beta2, t))).sqrt_().add_(adam.epsilon);
+    weights.addcdiv_(moment1, scale, -adam.learning_rate / (1 - std::pow(adam.beta1, t)));
+  }
+
+  static void Average(double decay, const Tensor& weights, Tensor average) {
+    if (weights.device().is_cpu()) {
+      MoveAverage(decay, Span(weights), Span(average));
+    } else {
+      average.lerp_(weights, 1 - decay);
     }
   }
 
   TrainProgress Report(double window_seconds) {
     const int batches = window_.batches();
     TrainProgress progress = window_.Take();
+    if (!std::isfinite(progress.loss)) {
+      throw std::runtime_error("training: the loss is not finite before step " +
+                               std::to_string(state_.step) + "; resume with a lower --lr");
+    }
     progress.step = state_.step;
     progress.seconds = state_.seconds;
     progress.samples_per_second =

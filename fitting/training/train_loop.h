@@ -15,8 +15,8 @@
 namespace glint {
 
 struct StepLosses {
-  torch::Tensor total;  // what is minimised
-  double map = 0, smoothness = 0, render = 0;
+  torch::Tensor total;                    // what is minimised
+  torch::Tensor map, smoothness, render;  // for the log; undefined: not part of it
 };
 
 // A network to be trained, with its data and losses.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fitting/training/material_pool.h"
 
@@ -15,8 +16,11 @@ struct TrainOptions {
   std::int64_t steps = 0;  // 0: until `minutes` are over
   double minutes = 0;      // training time, in total, over all resumed runs
   int batch = 16;
-  int crop = 128;               // texels; a multiple of 32
+  // Texels, multiples of 32; each step's is one of them. Batches of larger ones than the first hold
+  // fewer, as many texels.
+  std::vector<int> crops{128};
   double learning_rate = 5e-4;  // the highest; it rises over `warmup_steps`, then falls as a cosine
+  double most_gradient = 0;     // norm of all gradients of a step; longer ones are cut; 0: none is
   int warmup_steps = 200;
   std::int64_t warmup_from = 0;  // the step it rises from: a checkpoint's, when a resume lengthens
   int accumulate = 1;            // batches whose gradients make one step
@@ -25,7 +29,8 @@ struct TrainOptions {
   int render_views = 3;          // per sample; a third cosine-distributed, the others on highlights
   double normal_weight = 1.0;    // of the normals' L1 among the maps
   double average_decay = 0.999;  // of the moving average of weights, which is what is written
-  bool bf16 = true;              // where the CPU multiplies it natively
+  bool bf16 = true;              // where the device multiplies it natively
+  std::string device = "cpu";    // or "cuda", where this libtorch has it
   int threads = 1;
   std::uint64_t seed = 1;
   std::filesystem::path from;     // weights to begin with; empty: new ones

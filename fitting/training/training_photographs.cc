@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "fitting/encoding/encoding_torch.h"
-#include "fitting/estimator/photograph_features.h"
-#include "fitting/render/render_autograd.h"
+#include "fitting/estimator/photograph_features_torch.h"
+#include "fitting/render/view_tensors.h"
 
 namespace glint {
 namespace {
@@ -30,6 +31,7 @@ struct Disturbance {
   double exposure = 0;      // of ln exposure, by photograph
   double power = 0;         // of ln power, of all photographs
   double light = 0;         // of the light's position, relative to its distance
+  double offset = 0;        // of the place that all lights share, likewise
   double ambient = 0;       // of the flash, irradiance
   double vignetting = 0;    // of ln radiance at the crop's corners
   double registration = 0;  // texels
@@ -55,20 +57,27 @@ struct Drawn {
   Disturbance disturbance;
   std::vector<Shot> shots;
   bool ldr = true;
+  bool calibrated = true;
+  // Whether metals are said to be rare, if there are any and if not.
+  bool rare_if_metal = false, rare_if_not = false;
 };
 
 Vec3d Direction(double tilt, double azimuth) {
   return {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)};
 }
 
-Disturbance DrawDisturbance(Stream* random) {
+// Of a capture whose light was calibrated a fifth are nearly clean; of others the light's power,
+// and the place that all its lights share, are about right only.
+Disturbance DrawDisturbance(bool calibrated, Stream* random) {
   Disturbance d;
-  const double size = random->Uniform() < 0.2 ? 0.05 : random->Uniform(0.3, 1.4);
-  d.exposure = 0.05 * size;
-  d.power = random->Uniform() < 0.5 ? 0.12 * random->Normal() : 0.0;
-  d.light = 0.03 * size;
+  const bool clean = calibrated && random->Uniform() < 0.4;
+  const double size = clean ? 0.05 : random->Uniform(0.3, calibrated ? 1.0 : 1.5);
+  d.exposure = (calibrated ? 0.04 : 0.08) * size;
+  d.power = (calibrated ? 0.02 * size : 0.3) * random->Normal();
+  d.light = (calibrated ? 0.02 : 0.03) * size;
+  d.offset = calibrated ? 0.0 : 0.05;
   d.ambient = 0.03 * size * random->Uniform();
-  d.vignetting = 0.04 * size;
+  d.vignetting = (calibrated ? 0.04 : 0.1) * size;
   d.registration = 0.5 * size;
   d.blur = random->Uniform() < 0.5 ? 0.12 * size * random->Uniform() : 0.0;
   d.noise = random->Uniform() < 0.5 ? 0.008 * size * random->Uniform() : 0.0;
@@ -116,8 +125,12 @@ LightFalloff FalloffOf(CaptureKind kind) {
 }
 
 Drawn DrawCapture(CaptureKind kind, int photographs, Stream* random) {
+  constexpr double kRareIfMetal = 0.06, kRareIfNot = 0.5, kCalibrated = 0.5;
   Drawn drawn;
-  drawn.disturbance = DrawDisturbance(random);
+  drawn.calibrated = random->Uniform() < kCalibrated;
+  drawn.rare_if_metal = random->Uniform() < kRareIfMetal;
+  drawn.rare_if_not = random->Uniform() < kRareIfNot;
+  drawn.disturbance = DrawDisturbance(drawn.calibrated, random);
   drawn.ldr = random->Uniform() < 0.93;
   const Disturbance& d = drawn.disturbance;
   const bool phone = kind == CaptureKind::kPhone;
@@ -132,6 +145,8 @@ Drawn DrawCapture(CaptureKind kind, int photographs, Stream* random) {
   // same white as a mirror's highlight.
   const double exposure = std::exp(0.15 + 0.5 * random->Normal());
   const bool frames_end = random->Uniform() < 0.2;
+  const double offset_x = d.offset * usual * random->Normal();
+  const double offset_y = d.offset * usual * random->Normal();
   for (int i = 0; i < photographs; ++i) {
     Shot shot;
     const double distance = usual * std::exp(0.08 * random->Normal());
@@ -148,6 +163,8 @@ Drawn DrawCapture(CaptureKind kind, int photographs, Stream* random) {
     view.light_rgb = {power, power, power};
     shot.view = view;
     for (double& x : shot.view.light_in_sample_mm) x += d.light * distance * random->Normal();
+    shot.view.light_in_sample_mm[0] += offset_x;
+    shot.view.light_in_sample_mm[1] += offset_y;
     shot.view.light_in_sample_mm[2] = std::max(0.7, shot.view.light_in_sample_mm[2]);
     shot.view.exposure = std::exp(d.exposure * random->Normal());
     const double ambient = d.ambient * std::numbers::pi * exposure;
@@ -179,89 +196,115 @@ Drawn CleanCapture(int photographs, Stream* random) {
   return drawn;
 }
 
-// One plane looked up `x`, `y` texels aside, bilinearly; border texels continue.
-std::vector<float> Shifted(const std::vector<float>& plane, int width, int height, double x,
-                           double y) {
-  const auto row_of = [&](int row) { return std::clamp(row, 0, height - 1) * width; };
-  const auto column_of = [&](int column) { return std::clamp(column, 0, width - 1); };
-  const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
-  const auto u = static_cast<float>(x - left), v = static_cast<float>(y - top);
-  std::vector<float> out(plane.size());
-  for (int row = 0; row < height; ++row) {
-    const float* a = plane.data() + row_of(row + top);
-    const float* b = plane.data() + row_of(row + top + 1);
-    for (int column = 0; column < width; ++column) {
-      const int c0 = column_of(column + left), c1 = column_of(column + left + 1);
-      out[static_cast<size_t>(row) * width + column] =
-          (1 - v) * ((1 - u) * a[c0] + u * a[c1]) + v * ((1 - u) * b[c0] + u * b[c1]);
+// One number of every shot, [B, N, 1, 1, 1], on the device that `options` name.
+template <class Of>
+Tensor OfShots(const std::vector<Drawn>& captures, const torch::TensorOptions& options,
+               const Of& number) {
+  std::vector<float> values;
+  for (const Drawn& drawn : captures) {
+    for (const Shot& shot : drawn.shots) {
+      values.push_back(static_cast<float>(number(shot, drawn.disturbance)));
     }
   }
-  return out;
+  const auto count = static_cast<int64_t>(captures.size());
+  return torch::tensor(values).view({count, -1, 1, 1, 1}).to(options);
 }
 
-// Each of a texel's four neighbours with weight `weight`.
-void Blur(std::vector<float>* plane, int width, int height, double weight) {
-  const auto w = static_cast<float>(weight);
-  const std::vector<float> from = *plane;
-  for (int row = 0; row < height; ++row) {
-    const int up = std::max(row - 1, 0) * width, down = std::min(row + 1, height - 1) * width;
-    for (int column = 0; column < width; ++column) {
-      const int i = row * width + column;
-      const int left = column > 0 ? i - 1 : i, right = column + 1 < width ? i + 1 : i;
-      (*plane)[i] = (1 - 4 * w) * from[i] +
-                    w * (from[up + column] + from[down + column] + from[left] + from[right]);
-    }
-  }
+// A field of a capture's disturbance or of a shot, for all shots.
+Tensor OfShots(const std::vector<Drawn>& captures, const torch::TensorOptions& options,
+               double Disturbance::*field) {
+  return OfShots(captures, options, [&](const Shot&, const Disturbance& d) { return d.*field; });
 }
 
-float Quantised(double radiance, double gamma) {
-  const double code = std::round(255 * std::pow(std::clamp(radiance, 0.0, 1.0), 1 / gamma));
-  return static_cast<float>(std::pow(code / 255, kGamma));
+Tensor OfShots(const std::vector<Drawn>& captures, const torch::TensorOptions& options,
+               double Shot::*field) {
+  return OfShots(captures, options,
+                 [&](const Shot& shot, const Disturbance&) { return shot.*field; });
 }
 
-// The rendered radiance as the camera wrote it.
-Photograph Expose(const float* radiance, const Shot& shot, const Drawn& drawn,
-                  const SamplePlane& plane, const ReflectanceConvention& convention,
-                  Stream* random) {
-  const Disturbance& d = drawn.disturbance;
-  const size_t texels = static_cast<size_t>(plane.width) * plane.height;
-  Photograph photograph{shot.believed, drawn.ldr, {}, std::vector<float>(texels, 1.0f)};
-  std::vector<float> gain(texels);
-  for (int row = 0; row < plane.height; ++row) {
-    for (int column = 0; column < plane.width; ++column) {
-      const size_t i = static_cast<size_t>(row) * plane.width + column;
-      const double x = 2 * plane.x_mm(column) / plane.width_mm;
-      const double y = 2 * plane.y_mm(row) / plane.height_mm;
-      const auto& [a, b, c] = shot.frame;
-      if (a * x + b * y > c) photograph.mask[i] = 0;
-      double log_gain =
-          shot.gradient_x * x + shot.gradient_y * y + shot.vignetting * (x * x + y * y - 0.67);
-      if (d.gain != 0) {
-        const TexelGeometry<double> g =
-            TexelGeometryInView(shot.view, convention.falloff, plane.x_mm(column), plane.y_mm(row));
-        const double angle = std::acos(std::clamp(g.half[2], -1.0, 1.0));
-        log_gain += d.gain * std::sin(2 * std::numbers::pi * angle / d.gain_period + d.gain_phase);
-      }
-      gain[i] = static_cast<float>(std::exp(log_gain));
-    }
-  }
-  const double gamma = kGamma * (1 + d.gamma);
-  for (size_t c = 0; c < 3; ++c) {
-    std::vector<float> picture(radiance + c * texels, radiance + (c + 1) * texels);
-    for (size_t i = 0; i < texels; ++i) {
-      picture[i] *= gain[i];
-      if (d.noise > 0) picture[i] += static_cast<float>(d.noise * random->Normal());
-    }
-    if (d.registration > 0) {
-      picture = Shifted(picture, plane.width, plane.height, shot.shift_x, shot.shift_y);
-    }
-    if (d.blur > 0) Blur(&picture, plane.width, plane.height, d.blur);
-    for (float& value : picture) {
-      value = drawn.ldr ? Quantised(value, gamma) : std::max(0.0f, value);
-    }
-    photograph.rgb.insert(photograph.rgb.end(), picture.begin(), picture.end());
-  }
-  return photograph;
+// Texel positions in [−1, 1]²: x rising with columns, y falling with rows.
+std::pair<Tensor, Tensor> Positions(const SamplePlane& plane, const torch::TensorOptions& options) {
+  const Tensor x = (torch::arange(plane.width, options) + 0.5) * (2.0 / plane.width) - 1;
+  const Tensor y = 1 - (torch::arange(plane.height, options) + 0.5) * (2.0 / plane.height);
+  return {x.view({1, 1, 1, 1, -1}), y.view({1, 1, 1, -1, 1})};
+}
+
+// What the camera's radiance is multiplied with and the renderer does not know, [B, N, 1, H, W].
+Tensor Gains(const std::vector<Drawn>& captures, const ViewBatch& truth,
+             const torch::TensorOptions& options) {
+  const auto [x, y] = Positions(truth.plane, options);
+  const auto of = [&](auto field) { return OfShots(captures, options, field); };
+  const Tensor angle = DirectionsOf(truth, options).half.slice(2, 2, 3).clamp(-1, 1).acos();
+  const Tensor wave =
+      (2 * std::numbers::pi * angle / of(&Disturbance::gain_period) + of(&Disturbance::gain_phase))
+          .sin();
+  return (of(&Shot::gradient_x) * x + of(&Shot::gradient_y) * y +
+          of(&Shot::vignetting) * (x.square() + y.square() - 0.67) + of(&Disturbance::gain) * wave)
+      .exp();
+}
+
+// Each picture looked up so many texels aside as its shot is, bilinearly; border texels continue.
+Tensor Shifted(const Tensor& pictures, const std::vector<Drawn>& captures) {
+  const auto options = pictures.options();
+  const int64_t height = pictures.size(3), width = pictures.size(4);
+  const auto along = [&](int64_t size) {
+    return (torch::arange(size, options) + 0.5) * (2.0 / static_cast<double>(size)) - 1;
+  };
+  const auto moved = [&](double Shot::*field, int64_t size) {
+    return OfShots(captures, options, field).flatten() * (2.0 / static_cast<double>(size));
+  };
+  const Tensor x = along(width).view({1, 1, -1}) + moved(&Shot::shift_x, width).view({-1, 1, 1});
+  const Tensor y = along(height).view({1, -1, 1}) + moved(&Shot::shift_y, height).view({-1, 1, 1});
+  const int64_t shots = x.size(0);
+  const Tensor grid =
+      torch::stack({x.expand({shots, height, width}), y.expand({shots, height, width})}, 3);
+  namespace F = torch::nn::functional;
+  return F::grid_sample(
+             pictures.flatten(0, 1), grid,
+             F::GridSampleFuncOptions().padding_mode(torch::kBorder).align_corners(false))
+      .view(pictures.sizes());
+}
+
+// Each of a texel's four neighbours with its capture's weight.
+Tensor Blurred(const Tensor& pictures, const std::vector<Drawn>& captures) {
+  const Tensor weight = OfShots(captures, pictures.options(), &Disturbance::blur).flatten(0, 1);
+  const Tensor flat = pictures.flatten(0, 1);
+  const int64_t height = flat.size(2), width = flat.size(3);
+  const Tensor wide = torch::replication_pad2d(flat, {1, 1, 1, 1});
+  const auto part = [&](int64_t row, int64_t column) {
+    return wide.slice(2, row, row + height).slice(3, column, column + width);
+  };
+  const Tensor sum = part(0, 1) + part(2, 1) + part(1, 0) + part(1, 2);
+  return ((1 - 4 * weight) * flat + weight * sum).view(pictures.sizes());
+}
+
+// 8 bits by a tone curve that is about the one that is undone.
+Tensor Quantised(const Tensor& radiance, const Tensor& gamma) {
+  return ((radiance.clamp(0, 1).pow(1 / gamma) * 255).round() / 255).pow(kGamma);
+}
+
+// The rendered radiance [B, N, 3, H, W] as the cameras wrote it.
+PhotographTensors Expose(const Tensor& radiance, const std::vector<Drawn>& captures,
+                         const ViewBatch& truth) {
+  const auto options = radiance.options();
+  const auto of = [&](const auto& number) { return OfShots(captures, options, number); };
+  const auto frame = [&](size_t k) {
+    return of([k](const Shot& shot, const Disturbance&) { return shot.frame[k]; });
+  };
+  Tensor pictures = radiance * Gains(captures, truth, options) +
+                    of(&Disturbance::noise) * torch::randn(radiance.sizes(), options);
+  pictures = Blurred(Shifted(pictures, captures), captures);
+  std::vector<float> clips;
+  for (const Drawn& drawn : captures) clips.push_back(drawn.ldr ? 1 : 0);
+  const Tensor ldr = torch::tensor(clips)
+                         .view({-1, 1, 1, 1, 1})
+                         .expand({-1, radiance.size(1), 1, 1, 1})
+                         .to(options);
+  const Tensor written = torch::where(
+      ldr > 0, Quantised(pictures, kGamma * (1 + of(&Disturbance::gamma))), pictures.clamp_min(0));
+  const auto [x, y] = Positions(truth.plane, options);
+  const Tensor mask = (frame(0) * x + frame(1) * y <= frame(2)).to(options);
+  return {written * mask, mask, ldr};
 }
 
 // The renderings of all shots, [B, N, 3, S, S]: of the maps, and where a capture has a second lobe,
@@ -269,17 +312,38 @@ Photograph Expose(const float* radiance, const Shot& shot, const Drawn& drawn,
 Tensor Render(const Tensor& encoded, const ViewBatch& batch, const std::vector<Drawn>& captures) {
   const Tensor maps = DecodeTexelsTorch(encoded);
   const Tensor one = RenderBatch(maps, batch);
-  const auto count = static_cast<int64_t>(captures.size());
-  Tensor share = torch::zeros({count, 1, 1, 1, 1}), width = torch::ones({count, 1, 1});
-  for (int64_t b = 0; b < count; ++b) {
-    const Disturbance& d = captures[static_cast<size_t>(b)].disturbance;
-    share[b].fill_(std::min(0.7, d.second_lobe));
-    width[b].fill_(d.second_lobe_width);
-  }
-  if (share.max().item<float>() == 0) return one.contiguous();
+  const bool all_one = std::all_of(captures.begin(), captures.end(), [](const Drawn& drawn) {
+    return drawn.disturbance.second_lobe == 0;
+  });
+  if (all_one) return one;
+  const auto of = [&](double Disturbance::*field) {
+    return OfShots(captures, encoded.options(), field).slice(1, 0, 1);
+  };
+  const Tensor share = of(&Disturbance::second_lobe).clamp_max(0.7);
   Tensor wide = maps.clone();
-  wide.select(1, kRoughness).mul_(width).clamp_(0.05, 1);
-  return (one * (1 - share) + RenderBatch(wide, batch) * share).contiguous();
+  wide.select(1, kRoughness)
+      .mul_(of(&Disturbance::second_lobe_width).flatten(1).unsqueeze(2))
+      .clamp_(0.05, 1);
+  return one * (1 - share) + RenderBatch(wide, batch) * share;
+}
+
+// Metals are said to be rare of many captures, of few with metal.
+Tensor Conditions(const Tensor& encoded, const std::vector<Drawn>& captures) {
+  constexpr double kLeastMetalF0 = 0.2, kLeastShare = 0.02;
+  const double metal_code = 2 * std::sqrt(kLeastMetalF0) - 1;
+  const Tensor metal = (encoded.slice(1, kEncodedSpecular, kEncodedRoughness).amax(1) > metal_code)
+                           .to(encoded.options())
+                           .mean({1, 2}) > kLeastShare;
+  std::vector<float> of_metals, of_others, calibrated;
+  for (const Drawn& drawn : captures) {
+    of_metals.push_back(drawn.rare_if_metal ? 1 : 0);
+    of_others.push_back(drawn.rare_if_not ? 1 : 0);
+    calibrated.push_back(drawn.calibrated ? 1 : 0);
+  }
+  const auto row = [&](const std::vector<float>& values) {
+    return torch::tensor(values).to(encoded.options());
+  };
+  return torch::stack({torch::where(metal, row(of_metals), row(of_others)), row(calibrated)}, 1);
 }
 
 }  // namespace
@@ -292,33 +356,24 @@ CaptureBatch PhotographMaps(const Tensor& encoded, int photographs, CaptureQuali
   const bool clean = quality == CaptureQuality::kClean;
   const CaptureKind kind = clean ? CaptureKind::kDir : DrawKind(random);
   const double side = clean ? 2.0 : random->Uniform(1.0, 2.4);
-  ViewBatch batch;
-  batch.plane = {width, height, side, side, TexelSampling::kPixelCentres};
-  batch.convention = {DiffuseWeight::kOne, FalloffOf(kind), TexelSampling::kPixelCentres};
-  batch.views_per_element = photographs;
+  ViewBatch truth;
+  truth.plane = {width, height, side, side, TexelSampling::kPixelCentres};
+  truth.convention = {DiffuseWeight::kOne, FalloffOf(kind), TexelSampling::kPixelCentres};
+  truth.views_per_element = photographs;
+  ViewBatch believed = truth;
   std::vector<Drawn> captures;
   for (int64_t b = 0; b < count; ++b) {
     captures.push_back(clean ? CleanCapture(photographs, random)
                              : DrawCapture(kind, photographs, random));
-    for (const Shot& shot : captures.back().shots) batch.views.push_back(shot.view);
-  }
-  const Tensor rendered = Render(encoded, batch, captures);
-  CaptureBatch result{torch::empty({count, photographs, kFeaturePlanes, height, width}),
-                      torch::empty({count, photographs, kProfileValues})};
-  for (int64_t b = 0; b < count; ++b) {
-    const Drawn& drawn = captures[static_cast<size_t>(b)];
-    for (int64_t n = 0; n < photographs; ++n) {
-      const Photograph photograph =
-          Expose(rendered[b][n].data_ptr<float>(), drawn.shots[static_cast<size_t>(n)], drawn,
-                 batch.plane, batch.convention, random);
-      const PhotographFeatures features = FeaturesOf(photograph, batch.plane, batch.convention);
-      std::copy(features.planes.begin(), features.planes.end(),
-                result.features[b][n].data_ptr<float>());
-      std::copy(features.profile.begin(), features.profile.end(),
-                result.profiles[b][n].data_ptr<float>());
+    for (const Shot& shot : captures.back().shots) {
+      truth.views.push_back(shot.view);
+      believed.views.push_back(shot.believed);
     }
   }
-  return result;
+  torch::manual_seed(static_cast<std::uint64_t>(random->Bits() >> 1));  // of the noise
+  const PhotographTensors seen = Expose(Render(encoded, truth, captures), captures, truth);
+  const FeatureTensors features = FeaturesOfTensors(seen, believed);
+  return {features.planes, features.profiles, Conditions(encoded, captures)};
 }
 
 }  // namespace glint

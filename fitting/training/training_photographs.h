@@ -15,8 +15,9 @@
 namespace glint {
 
 struct CaptureBatch {
-  torch::Tensor features;  // [B, N, 11, S, S]
-  torch::Tensor profiles;  // [B, N, 72]
+  torch::Tensor features;    // [B, N, 11, S, S]
+  torch::Tensor profiles;    // [B, N, 72]
+  torch::Tensor conditions;  // [B, 2] (estimator_conditions.h)
 };
 
 enum class CaptureQuality {
@@ -24,7 +25,7 @@ enum class CaptureQuality {
   kClean   // DIR 2019's geometry, rightly exposed, 8 bits: for validation
 };
 
-// `photographs` of each of the maps [B, 9, S, S], drawn from `random`.
+// `photographs` of each of the maps [B, 9, S, S], drawn from `random`, on the maps' device.
 CaptureBatch PhotographMaps(const torch::Tensor& encoded, int photographs, CaptureQuality quality,
                             Stream* random);
 

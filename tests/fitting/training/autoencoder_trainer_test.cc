@@ -54,7 +54,7 @@ TEST(Trainer, CodesOfDrawnWeightsHaveUnitVarianceFromTheFirstStep) {
   const Autoencoder network = Autoencoder::Load(weights);
   double sum = 0, count = 0;
   for (std::uint64_t k = 0; k < 32; ++k) {  // as large as the crops: the border counts
-    const SvbrdfMaps maps = ToyMaterial(k, options.crop, options.crop);
+    const SvbrdfMaps maps = ToyMaterial(k, options.crops[0], options.crops[0]);
     for (const float z : network.Encode(maps, 1).values) sum += double{z} * z, ++count;
   }
   EXPECT_GT(sum / count, 0.5);
@@ -176,11 +176,37 @@ TEST_F(TrainedWeights, OfAnotherEncodingAreRefused) {
   EXPECT_THAT(LoadError(other), testing::HasSubstr("encoding"));
 }
 
+TEST(Trainer, AMostGradientThatNoStepReachesChangesNothing) {
+  const test::TemporaryFolder folder;
+  const auto trained = [&](double most) {
+    AutoencoderTrainOptions options = Tiny(3);
+    options.most_gradient = most;
+    const fs::path path = folder.path() / "w.safetensors";
+    TrainAutoencoder(options, {path, {}, {}, false}, Toy, Unseen, {});
+    return test::ReadAll(path);
+  };
+  const std::string free = trained(0);
+  EXPECT_EQ(trained(1e9), free);
+  EXPECT_NE(trained(1e-6), free);
+}
+
+TEST(Trainer, ThreadsThatMakeMaterialsDoNotChangeAByte) {
+  const test::TemporaryFolder folder;
+  const auto trained = [&](int threads) {
+    AutoencoderTrainOptions options = Tiny(12);
+    options.pool.threads = threads;
+    const fs::path path = folder.path() / "w.safetensors";
+    TrainAutoencoder(options, {path, {}, {}, false}, Toy, Unseen, {});
+    return test::ReadAll(path);
+  };
+  EXPECT_EQ(trained(1), trained(5));
+}
+
 TEST(Trainer, OptionsThatCannotBeAreRefused) {
   const test::TemporaryFolder folder;
   const TrainFiles files{folder.path() / "w.safetensors", {}, {}, false};
   AutoencoderTrainOptions crop = Tiny(1), batch = Tiny(1), endless = Tiny(0);
-  crop.crop = 48;
+  crop.crops = {48};
   batch.batch = 0;
   EXPECT_THROW(TrainAutoencoder(crop, files, Toy, Unseen, {}), std::runtime_error);
   EXPECT_THROW(TrainAutoencoder(batch, files, Toy, Unseen, {}), std::runtime_error);

@@ -46,7 +46,7 @@ Options TinyTraining(std::int64_t steps) {
   Options options;
   options.steps = steps;
   options.batch = 4;
-  options.crop = 32;
+  options.crops = {32};
   options.learning_rate = 3e-3;
   options.warmup_steps = 10;
   options.render_views = 1;
