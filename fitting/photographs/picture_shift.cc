@@ -50,27 +50,37 @@ bool CornerShifts::any() const {
   return std::any_of(column, column + 4, moved) || std::any_of(row, row + 4, moved);
 }
 
-LookedUp LookUp(const float* plane, int width, int height, double column, double row,
-                const PictureRows& rows) {
+PictureLookUp::PictureLookUp(int width, int height, double column, double row,
+                             const PictureRows& rows) {
   const double c0 = std::floor(column), r0 = std::floor(row);
-  double across[4], down[4], across_slopes[4], down_slopes[4];
-  CubicWeights(column - c0, across, across_slopes);
-  CubicWeights(row - r0, down, down_slopes);
+  CubicWeights(column - c0, across_, across_slopes_);
+  CubicWeights(row - r0, down_, down_slopes_);
+  for (int i = 0; i < 4; ++i) {
+    const int r = std::clamp(static_cast<int>(r0) + i - 1 - rows.first, 0, height - 1);
+    first_of_row_[i] = static_cast<std::ptrdiff_t>(r) * width;
+    columns_[i] = std::clamp(static_cast<int>(c0) + i - 1, 0, width - 1);
+  }
+}
+
+LookedUp PictureLookUp::In(const float* plane) const {
   LookedUp sum{0, 0, 0};
   for (int j = 0; j < 4; ++j) {
-    const int r = std::clamp(static_cast<int>(r0) + j - 1 - rows.first, 0, height - 1);
     double line = 0, line_slope = 0;
     for (int i = 0; i < 4; ++i) {
-      const int c = std::clamp(static_cast<int>(c0) + i - 1, 0, width - 1);
-      const double value = plane[static_cast<std::ptrdiff_t>(r) * width + c];
-      line += across[i] * value;
-      line_slope += across_slopes[i] * value;
+      const double value = plane[first_of_row_[j] + columns_[i]];
+      line += across_[i] * value;
+      line_slope += across_slopes_[i] * value;
     }
-    sum.value += down[j] * line;
-    sum.by_column += down[j] * line_slope;
-    sum.by_row += down_slopes[j] * line;
+    sum.value += down_[j] * line;
+    sum.by_column += down_[j] * line_slope;
+    sum.by_row += down_slopes_[j] * line;
   }
   return sum;
+}
+
+LookedUp LookUp(const float* plane, int width, int height, double column, double row,
+                const PictureRows& rows) {
+  return PictureLookUp(width, height, column, row, rows).In(plane);
 }
 
 double NoiseLeft(const CornerShifts& shifts) {

@@ -1,6 +1,7 @@
 // A picture of the sample moved by a fraction of a texel: registration errors, made and undone.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace glint {
@@ -32,7 +33,18 @@ struct PictureRows {
 struct LookedUp {
   double value, by_column, by_row;
 };
-// `row` counts from the picture's top; what is not at hand is as the nearest row that is.
+// One place in all planes of a picture. `row` counts from the picture's top; what is not at hand is
+// as the nearest row that is.
+class PictureLookUp {
+ public:
+  PictureLookUp(int width, int height, double column, double row, const PictureRows& rows = {});
+  LookedUp In(const float* plane) const;
+
+ private:
+  std::ptrdiff_t first_of_row_[4];
+  int columns_[4];
+  double across_[4], down_[4], across_slopes_[4], down_slopes_[4];
+};
 LookedUp LookUp(const float* plane, int width, int height, double column, double row,
                 const PictureRows& rows = {});
 

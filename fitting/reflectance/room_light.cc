@@ -154,7 +154,7 @@ Vec3d RoomLight::RadianceFrom(const Vec3d& direction) const {
   return RoomIrradiance(*this, HarmonicsAt(direction[0], direction[1], direction[2], kRoomDegree));
 }
 
-Vec3d RoomIrradiance(const RoomLight& room, const RoomHarmonics& terms) {
+Vec3d RoomIrradiance(const RoomLight& room, std::span<const double> terms) {
   Vec3d sum{0, 0, 0};
   for (size_t j = 0; j < room.radiance_rgb.size(); ++j) {
     for (size_t c = 0; c < 3; ++c) sum[c] += terms[j] * room.radiance_rgb[j][c];

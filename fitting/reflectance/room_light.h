@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "fitting/reflectance/brdf.h"
@@ -64,7 +65,8 @@ class RoomReflection {
   int specular_degree_ = kRoomDegree;  // above it the highlight is too wide to see any
 };
 
-// What a room gives: Σ terms·radiance_rgb, of the terms that the room has.
-Vec3d RoomIrradiance(const RoomLight& room, const RoomHarmonics& terms);
+// What a room gives: Σ terms·radiance_rgb, of the terms that the room has; `terms` has as many at
+// least.
+Vec3d RoomIrradiance(const RoomLight& room, std::span<const double> terms);
 
 }  // namespace glint

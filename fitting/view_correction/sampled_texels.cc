@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "base/parallel/parallel.h"
 #include "fitting/reflectance/log_radiance.h"
@@ -97,9 +98,16 @@ struct SampledTexels::Texel {
   double corner_weights[4];
   TexelValues start;
   std::vector<int> views;  // that see it
-  // What it reflects of the room, as the start says: that changes slowly with the normal.
-  RoomHarmonics room_diffuse;
-  std::vector<RoomHarmonics> room_specular;  // by view that sees it
+  // What it reflects of each term of the room, as the start says (that changes slowly with the
+  // normal): its diffuse lobe and, by view that sees it, its specular one.
+  std::vector<double> room;
+  std::span<const double> room_diffuse(int terms) const { return OfRoom(0, terms); }
+  std::span<const double> room_specular(size_t k, int terms) const { return OfRoom(k + 1, terms); }
+
+ private:
+  std::span<const double> OfRoom(size_t k, int terms) const {
+    return std::span(room).subspan(k * static_cast<size_t>(terms), static_cast<size_t>(terms));
+  }
 };
 
 struct SampledTexels::Worker {
@@ -134,25 +142,18 @@ SampledTexels::SampledTexels(const PhotographSet& set, const SvbrdfMaps& maps,
   const int width = set.plane.width, height = set.plane.height;
   const int stride = std::max(
       1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(maps.texels()) / texels))));
-  const int room_degree = unknowns.RoomAt(Eigen::VectorXd::Zero(unknowns.size())).degree();
+  const RoomLight room = unknowns.RoomAt(Eigen::VectorXd::Zero(unknowns.size()));
   for (int row = kMargin + stride / 2; row < height - kMargin; row += stride) {
     for (int column = kMargin + stride / 2; column < width - kMargin; column += stride) {
       const size_t index = static_cast<size_t>(row) * width + column;
-      Texel texel{column, row, set.plane.x_mm(column), set.plane.y_mm(row), {}, {}, {}, {}, {}};
+      Texel texel{column, row, set.plane.x_mm(column), set.plane.y_mm(row), {}, {}, {}, {}};
       for (int v = 0; v < unknowns.views(); ++v) {
         const std::vector<float>& mask = set.photographs[static_cast<size_t>(v)].mask;
         if (UsableAround(mask, width, column, row)) texel.views.push_back(v);
       }
       if (texel.views.empty()) continue;
       texel.start = ReadTexel(maps, index);
-      const RoomReflection reflection(TexelAt(maps, index));
-      texel.room_diffuse = reflection.diffuse();
-      for (const int v : texel.views) {
-        const TexelGeometry<double> geometry =
-            TexelGeometryInView<double>(set.photographs[static_cast<size_t>(v)].view,
-                                        set.convention.falloff, texel.x_mm, texel.y_mm);
-        texel.room_specular.push_back(reflection.Specular(geometry.camera, room_degree));
-      }
+      if (room.any()) AddRoom(TexelAt(maps, index), room, &texel);
       CornerWeights((column + 0.5) / width, (row + 0.5) / height, texel.corner_weights);
       residuals_ += 3.0 * static_cast<double>(texel.views.size());
       texels_.push_back(std::move(texel));
@@ -185,11 +186,32 @@ TexelPrior SampledTexels::PriorOf(const Texel& texel) const {
   return TexelPrior(TexelGaussian(texel.start, ErrorsOfStart()), hold_);
 }
 
-void SampledTexels::Gather(std::span<const size_t> texels, const Eigen::VectorXd& x, Worker* worker,
+void SampledTexels::AddRoom(const TexelSvbrdf<double>& svbrdf, const RoomLight& room,
+                            Texel* texel) const {
+  const RoomReflection reflection(svbrdf);
+  const auto add = [&](const RoomHarmonics& harmonics) {
+    texel->room.insert(texel->room.end(), harmonics.begin(), harmonics.begin() + room.terms());
+  };
+  add(reflection.diffuse());
+  for (const int v : texel->views) {
+    const TexelGeometry<double> geometry =
+        TexelGeometryInView<double>(set_.photographs[static_cast<size_t>(v)].view,
+                                    set_.convention.falloff, texel->x_mm, texel->y_mm);
+    add(reflection.Specular(geometry.camera, room.degree()));
+  }
+}
+
+SampledTexels::ViewsAt SampledTexels::At(const Eigen::VectorXd& x) const {
+  ViewsAt at{x, {}, unknowns_.RoomAt(x)};
+  for (int v = 0; v < unknowns_.views(); ++v) at.views.push_back(unknowns_.ViewAt(v, x));
+  return at;
+}
+
+void SampledTexels::Gather(std::span<const size_t> texels, const ViewsAt& at, Worker* worker,
                            BatchObservations* observations) const {
   const SamplePlane& plane = set_.plane;
   const size_t all = static_cast<size_t>(plane.width) * plane.height;
-  const RoomLight room = unknowns_.RoomAt(x);
+  const auto& [x, views, room] = at;
   observations->Clear(unknowns_.views());
   for (size_t i = 0; i < texels.size(); ++i) {
     const Texel& texel = texels_[texels[i]];
@@ -202,11 +224,11 @@ void SampledTexels::Gather(std::span<const size_t> texels, const Eigen::VectorXd
         column += texel.corner_weights[k] * x[unknowns_.shift(v) + k];
         row += texel.corner_weights[k] * x[unknowns_.shift(v) + 4 + k];
       }
+      const PictureLookUp place(plane.width, plane.height, column, row);
       float radiance[3];
       bool clipped[3];
       for (int c = 0; c < 3; ++c) {
-        LookedUp seen = LookUp(photograph.rgb.data() + static_cast<size_t>(c) * all, plane.width,
-                               plane.height, column, row);
+        LookedUp seen = place.In(photograph.rgb.data() + static_cast<size_t>(c) * all);
         seen.value = std::max(seen.value, 0.0);
         radiance[c] = static_cast<float>(seen.value);
         clipped[c] = photograph.ldr && seen.value >= kClipped;
@@ -216,15 +238,15 @@ void SampledTexels::Gather(std::span<const size_t> texels, const Eigen::VectorXd
     }
   }
   for (int v = 0; v < unknowns_.views(); ++v) {
-    observations->Complete(v, BatchView(unknowns_.ViewAt(v, x), set_.convention.falloff));
+    observations->Complete(v, BatchView(views[static_cast<size_t>(v)], set_.convention.falloff));
   }
   if (!room.any()) return;
   for (size_t i = 0; i < texels.size(); ++i) {
     const Texel& texel = texels_[texels[i]];
-    const Vec3d diffuse = RoomIrradiance(room, texel.room_diffuse);
+    const Vec3d diffuse = RoomIrradiance(room, texel.room_diffuse(room.terms()));
     for (size_t k = 0; k < texel.views.size(); ++k) {
-      const View view = unknowns_.ViewAt(texel.views[k], x);
-      const Vec3d specular = RoomIrradiance(room, texel.room_specular[k]);
+      const View& view = views[static_cast<size_t>(texel.views[k])];
+      const Vec3d specular = RoomIrradiance(room, texel.room_specular(k, room.terms()));
       double ambient[3], ambient_specular[3];
       for (size_t c = 0; c < 3; ++c) {
         ambient[c] = view.exposure * (view.ambient_rgb[c] + diffuse[c]);
@@ -236,8 +258,8 @@ void SampledTexels::Gather(std::span<const size_t> texels, const Eigen::VectorXd
 }
 
 // The sum of the texels' costs.
-double SampledTexels::FitBlock(size_t first, size_t count, const Eigen::VectorXd& x,
-                               const Values* others, Worker* worker, Values* values) const {
+double SampledTexels::FitBlock(size_t first, size_t count, const ViewsAt& at, const Values* others,
+                               Worker* worker, Values* values) const {
   const Values starts(values->begin() + static_cast<std::ptrdiff_t>(first),
                       values->begin() + static_cast<std::ptrdiff_t>(first + count));
   std::vector<double> costs(count, std::numeric_limits<double>::infinity());
@@ -245,7 +267,7 @@ double SampledTexels::FitBlock(size_t first, size_t count, const Eigen::VectorXd
     worker->batches.Begin(
         BatchSearch::From::kStart,
         [&](std::span<const size_t> texels, BatchObservations* observations) {
-          Gather(texels, x, worker, observations);
+          Gather(texels, at, worker, observations);
         },
         [&](const BatchSearch::Task& task, const BatchSearch::Found& found) {
           double& cost = costs[task.id - first];
@@ -269,9 +291,10 @@ double SampledTexels::FitBlock(size_t first, size_t count, const Eigen::VectorXd
 double SampledTexels::Fit(const Eigen::VectorXd& x, const Values* others, Values* values) {
   const size_t pieces = (texels_.size() + kTexelsPerPiece - 1) / kTexelsPerPiece;
   std::vector<double> costs(pieces);
+  const ViewsAt views = At(x);
   ForEachPieceByWorker(static_cast<int>(pieces), threads_, [&](int piece, int at) {
     const size_t k = static_cast<size_t>(piece), first = k * kTexelsPerPiece;
-    costs[k] = FitBlock(first, std::min(kTexelsPerPiece, texels_.size() - first), x, others,
+    costs[k] = FitBlock(first, std::min(kTexelsPerPiece, texels_.size() - first), views, others,
                         workers_[static_cast<size_t>(at)].get(), values);
   });
   double sum = 0;
@@ -279,9 +302,9 @@ double SampledTexels::Fit(const Eigen::VectorXd& x, const Values* others, Values
   return sum;
 }
 
-BatchGram SampledTexels::GramAt(std::span<const size_t> texels, const Eigen::VectorXd& x,
+BatchGram SampledTexels::GramAt(std::span<const size_t> texels, const ViewsAt& at,
                                 const Values& values, Worker* worker) const {
-  Gather(texels, x, worker, &worker->observations);
+  Gather(texels, at, worker, &worker->observations);
   BatchValues batch;
   for (size_t i = 0; i < texels.size(); ++i) {
     SetLane(static_cast<int>(i), values[texels[i]], &batch);
@@ -291,17 +314,17 @@ BatchGram SampledTexels::GramAt(std::span<const size_t> texels, const Eigen::Vec
   return gram;
 }
 
-void SampledTexels::AddResiduals(const Texel& texel, int lane, const Eigen::VectorXd& x,
+void SampledTexels::AddResiduals(const Texel& texel, int lane, const ViewsAt& at,
                                  const TexelValues& values, const Worker& worker,
                                  TexelReduction* reduction) const {
   const TexelSvbrdf<double> svbrdf = TexelFromValues(values.data());
   const UnknownKinds& kinds = unknowns_.kinds();
-  const RoomLight room = unknowns_.RoomAt(x);
+  const RoomLight& room = at.room;
   Eigen::VectorXd by_room(room.terms());
   std::vector<std::pair<int, double>> by_views;
   for (size_t k = 0; k < texel.views.size(); ++k) {
     const int v = texel.views[k];
-    const View view = unknowns_.ViewAt(v, x);
+    const View& view = at.views[static_cast<size_t>(v)];
     Jet radiance[3];
     ShadeByLight(svbrdf, view, set_.convention, unknowns_.light_distance_mm(v), texel.x_mm,
                  texel.y_mm, radiance);
@@ -335,9 +358,11 @@ double SampledTexels::ReflectRoom(const Texel& texel, size_t k, const TexelSvbrd
   const double diffuse =
       exposure * DiffuseLobe(svbrdf, set_.convention.diffuse_weight, channel).value;
   const double specular = exposure * svbrdf.specular[channel] * kInversePi;
+  const std::span<const double> of_diffuse = texel.room_diffuse(room.terms());
+  const std::span<const double> of_specular = texel.room_specular(k, room.terms());
   double radiance = 0;
   for (size_t j = 0; j < room.radiance_rgb.size(); ++j) {
-    const double by = diffuse * texel.room_diffuse[j] + specular * texel.room_specular[k][j];
+    const double by = diffuse * of_diffuse[j] + specular * of_specular[j];
     (*by_term)[static_cast<Eigen::Index>(j)] = by;
     radiance += by * room.radiance_rgb[j][static_cast<size_t>(channel)];
   }
@@ -345,31 +370,34 @@ double SampledTexels::ReflectRoom(const Texel& texel, size_t k, const TexelSvbrd
 }
 
 NormalEquations SampledTexels::Reduce(const Eigen::VectorXd& x, const Values& values) {
-  std::vector<NormalEquations> sums(kSums, NormalEquations(0));
+  const ViewsAt views = At(x);
+  while (reductions_.size() < kSums) {
+    reductions_.emplace_back(unknowns_.size(), unknowns_.kinds().room_terms);
+  }
   ForEachPieceByWorker(kSums, threads_, [&](int piece, int at) {
     const size_t k = static_cast<size_t>(piece);
     const size_t begin = texels_.size() * k / kSums, end = texels_.size() * (k + 1) / kSums;
     Worker* worker = workers_[static_cast<size_t>(at)].get();
-    TexelReduction reduction(unknowns_.size(), unknowns_.kinds().room_terms);
+    TexelReduction& reduction = reductions_[k];
+    reduction.Clear();
     ForEachBatch(begin, end, [&](std::span<const size_t> texels) {
-      GramAt(texels, x, values, worker);
+      GramAt(texels, views, values, worker);
       for (size_t i = 0; i < texels.size(); ++i) {
         const size_t t = texels[i];
         TexelGram gram =
             worker->residuals.GramOf(static_cast<int>(i), worker->observations.views());
         PriorOf(texels_[t]).AddTo(values[t], &gram);
         reduction.Begin(values[t]);
-        AddResiduals(texels_[t], static_cast<int>(i), x, values[t], *worker, &reduction);
+        AddResiduals(texels_[t], static_cast<int>(i), views, values[t], *worker, &reduction);
         reduction.Eliminate(gram, &following_[t]);
       }
     });
     reduction.Finish();
-    sums[k] = std::move(reduction.equations);
   });
   NormalEquations total(unknowns_.size());
-  for (const NormalEquations& sum : sums) {
-    total.hessian += sum.hessian;
-    total.gradient += sum.gradient;
+  for (const TexelReduction& reduction : reductions_) {
+    total.hessian += reduction.equations.hessian;
+    total.gradient += reduction.equations.gradient;
   }
   // Only the lower triangle is complete.
   total.hessian.triangularView<Eigen::StrictlyUpper>() = total.hessian.transpose();
@@ -410,8 +438,9 @@ Eigen::MatrixXd SampledTexels::MeanSlopeByViews() const {
 double SampledTexels::SharedNoise(const Eigen::VectorXd& x, const Values& values) {
   Worker* worker = workers_.front().get();
   ResidualNoise noise;
+  const ViewsAt views = At(x);
   ForEachBatch(0, texels_.size(), [&](std::span<const size_t> texels) {
-    const BatchGram photographs = GramAt(texels, x, values, worker);
+    const BatchGram photographs = GramAt(texels, views, values, worker);
     for (size_t i = 0; i < texels.size(); ++i) {
       const int lane = static_cast<int>(i);
       const int freedom = 3 * worker->observations.seen(lane) - kTexelParameters;

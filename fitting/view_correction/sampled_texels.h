@@ -51,19 +51,27 @@ class SampledTexels {
  private:
   struct Texel;
   struct Worker;
+  // The views as some unknowns say.
+  struct ViewsAt {
+    const Eigen::VectorXd& x;
+    std::vector<View> views;
+    RoomLight room;
+  };
+  ViewsAt At(const Eigen::VectorXd& x) const;
   TexelPrior PriorOf(const Texel& texel) const;
+  // What it reflects of the room's terms.
+  void AddRoom(const TexelSvbrdf<double>& svbrdf, const RoomLight& room, Texel* texel) const;
   // The observations of some texels, each in its lane; all of the set's views.
-  void Gather(std::span<const size_t> texels, const Eigen::VectorXd& x, Worker* worker,
+  void Gather(std::span<const size_t> texels, const ViewsAt& at, Worker* worker,
               BatchObservations* observations) const;
-  double FitBlock(size_t first, size_t count, const Eigen::VectorXd& x, const Values* others,
+  double FitBlock(size_t first, size_t count, const ViewsAt& at, const Values* others,
                   Worker* worker, Values* values) const;
   // Of texels at `values`, photographs alone; leaves their observations and residuals in `worker`.
-  BatchGram GramAt(std::span<const size_t> texels, const Eigen::VectorXd& x, const Values& values,
+  BatchGram GramAt(std::span<const size_t> texels, const ViewsAt& at, const Values& values,
                    Worker* worker) const;
   // One texel's residuals with their derivatives by the views.
-  void AddResiduals(const Texel& texel, int lane, const Eigen::VectorXd& x,
-                    const TexelValues& values, const Worker& worker,
-                    TexelReduction* reduction) const;
+  void AddResiduals(const Texel& texel, int lane, const ViewsAt& at, const TexelValues& values,
+                    const Worker& worker, TexelReduction* reduction) const;
   // What the texel's k-th view shows of the room, and its derivatives by the room's terms.
   double ReflectRoom(const Texel& texel, size_t k, const TexelSvbrdf<double>& svbrdf,
                      double exposure, const RoomLight& room, int channel,
@@ -76,6 +84,7 @@ class SampledTexels {
   double residuals_ = 0;
   std::vector<Texel> texels_;
   std::vector<TexelFollowing> following_;
+  std::vector<TexelReduction> reductions_;  // memory of Reduce()
   std::vector<std::unique_ptr<Worker>> workers_;
 };
 

@@ -3,18 +3,19 @@
 #include <Eigen/Cholesky>
 
 namespace glint {
-namespace {
-
-constexpr int kTexelBatch = 16;
-constexpr int kRoomBatch = 256;  // residuals
-
-}  // namespace
 
 TexelReduction::TexelReduction(int unknowns, int room_terms)
-    : equations(unknowns), room_terms_(room_terms) {
-  texels_.rows.resize(kTexelBatch * kTexelParameters, unknowns);
-  for (Batch& batch : room_) batch.rows.resize(kRoomBatch, room_terms);
-  products_.resize(kTexelParameters, unknowns);
+    : equations(unknowns),
+      room_terms_(room_terms),
+      products_(kTexelParameters, unknowns),
+      texels_(unknowns),
+      room_{OuterProducts(room_terms), OuterProducts(room_terms), OuterProducts(room_terms)} {}
+
+void TexelReduction::Clear() {
+  equations.hessian.setZero();
+  equations.gradient.setZero();
+  texels_.Clear();
+  for (OuterProducts& room : room_) room.Clear();
 }
 
 void TexelReduction::Begin(const TexelValues& values) {
@@ -54,9 +55,7 @@ void TexelReduction::AddRoom(int channel, double residual,
   for (const auto& [unknown, by_view] : by_views) {
     equations.hessian.row(unknown).segment(first, room_terms_) += by_view * by_room.transpose();
   }
-  Batch& batch = room_[static_cast<size_t>(channel)];
-  batch.rows.row(batch.filled++) = by_room.transpose();
-  if (batch.filled == batch.rows.rows()) FlushRoom(channel);
+  room_[static_cast<size_t>(channel)].AddRow() = by_room.transpose();
 }
 
 void TexelReduction::Eliminate(const TexelGram& gram, TexelFollowing* following) {
@@ -77,33 +76,18 @@ void TexelReduction::Eliminate(const TexelGram& gram, TexelFollowing* following)
       factor.matrixL().solve(products_);
   const Eigen::Matrix<double, kTexelParameters, 1> half_gradient = factor.matrixL().solve(gradient);
   equations.gradient.noalias() -= half.transpose() * half_gradient;
-  texels_.rows.middleRows<kTexelParameters>(texels_.filled) = half;
-  texels_.filled += kTexelParameters;
-  if (texels_.filled == texels_.rows.rows()) Flush();
+  for (int i = 0; i < kTexelParameters; ++i) texels_.AddRow() = half.row(i);
   following->by_views = factor.matrixU().solve(half);
   following->own = factor.matrixU().solve(half_gradient);
 }
 
 void TexelReduction::Finish() {
-  Flush();
-  for (int c = 0; c < 3; ++c) FlushRoom(c);
-}
-
-void TexelReduction::Flush() {
-  if (texels_.filled == 0) return;  // Eigen divides by the number of rows
-  equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(
-      texels_.rows.topRows(texels_.filled).transpose(), -1);
-  texels_.filled = 0;
-}
-
-void TexelReduction::FlushRoom(int channel) {
-  Batch& batch = room_[static_cast<size_t>(channel)];
-  if (batch.filled == 0) return;
-  const int first = first_of_room(channel);
-  equations.hessian.block(first, first, room_terms_, room_terms_)
-      .selfadjointView<Eigen::Lower>()
-      .rankUpdate(batch.rows.topRows(batch.filled).transpose(), 1);
-  batch.filled = 0;
+  texels_.AddTo(-1, equations.hessian);
+  for (int c = 0; c < 3; ++c) {
+    const int first = first_of_room(c);
+    room_[static_cast<size_t>(c)].AddTo(
+        1, equations.hessian.block(first, first, room_terms_, room_terms_));
+  }
 }
 
 }  // namespace glint

@@ -10,6 +10,7 @@
 #include "fitting/texel/texel_batch.h"
 #include "fitting/texel/texel_parameters.h"
 #include "fitting/view_correction/normal_equations.h"
+#include "fitting/view_correction/outer_products.h"
 
 namespace glint {
 
@@ -24,6 +25,8 @@ class TexelReduction {
   // `room_terms`: of a channel; the room's unknowns come first of all, channel by channel.
   TexelReduction(int unknowns, int room_terms);
 
+  // To begin anew.
+  void Clear();
   // A texel with these values.
   void Begin(const TexelValues& values);
   // One residual of it, and its derivatives by a few unknowns and by the channel's terms of the
@@ -38,22 +41,15 @@ class TexelReduction {
   NormalEquations equations;
 
  private:
-  // Rows whose outer products are summed by one matrix product.
-  struct Batch {
-    Eigen::MatrixXd rows;
-    Eigen::Index filled = 0;
-  };
   void AddRoom(int channel, double residual, const std::vector<std::pair<int, double>>& by_views,
                const Eigen::VectorXd& by_room);
-  void Flush();
-  void FlushRoom(int channel);
   int first_of_room(int channel) const { return room_terms_ * channel; }
 
   int room_terms_;
   TexelValues by_variable_{};  // ∂value/∂(the solver's variable): a value at its bound stays
   Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> products_;
-  Batch texels_;
-  std::array<Batch, 3> room_;
+  OuterProducts texels_;
+  std::array<OuterProducts, 3> room_;  // by channel
 };
 
 }  // namespace glint
