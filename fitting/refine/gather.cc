@@ -1,6 +1,8 @@
 #include "fitting/refine/gather.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "fitting/reflectance/texel_at.h"
 
@@ -66,6 +68,37 @@ void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps,
                                geometry.ambient_specular);
     }
   }
+}
+
+GatheredObservations::GatheredObservations(const RefineProblem& problem, const SvbrdfMaps& maps)
+    : problem_(problem), maps_(maps), all_views_(problem.views.size()) {
+  std::iota(all_views_.begin(), all_views_.end(), 0);
+}
+
+void GatheredObservations::Of(std::span<const size_t> texels, std::span<const int> views,
+                              BatchObservations* observations) {
+  observations->CopyViews(Find(texels)->all, views);
+}
+
+std::shared_ptr<const GatheredObservations::Batch> GatheredObservations::Find(
+    std::span<const size_t> texels) {
+  {
+    std::lock_guard lock(mutex_);
+    const auto kept = batches_.find(texels.front());
+    if (kept != batches_.end() && std::ranges::equal(kept->second->texels, texels)) {
+      return kept->second;
+    }
+  }
+  auto batch = std::make_shared<Batch>(Batch{
+      {texels.begin(), texels.end()}, BatchObservations(static_cast<int>(all_views_.size()))});
+  GatherObservations(problem_, maps_, texels, all_views_, &batch->all);
+  std::lock_guard lock(mutex_);
+  return batches_[texels.front()] = std::move(batch);
+}
+
+void GatheredObservations::Forget() {
+  std::lock_guard lock(mutex_);
+  batches_.clear();
 }
 
 }  // namespace glint
