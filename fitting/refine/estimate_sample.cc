@@ -48,6 +48,7 @@ using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 // By Cholesky's factor and its inverse; Eigen's solver takes five times as long for so few.
 Matrix9 InverseOfPositive(const Matrix9& matrix) {
   const Eigen::LLT<Matrix9> cholesky(matrix);
+  if (cholesky.info() != Eigen::Success) return matrix.ldlt().solve(Matrix9::Identity());
   const Matrix9& factor = cholesky.matrixLLT();  // its lower triangle
   Matrix9 inverse = Matrix9::Zero();             // of the factor
   for (int j = 0; j < kTexelParameters; ++j) {
@@ -74,6 +75,16 @@ Matrix9 InverseOf(const TexelGram& gram) {
   return InverseOfPositive(information);
 }
 
+// Of the photographs alone.
+BatchGram GramOf(const BatchObservations& observed, std::span<const TexelValues> values,
+                 RefineWorker* worker, BatchResiduals* residuals = nullptr) {
+  BatchValues batch;
+  for (size_t i = 0; i < values.size(); ++i) SetLane(static_cast<int>(i), values[i], &batch);
+  BatchGram gram;
+  worker->batches.evaluator().Gram(observed, batch, &gram, residuals);
+  return gram;
+}
+
 // Solves sampled texels for the model, with views as the model says.
 class Estimator {
  public:
@@ -97,12 +108,10 @@ class Estimator {
   void SetViews(const ViewDeviations& deviations);
   void Solve(std::span<const SampleTask> tasks, const SampleRequest& request, RefineWorker* worker,
              std::span<SampledTexel> solved);
-  BatchGram GramAt(std::span<const size_t> texels, std::span<const TexelValues> values,
-                   std::span<const int> views, RefineWorker* worker,
-                   BatchResiduals* residuals = nullptr);
   void Describe(std::span<const SampleTask> tasks, const SampleRequest& request,
                 RefineWorker* worker, std::span<SampledTexel> solved);
   std::vector<DeviationProducts> OfViews(size_t texel, int lane, std::span<const int> views,
+                                         const BatchObservations& observed,
                                          const RefineWorker& worker) const;
 
   RefineProblem problem_;         // views as they deviate
@@ -134,8 +143,8 @@ void Estimator::Run() {
     RefineWorker* w = workers_[static_cast<size_t>(worker)].get();
     for (size_t first = 0; first < texels.size(); first += kBatch) {
       const size_t count = std::min<size_t>(kBatch, texels.size() - first);
-      const BatchGram gram =
-          GramAt(texels.subspan(first, count), values.subspan(first, count), views, w);
+      const BatchGram gram = GramOf(gathered_.Of(texels.subspan(first, count), views, &w->observed),
+                                    values.subspan(first, count), w);
       for (int lane = 0; lane < static_cast<int>(count); ++lane) {
         squares[first + static_cast<size_t>(lane)] = gram.Squares(lane);
       }
@@ -154,10 +163,10 @@ void Estimator::Solve(std::span<const SampleTask> tasks, const SampleRequest& re
   batches.SetExplained(request.explained_sigma);
   batches.Begin(
       request.near_minimum ? From::kNearMinimum : From::kStart,
-      [&](std::span<const size_t> ids, BatchObservations* observations) {
+      [&](std::span<const size_t> ids, BatchObservations* buffer) {
         std::array<size_t, kBatch> texels;
         for (size_t i = 0; i < ids.size(); ++i) texels[i] = tasks[ids[i]].texel;
-        gathered_.Of(std::span(texels).first(ids.size()), request.views, observations);
+        return &gathered_.Of(std::span(texels).first(ids.size()), request.views, buffer);
       },
       [&](const BatchSearch::Task& task, const BatchSearch::Found& found) {
         solved[task.id].values = found.solution.values;
@@ -166,24 +175,6 @@ void Estimator::Solve(std::span<const SampleTask> tasks, const SampleRequest& re
     batches.Add({.id = i, .prior = tasks[i].prior, .start = tasks[i].from, .converged = true});
   }
   batches.Finish();
-}
-
-// The products of `worker`'s observations.
-BatchGram GramOfObserved(std::span<const TexelValues> values, RefineWorker* worker,
-                         BatchResiduals* residuals) {
-  BatchValues batch;
-  for (size_t i = 0; i < values.size(); ++i) SetLane(static_cast<int>(i), values[i], &batch);
-  BatchGram gram;
-  worker->batches.evaluator().Gram(worker->observed, batch, &gram, residuals);
-  return gram;
-}
-
-// Of the photographs alone. Leaves the texels' observations and residuals in `worker`.
-BatchGram Estimator::GramAt(std::span<const size_t> texels, std::span<const TexelValues> values,
-                            std::span<const int> views, RefineWorker* worker,
-                            BatchResiduals* residuals) {
-  gathered_.Of(texels, views, &worker->observed);
-  return GramOfObserved(values, worker, residuals);
 }
 
 // At most a batch of texels at their solutions.
@@ -198,17 +189,18 @@ void Estimator::Describe(std::span<const SampleTask> tasks, const SampleRequest&
   const bool of_views = request.of_views && !nudged_.empty();
   for (size_t i = 0; of_views && i < nudged_.size(); ++i) {
     GatherObservations(nudged_[i], start_, texels, request.views, &worker->observed);
-    GramOfObserved(values, worker, &worker->nudged[i]);
+    GramOf(worker->observed, values, worker, &worker->nudged[i]);
   }
-  GramAt(texels, values, request.views, worker, &worker->residuals);
+  const BatchObservations& observed = gathered_.Of(texels, request.views, &worker->observed);
+  GramOf(observed, values, worker, &worker->residuals);
   for (size_t i = 0; i < tasks.size(); ++i) {
     const int lane = static_cast<int>(i);
     SampledTexel& sampled = solved[i];
-    sampled.views = worker->observed.seen(lane);
+    sampled.views = observed.seen(lane);
     sampled.of_views.clear();
     if (sampled.views == 0) continue;
-    if (of_views) sampled.of_views = OfViews(texels[i], lane, request.views, *worker);
-    TexelGram gram = worker->residuals.GramOf(lane, worker->observed.views()), prior{};
+    if (of_views) sampled.of_views = OfViews(texels[i], lane, request.views, observed, *worker);
+    TexelGram gram = worker->residuals.GramOf(lane, observed.views()), prior{};
     sampled.squares = gram[kTexelParameters][kTexelParameters];
     tasks[i].prior.AddTo(sampled.values, &gram);
     Eigen::Map<Matrix9>(sampled.inverse.data()) = InverseOf(gram);
@@ -237,6 +229,7 @@ void Estimator::SetViews(const ViewDeviations& deviations) {
 // Of one lane's texel.
 std::vector<DeviationProducts> Estimator::OfViews(size_t texel, int lane,
                                                   std::span<const int> views,
+                                                  const BatchObservations& observed,
                                                   const RefineWorker& worker) const {
   const SamplePlane& plane = problem_.plane;
   const double x_mm = plane.x_mm(static_cast<int>(texel) % plane.width);
@@ -244,7 +237,7 @@ std::vector<DeviationProducts> Estimator::OfViews(size_t texel, int lane,
   std::vector<DeviationProducts> products;
   for (size_t k = 0; k < views.size(); ++k) {
     const int view = static_cast<int>(k);
-    if (!worker.observed.sees(view, lane)) continue;
+    if (!observed.sees(view, lane)) continue;
     DeviationProducts& of =
         products.emplace_back(ProductsOf(worker.residuals, worker.nudged, view, lane));
     of.view = views[k];

@@ -1,7 +1,6 @@
 #include "fitting/refine/gather.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "fitting/reflectance/texel_at.h"
@@ -71,34 +70,35 @@ void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps,
 }
 
 GatheredObservations::GatheredObservations(const RefineProblem& problem, const SvbrdfMaps& maps)
-    : problem_(problem), maps_(maps), all_views_(problem.views.size()) {
-  std::iota(all_views_.begin(), all_views_.end(), 0);
-}
+    : problem_(problem), maps_(maps) {}
 
-void GatheredObservations::Of(std::span<const size_t> texels, std::span<const int> views,
-                              BatchObservations* observations) {
-  observations->CopyViews(Find(texels)->all, views);
-}
-
-std::shared_ptr<const GatheredObservations::Batch> GatheredObservations::Find(
-    std::span<const size_t> texels) {
+const BatchObservations& GatheredObservations::Of(std::span<const size_t> texels,
+                                                  std::span<const int> views,
+                                                  BatchObservations* buffer) {
+  const size_t bytes = views.size() * BatchObservations::kPlanes * sizeof(BatchRow);
+  Key key{{texels.begin(), texels.end()}, {views.begin(), views.end()}};
+  bool keeps = true;
   {
-    std::lock_guard lock(mutex_);
-    const auto kept = batches_.find(texels.front());
-    if (kept != batches_.end() && std::ranges::equal(kept->second->texels, texels)) {
-      return kept->second;
-    }
+    const std::lock_guard lock(mutex_);
+    const auto kept = kept_.find(key);
+    if (kept != kept_.end()) return *kept->second;
+    keeps = bytes_ + bytes <= kMostBytes;
+    if (keeps) bytes_ += bytes;
   }
-  auto batch = std::make_shared<Batch>(Batch{
-      {texels.begin(), texels.end()}, BatchObservations(static_cast<int>(all_views_.size()))});
-  GatherObservations(problem_, maps_, texels, all_views_, &batch->all);
-  std::lock_guard lock(mutex_);
-  return batches_[texels.front()] = std::move(batch);
+  if (!keeps) {
+    GatherObservations(problem_, maps_, texels, views, buffer);
+    return *buffer;
+  }
+  auto gathered = std::make_unique<BatchObservations>(static_cast<int>(views.size()));
+  GatherObservations(problem_, maps_, texels, views, gathered.get());
+  const std::lock_guard lock(mutex_);
+  return *kept_.emplace(std::move(key), std::move(gathered)).first->second;
 }
 
 void GatheredObservations::Forget() {
-  std::lock_guard lock(mutex_);
-  batches_.clear();
+  const std::lock_guard lock(mutex_);
+  kept_.clear();
+  bytes_ = 0;
 }
 
 }  // namespace glint

@@ -19,31 +19,35 @@ void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps,
                         std::span<const size_t> texels, std::span<const int> views,
                         BatchObservations* observations);
 
-// The same of texels that are asked for again and again with other views, as those sampled are in
-// cross-validation: what is gathered once of a batch is kept, 1.7 KB a view. Several threads may
-// ask at once.
+// The same of texels that are asked for again and again, as those sampled are in cross-validation:
+// what is gathered once of a batch in some views is kept, 1.7 KB a view, up to kMostBytes. Several
+// threads may ask at once.
 class GatheredObservations {
  public:
+  // Cross-validation of 2,048 texels and their neighbours by sixty photographs.
+  static constexpr size_t kMostBytes = size_t{192} << 20;
+
   // Both must outlive this.
   GatheredObservations(const RefineProblem& problem, const SvbrdfMaps& maps);
 
-  void Of(std::span<const size_t> texels, std::span<const int> views,
-          BatchObservations* observations);
-  // What was kept: the problem's views are others from now on.
+  // What is kept stays where it is until Forget(); what is not is gathered into `buffer`.
+  const BatchObservations& Of(std::span<const size_t> texels, std::span<const int> views,
+                              BatchObservations* buffer);
+  // The problem's views are others from now on.
   void Forget();
 
  private:
-  struct Batch {
+  struct Key {
     std::vector<size_t> texels;
-    BatchObservations all;
+    std::vector<int> views;
+    auto operator<=>(const Key&) const = default;
   };
-  std::shared_ptr<const Batch> Find(std::span<const size_t> texels);
 
   const RefineProblem& problem_;
   const SvbrdfMaps& maps_;
-  std::vector<int> all_views_;
   std::mutex mutex_;
-  std::map<size_t, std::shared_ptr<const Batch>> batches_;  // by their first texel
+  size_t bytes_ = 0;
+  std::map<Key, std::unique_ptr<const BatchObservations>> kept_;
 };
 
 }  // namespace glint

@@ -80,7 +80,8 @@ class PartRefiner {
   // A few rows at a time.
   void ForEachRows(int about,
                    const std::function<void(int begin, int end, RefineWorker* worker)>& visit);
-  void Gather(std::span<const size_t> texels, BatchObservations* observations) const;
+  const BatchObservations* Gather(std::span<const size_t> texels,
+                                  BatchObservations* observations) const;
   TexelPrior PriorOf(size_t texel) const { return model_.PriorOf(texel, result_.maps); }
   void Keep(size_t texel, const TexelSolution& solution);
 
@@ -145,8 +146,10 @@ void PartRefiner::ForEachRows(int about,
   });
 }
 
-void PartRefiner::Gather(std::span<const size_t> texels, BatchObservations* observations) const {
+const BatchObservations* PartRefiner::Gather(std::span<const size_t> texels,
+                                             BatchObservations* observations) const {
   GatherObservations(problem_, start_, texels, all_views_, observations);
+  return observations;
 }
 
 void PartRefiner::Keep(size_t texel, const TexelSolution& solution) {
@@ -180,7 +183,9 @@ void PartRefiner::SolveFromStarts(int about) {
     BatchSearch& batches = worker->batches;
     batches.Begin(
         BatchSearch::From::kStart,
-        [&](std::span<const size_t> texels, BatchObservations* seen) { Gather(texels, seen); },
+        [&](std::span<const size_t> texels, BatchObservations* seen) {
+          return Gather(texels, seen);
+        },
         [&](const BatchSearch::Task& task, const BatchSearch::Found& found) {
           if (found.views == 0) {
             origin_[task.id] = kConverged | kUnseen;  // the initial values stay
@@ -206,7 +211,9 @@ void PartRefiner::SolveFromNeighbours(int half_pass, int about) {
     BatchSearch& batches = worker->batches;
     batches.Begin(
         BatchSearch::From::kNeighbours,
-        [&](std::span<const size_t> texels, BatchObservations* seen) { Gather(texels, seen); },
+        [&](std::span<const size_t> texels, BatchObservations* seen) {
+          return Gather(texels, seen);
+        },
         [&](const BatchSearch::Task& task, const BatchSearch::Found& found) {
           if (found.other_start) origin_[task.id] |= kNeighbour;
           Keep(task.id, found.solution);

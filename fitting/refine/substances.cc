@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/cpu/vector_clones.h"
 #include "fitting/refine/bounded_step.h"
 #include "fitting/texel/texel_parameters.h"
 
@@ -112,6 +113,7 @@ std::vector<float> Substances::SharesOf(const std::vector<float>& colour) const 
   return all;
 }
 
+GLINT_VECTOR_CLONES
 SharedValues SubstanceMeans::Of(const float* shares) const {
   SharedValues value{};
   for (size_t k = 0; k < mean.size(); ++k) {
@@ -157,7 +159,7 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
   using MatrixS = Eigen::Matrix<double, kN, kN, Eigen::RowMajor>;
   using VectorS = Eigen::Matrix<double, kN, 1>;
   const auto count = static_cast<Eigen::Index>(means->mean.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(kN * count, kN * count);
+  std::vector<MatrixS> blocks(static_cast<size_t>(count * count), MatrixS::Zero());
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(kN * count);
   for (const SubstanceSample& sample : samples) {
     const SharedValues mean = means->Of(sample.shares);
@@ -178,8 +180,15 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
       gradient.segment<kN>(kN * k) += share * pull;
       for (Eigen::Index l = 0; l <= k; ++l) {
         const double other = sample.shares[l];
-        if (other >= kLeastShare) information.block<kN, kN>(kN * k, kN * l) += share * other * own;
+        if (other < kLeastShare) continue;
+        blocks[static_cast<size_t>(count * k + l)] += share * other * own;
       }
+    }
+  }
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(kN * count, kN * count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    for (Eigen::Index l = 0; l <= k; ++l) {
+      information.block<kN, kN>(kN * k, kN * l) = blocks[static_cast<size_t>(count * k + l)];
     }
   }
   information.triangularView<Eigen::StrictlyUpper>() = information.transpose();

@@ -160,9 +160,9 @@ void BatchSearch::SetNoise(double residual_sigma) {
 int BatchSearch::Batch::FreeLane() const { return std::countr_one(taken); }
 
 void BatchSearch::Batch::Take(const Batch& from, int lane) {
-  if (taken == 0) observations.Clear(from.observations.views());
+  if (taken == 0) buffer.Clear(from.observations().views());
   const int to = FreeLane();
-  observations.CopyLane(from.observations, lane, to);
+  buffer.CopyLane(from.observations(), lane, to);
   prior.CopyLane(from.prior, lane, to);
   solution.CopyLane(from.solution, lane, to);
   tasks[static_cast<size_t>(to)] = from.tasks[static_cast<size_t>(lane)];
@@ -193,7 +193,7 @@ void BatchSearch::Finish() {
 
 bool BatchSearch::Unexplained(const Batch& batch, int lane) const {
   const double cost = batch.found[static_cast<size_t>(lane)].solution.cost;
-  return 2.0 * cost > kExplained * variance_ * 3.0 * batch.observations.seen(lane);
+  return 2.0 * cost > kExplained * variance_ * 3.0 * batch.observations().seen(lane);
 }
 
 void BatchSearch::RunFirst() {
@@ -206,8 +206,8 @@ void BatchSearch::RunFirst() {
     first_.prior.SetLane(lane, task.prior);
     SetLane(lane, task.start, &first_.solution.values);
   });
-  gather_(std::span(ids).first(count), &first_.observations);
-  evaluator_.Solve(solve_, first_.observations, first_.prior, first_.taken, Solving::kBegin,
+  first_.seen = gather_(std::span(ids).first(count), &first_.buffer);
+  evaluator_.Solve(solve_, first_.observations(), first_.prior, first_.taken, Solving::kBegin,
                    &first_.solution);
   ForEachLane(first_.taken, [&](int lane) {
     if (Has(first_.solution.finished, lane)) {
@@ -222,7 +222,7 @@ void BatchSearch::RunFirst() {
 
 void BatchSearch::RunSlow(Solving how) {
   if (slow_.taken == 0) return;
-  evaluator_.Solve(solve_, slow_.observations, slow_.prior, slow_.taken, how, &slow_.solution);
+  evaluator_.Solve(solve_, slow_.observations(), slow_.prior, slow_.taken, how, &slow_.solution);
   ForEachLane(slow_.taken & slow_.solution.finished, [&](int lane) {
     Conclude(&slow_, lane);
     slow_.taken &= ~(1u << lane);
@@ -233,7 +233,7 @@ void BatchSearch::Conclude(Batch* batch, int lane) {
   const Task& task = batch->tasks[static_cast<size_t>(lane)];
   const BatchSolution& solved = batch->solution;
   Found& found = batch->found[static_cast<size_t>(lane)];
-  found.views = batch->observations.seen(lane);
+  found.views = batch->observations().seen(lane);
   found.other_start = false;
   TexelSolution& solution = found.solution;
   solution = {ValuesOfLane(lane, solved.values), solved.start_cost[lane], solved.cost[lane],
@@ -279,7 +279,7 @@ void BatchSearch::FitAlbedosOf(LaneBits lanes, Candidates* candidates) {
     SetLane(lane, (*candidates)[static_cast<size_t>(lane)].values, &values);
   });
   BatchAlbedoSums sums;
-  evaluator_.AlbedoSums(second_.observations, values, &sums);
+  evaluator_.AlbedoSums(second_.observations(), values, &sums);
   ForEachLane(lanes, [&](int lane) {
     Candidate& candidate = (*candidates)[static_cast<size_t>(lane)];
     const TexelPrior& prior = second_.tasks[static_cast<size_t>(lane)].prior;
@@ -306,8 +306,8 @@ void BatchSearch::TrySolve(LaneBits lanes, const Candidates& from) {
   });
   kernel::SolveOptions solve = solve_;
   solve.damping = kRoughStart;
-  evaluator_.Solve(solve, second_.observations, second_.prior, lanes, Solving::kBegin, &solution);
-  evaluator_.Solve(solve, second_.observations, second_.prior, lanes & ~solution.finished,
+  evaluator_.Solve(solve, second_.observations(), second_.prior, lanes, Solving::kBegin, &solution);
+  evaluator_.Solve(solve, second_.observations(), second_.prior, lanes & ~solution.finished,
                    Solving::kFinish, &solution);
   ForEachLane(lanes, [&](int lane) {
     Found& best = second_.found[static_cast<size_t>(lane)];
@@ -396,7 +396,7 @@ void BatchSearch::TryOtherStarts() {
     ForEachLane(UnexplainedOf(all), [&](int lane) {
       const size_t i = static_cast<size_t>(lane);
       from[i] = second_.found[i].solution.values;
-      if (turn(second_.observations, lane, &from[i])) turned |= 1u << lane;
+      if (turn(second_.observations(), lane, &from[i])) turned |= 1u << lane;
     });
     if (turned != 0) TryRoughnesses(turned, from);
   }

@@ -72,9 +72,10 @@ class BatchSearch {
     bool other_start = false;  // it did not come from the start itself
   };
   using Done = std::function<void(const Task& task, const Found& found)>;
-  // Replaces `observations` by those of the tasks with these ids (Task::id), in the lanes from 0
-  // on.
-  using Gather = std::function<void(std::span<const size_t> ids, BatchObservations* observations)>;
+  // Gives the observations of the tasks with these ids (Task::id), in the lanes from 0 on: in
+  // `buffer`, or elsewhere, where they stay until the next call.
+  using Gather = std::function<const BatchObservations*(std::span<const size_t> ids,
+                                                        BatchObservations* buffer)>;
 
   BatchSearch(const KernelOptions& options, int most_iterations, int most_views, int starts);
 
@@ -93,8 +94,13 @@ class BatchSearch {
 
  private:
   struct Batch {
-    explicit Batch(int most_views) : observations(most_views) {}
-    BatchObservations observations;
+    explicit Batch(int most_views) : buffer(most_views) {}
+    Batch(const Batch&) = delete;  // it may point into itself
+    Batch& operator=(const Batch&) = delete;
+    const BatchObservations& observations() const { return *seen; }
+
+    BatchObservations buffer;
+    const BatchObservations* seen = &buffer;
     BatchPrior prior;
     std::array<Task, kBatch> tasks;
     std::array<Found, kBatch> found;

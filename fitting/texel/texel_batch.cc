@@ -108,21 +108,6 @@ void BatchObservations::CopyLane(const BatchObservations& from, int from_lane, i
   seen_[static_cast<size_t>(lane)] = from.seen(from_lane);
 }
 
-void BatchObservations::CopyViews(const BatchObservations& from, std::span<const int> views) {
-  views_ = static_cast<int>(views.size());
-  assert(views.size() * kPlanes <= rows_.size());
-  std::copy(std::begin(from.place_mm_), std::end(from.place_mm_), std::begin(place_mm_));
-  seen_.fill(0);
-  for (int k = 0; k < views_; ++k) {
-    const BatchRow* planes =
-        from.rows() + static_cast<size_t>(views[static_cast<size_t>(k)]) * kPlanes;
-    std::copy_n(planes, static_cast<int>(kPlanes), view(k));
-    for (int lane = 0; lane < kBatch; ++lane) {
-      seen_[static_cast<size_t>(lane)] += planes[kWeight][lane] > 0 ? 1 : 0;
-    }
-  }
-}
-
 void kernel::BatchSolution::CopyLane(const BatchSolution& from, int from_lane, int lane) {
   const auto copy = [&](const BatchRow& row, BatchRow* to) { (*to)[lane] = row[from_lane]; };
   for (int i = 0; i < kTexelParameters; ++i) {

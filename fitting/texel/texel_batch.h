@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <vector>
 
 #include "fitting/reflectance/view.h"
@@ -89,8 +88,6 @@ class BatchObservations {
   // After Complete(), in place of the view's own.
   void SetAmbient(int lane, int view, const double diffuse[3], const double specular[3]);
   void CopyLane(const BatchObservations& from, int from_lane, int lane);
-  // Those of some of another's views, by their places there.
-  void CopyViews(const BatchObservations& from, std::span<const int> views);
 
   int views() const { return views_; }
   // How many views see a lane's texel.

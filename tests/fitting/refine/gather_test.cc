@@ -33,29 +33,25 @@ class Gathered : public testing::Test {
   }
   test::SyntheticScene scene_ = test::Photograph(test::QuarteredMaps(10, 3), 5, 8);
   RefineProblem problem_;
+  BatchObservations buffer_{5};
 };
 
 TEST_F(Gathered, ObservationsThatWereKeptAreThoseOfTheirViews) {
   GatheredObservations gathered(problem_, scene_.truth);
-  BatchObservations kept(5);
-  for (int time = 0; time < 2; ++time) {
-    gathered.Of(kTexels, kSome, &kept);
-    ExpectSame(kept, Anew(kTexels));
-  }
+  const BatchObservations& kept = gathered.Of(kTexels, kSome, &buffer_);
+  ExpectSame(kept, Anew(kTexels));
   // Other texels with the same first one.
   const auto fewer = std::span(kTexels).first(2);
-  gathered.Of(fewer, kSome, &kept);
-  ExpectSame(kept, Anew(fewer));
+  ExpectSame(gathered.Of(fewer, kSome, &buffer_), Anew(fewer));
+  EXPECT_EQ(&gathered.Of(kTexels, kSome, &buffer_), &kept);
 }
 
 TEST_F(Gathered, ForgottenOnesAreGatheredFromTheViewsAsTheyAreNow) {
   GatheredObservations gathered(problem_, scene_.truth);
-  BatchObservations kept(5);
-  gathered.Of(kTexels, kSome, &kept);
+  gathered.Of(kTexels, kSome, &buffer_);
   problem_.views[0].view.exposure *= 1.5;
   gathered.Forget();
-  gathered.Of(kTexels, kSome, &kept);
-  ExpectSame(kept, Anew(kTexels));
+  ExpectSame(gathered.Of(kTexels, kSome, &buffer_), Anew(kTexels));
 }
 
 }  // namespace

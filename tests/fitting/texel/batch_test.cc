@@ -456,6 +456,7 @@ BatchSearch::Gather GatherFrom(const BatchObservations& all) {
     for (size_t i = 0; i < ids.size(); ++i) {
       observations->CopyLane(all, static_cast<int>(ids[i] % kBatch), static_cast<int>(i));
     }
+    return observations;
   };
 }
 
