@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 
 #include "base/parallel/parallel.h"
@@ -212,23 +213,27 @@ void SampledTexels::Gather(std::span<const size_t> texels, const ViewsAt& at, Wo
   const SamplePlane& plane = set_.plane;
   const size_t all = static_cast<size_t>(plane.width) * plane.height;
   const auto& [x, views, room] = at;
+  const bool displaced = unknowns_.kinds().registration;
   observations->Clear(unknowns_.views());
   for (size_t i = 0; i < texels.size(); ++i) {
     const Texel& texel = texels_[texels[i]];
     const int lane = static_cast<int>(i);
     observations->Place(lane, texel.x_mm, texel.y_mm);
+    const size_t texel_at = static_cast<size_t>(texel.row) * plane.width + texel.column;
     for (const int v : texel.views) {
       const Photograph& photograph = set_.photographs[static_cast<size_t>(v)];
       double column = texel.column, row = texel.row;
-      for (int k = 0; unknowns_.kinds().registration && k < 4; ++k) {
+      for (int k = 0; displaced && k < 4; ++k) {
         column += texel.corner_weights[k] * x[unknowns_.shift(v) + k];
         row += texel.corner_weights[k] * x[unknowns_.shift(v) + 4 + k];
       }
-      const PictureLookUp place(plane.width, plane.height, column, row);
+      std::optional<PictureLookUp> place;
+      if (displaced) place.emplace(plane.width, plane.height, column, row);
       float radiance[3];
       bool clipped[3];
       for (int c = 0; c < 3; ++c) {
-        LookedUp seen = place.In(photograph.rgb.data() + static_cast<size_t>(c) * all);
+        const float* picture = photograph.rgb.data() + static_cast<size_t>(c) * all;
+        LookedUp seen = place ? place->In(picture) : LookedUp{picture[texel_at], 0, 0};
         seen.value = std::max(seen.value, 0.0);
         radiance[c] = static_cast<float>(seen.value);
         clipped[c] = photograph.ldr && seen.value >= kClipped;
@@ -268,6 +273,7 @@ double SampledTexels::FitBlock(size_t first, size_t count, const ViewsAt& at, co
         BatchSearch::From::kStart,
         [&](std::span<const size_t> texels, BatchObservations* observations) {
           Gather(texels, at, worker, observations);
+          return observations;
         },
         [&](const BatchSearch::Task& task, const BatchSearch::Found& found) {
           double& cost = costs[task.id - first];
@@ -408,8 +414,7 @@ SampledTexels::Values SampledTexels::Follow(const Eigen::VectorXd& step,
                                             const Values& values) const {
   Values followed = values;
   for (size_t k = 0; k < texels_.size(); ++k) {
-    const Eigen::Matrix<double, kTexelParameters, 1> by =
-        following_[k].by_views * step + following_[k].own;
+    const TexelFollowing::Vector by = following_[k].After(step);
     const double length = by.tail<kTexelParameters - kRough>().norm();
     const double share = length > kMostStep ? kMostStep / length : 1;
     double variables[kTexelParameters];
@@ -430,7 +435,7 @@ Eigen::Vector2d SampledTexels::MeanSlope(const Values& values) const {
 Eigen::MatrixXd SampledTexels::MeanSlopeByViews() const {
   Eigen::MatrixXd by = Eigen::MatrixXd::Zero(2, unknowns_.size());
   for (const TexelFollowing& following : following_) {
-    by -= following.by_views.middleRows<2>(kSlopeX);
+    for (int i = 0; i < 2; ++i) by.row(i) -= following.ByViewsOf(kSlopeX + i);
   }
   return by / std::max(1, size());
 }

@@ -4,6 +4,16 @@
 
 namespace glint {
 
+TexelFollowing::Vector TexelFollowing::After(const Eigen::VectorXd& step) const {
+  const Vector half = half_ * step + half_gradient_;
+  return factor_.triangularView<Eigen::Lower>().transpose().solve(half);
+}
+
+Eigen::RowVectorXd TexelFollowing::ByViewsOf(int variable) const {
+  const Vector row = factor_.triangularView<Eigen::Lower>().solve(Vector::Unit(variable).eval());
+  return row.transpose() * half_;
+}
+
 TexelReduction::TexelReduction(int unknowns, int room_terms)
     : equations(unknowns),
       room_terms_(room_terms),
@@ -59,9 +69,8 @@ void TexelReduction::AddRoom(int channel, double residual,
 }
 
 void TexelReduction::Eliminate(const TexelGram& gram, TexelFollowing* following) {
-  using Square = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
-  Square own;
-  Eigen::Matrix<double, kTexelParameters, 1> gradient;
+  TexelFollowing::Square own;
+  TexelFollowing::Vector gradient;
   for (int i = 0; i < kTexelParameters; ++i) {
     const size_t a = static_cast<size_t>(i);
     for (int j = i; j < kTexelParameters; ++j) {
@@ -71,14 +80,20 @@ void TexelReduction::Eliminate(const TexelGram& gram, TexelFollowing* following)
     own(i, i) += 1e-8;
     gradient[i] = gram[a][kTexelParameters] * by_variable_[a];
   }
-  const Eigen::LLT<Square> factor(own);
-  const Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> half =
-      factor.matrixL().solve(products_);
-  const Eigen::Matrix<double, kTexelParameters, 1> half_gradient = factor.matrixL().solve(gradient);
-  equations.gradient.noalias() -= half.transpose() * half_gradient;
-  for (int i = 0; i < kTexelParameters; ++i) texels_.AddRow() = half.row(i);
-  following->by_views = factor.matrixU().solve(half);
-  following->own = factor.matrixU().solve(half_gradient);
+  const Eigen::LLT<TexelFollowing::Square> cholesky(own);
+  const TexelFollowing::Square& factor = cholesky.matrixLLT();
+  // By forward substitution in place, row by row: Eigen's solver packs its few rows first.
+  for (int i = 0; i < kTexelParameters; ++i) {
+    for (int j = 0; j < i; ++j) {
+      products_.row(i) -= factor(i, j) * products_.row(j);
+      gradient[i] -= factor(i, j) * gradient[j];
+    }
+    products_.row(i) /= factor(i, i);
+    gradient[i] /= factor(i, i);
+    equations.gradient -= gradient[i] * products_.row(i).transpose();
+    texels_.AddRow() = products_.row(i);
+  }
+  following->Set(factor, products_, gradient);
 }
 
 void TexelReduction::Finish() {

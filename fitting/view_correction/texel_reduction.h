@@ -14,10 +14,29 @@
 
 namespace glint {
 
-// How one texel follows the views: by the solver's variables, −∂u/∂x and −its own step.
-struct TexelFollowing {
-  Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> by_views;
-  Eigen::Matrix<double, kTexelParameters, 1> own;
+// How one texel follows the views. With its own normal equations L·Lᵀ, their products P with the
+// views' unknowns x and their gradient g, −∂u/∂x = L⁻ᵀ·(L⁻¹·P) of the solver's variables u.
+class TexelFollowing {
+ public:
+  using Vector = Eigen::Matrix<double, kTexelParameters, 1>;
+  using Square = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
+  using ByViews = Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic, Eigen::RowMajor>;
+
+  void Set(const Square& factor, const ByViews& half, const Vector& half_gradient) {
+    factor_ = factor;
+    half_ = half;
+    half_gradient_ = half_gradient;
+  }
+
+  // −Δu after `step` of the views, its own step included.
+  Vector After(const Eigen::VectorXd& step) const;
+  // Of one variable.
+  Eigen::RowVectorXd ByViewsOf(int variable) const;
+
+ private:
+  Square factor_;  // L, its lower triangle
+  ByViews half_;
+  Vector half_gradient_;  // L⁻¹·g
 };
 
 class TexelReduction {
@@ -47,7 +66,7 @@ class TexelReduction {
 
   int room_terms_;
   TexelValues by_variable_{};  // ∂value/∂(the solver's variable): a value at its bound stays
-  Eigen::Matrix<double, kTexelParameters, Eigen::Dynamic> products_;
+  TexelFollowing::ByViews products_;
   OuterProducts texels_;
   std::array<OuterProducts, 3> room_;  // by channel
 };
