@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "fitting/refine/refine.h"
@@ -37,11 +38,7 @@ class GatheredObservations {
   void Forget();
 
  private:
-  struct Key {
-    std::vector<size_t> texels;
-    std::vector<int> views;
-    auto operator<=>(const Key&) const = default;
-  };
+  using Key = std::pair<std::vector<size_t>, std::vector<int>>;  // texels, views
 
   const RefineProblem& problem_;
   const SvbrdfMaps& maps_;

@@ -100,11 +100,11 @@ class BatchSearch {
     const BatchObservations& observations() const { return *seen; }
 
     BatchObservations buffer;
-    const BatchObservations* seen = &buffer;
     BatchPrior prior;
     std::array<Task, kBatch> tasks;
     std::array<Found, kBatch> found;
     kernel::BatchSolution solution;
+    const BatchObservations* seen = &buffer;
     kernel::LaneBits taken = 0;  // lanes with a task
 
     bool full() const { return taken == kernel::kAllLanes; }
