@@ -37,7 +37,7 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
       ->delimiter(',')
       ->capture_default_str();
   app->add_option("--lr", o->learning_rate, "peak learning rate")->capture_default_str();
-  app->add_option("--clip", o->most_gradient,
+  app->add_option("--clip", o->max_gradient_norm,
                   "maximum norm of a step's gradient; longer ones are scaled down; 0: no maximum")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

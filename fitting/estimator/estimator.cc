@@ -41,7 +41,9 @@ Estimator::Estimator(Estimator&&) noexcept = default;
 Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
 Estimator Estimator::Load(const std::filesystem::path& weights) {
-  return Estimator(std::make_unique<Impl>(Impl{LoadEstimator(weights)}));
+  Impl impl{LoadEstimator(weights)};
+  impl.loaded.network.residual = !impl.loaded.single_photograph;
+  return Estimator(std::make_unique<Impl>(std::move(impl)));
 }
 
 bool Estimator::single_photograph() const { return impl_->loaded.single_photograph; }

@@ -51,7 +51,7 @@ void ReadSinglePhotograph(const std::filesystem::path& path, const TensorFile& f
   }
   // The network's own tensors have at least v1's sizes, in every dimension.
   for (const auto& [name, tensor] : network->State()) {
-    if (name.starts_with("photograph.") || name.find("mix") != std::string::npos) continue;
+    if (name.starts_with("photograph.") || name.find("residual") != std::string::npos) continue;
     const auto found = tensors.find(name);
     bool fits = found != tensors.end() && found->second.dim() == tensor->dim();
     for (int64_t d = 0; fits && d < tensor->dim(); ++d) {

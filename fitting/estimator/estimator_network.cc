@@ -54,7 +54,8 @@ Tensor Spread(const Tensor& global, const Tensor& weight) {
 }
 
 // `x` and, added to it, a 3×3 convolution of it.
-Tensor Mixed(const Tensor& x, const Tensor& weight, const Tensor& bias, torch::Dtype compute) {
+Tensor WithResidual(const Tensor& x, const Tensor& weight, const Tensor& bias,
+                    torch::Dtype compute) {
   return x + at::leaky_relu(at::conv2d(x, AsType(weight, compute), bias.to(compute), 1, 1), kLeak);
 }
 
@@ -107,12 +108,12 @@ EstimatorNetwork EstimatorNetwork::Random(const EstimatorChannels& channels, std
     const int up_in = UpInput(channels, i), up_out = UpOutput(channels, i);
     net.up_weights.push_back(PhaseKernels(draw({up_out, up_in, 3, 3}, up_in * 9.0, 0.75)));
     net.up_biases.push_back(torch::zeros({4 * up_out}));
-    constexpr double kMixGain = 0.3;
-    net.down_mix_weights.push_back(draw({out, out, 3, 3}, out * 9.0, kMixGain));
-    net.down_mix_biases.push_back(torch::zeros({out}));
-    if (i >= kMixedUpLevels) continue;
-    net.up_mix_weights.push_back(draw({out, out, 3, 3}, out * 9.0, kMixGain));
-    net.up_mix_biases.push_back(torch::zeros({out}));
+    constexpr double kResidualGain = 0.3;
+    net.down_residual_weights.push_back(draw({out, out, 3, 3}, out * 9.0, kResidualGain));
+    net.down_residual_biases.push_back(torch::zeros({out}));
+    if (i >= kResidualUpLevels) continue;
+    net.up_residual_weights.push_back(draw({out, out, 3, 3}, out * 9.0, kResidualGain));
+    net.up_residual_biases.push_back(torch::zeros({out}));
   }
   net.photograph_weight = draw({channels.full, kFeaturePlanes, 3, 3}, kFeaturePlanes * 9.0, 1);
   net.photograph_bias = torch::zeros({channels.full});
@@ -138,8 +139,8 @@ void EstimatorNetwork::AdoptSinglePhotograph(const std::map<std::string, Tensor>
   for (auto& [name, to] : State()) {
     const auto from = v1.find(name);
     if (from == v1.end()) {
-      // Per photograph at full resolution: as drawn. What mixes a level's features: nothing yet.
-      if (name.find("mix") != std::string::npos) to->zero_();
+      // Per photograph at full resolution: as drawn. Residual convolutions: nothing yet.
+      if (name.find("residual") != std::string::npos) to->zero_();
       continue;
     }
     Tensor outputs = to->slice(0, 0, from->second.size(0));
@@ -164,10 +165,10 @@ NamedTensors EstimatorNetwork::State() {
   add("down.bias", &down_biases, kEstimatorLevels);
   add("up.weight", &up_weights, kEstimatorLevels);
   add("up.bias", &up_biases, kEstimatorLevels);
-  add("down_mix.weight", &down_mix_weights, kEstimatorLevels);
-  add("down_mix.bias", &down_mix_biases, kEstimatorLevels);
-  add("up_mix.weight", &up_mix_weights, kMixedUpLevels);
-  add("up_mix.bias", &up_mix_biases, kMixedUpLevels);
+  add("down_residual.weight", &down_residual_weights, kEstimatorLevels);
+  add("down_residual.bias", &down_residual_biases, kEstimatorLevels);
+  add("up_residual.weight", &up_residual_weights, kResidualUpLevels);
+  add("up_residual.bias", &up_residual_biases, kResidualUpLevels);
   add("global.weight", &global_weights, kEstimatorLevels);
   add("global.bias", &global_biases, kEstimatorLevels);
   add("feed.weight", &feed_weights, kEstimatorLevels);
@@ -191,7 +192,7 @@ EstimatorOutput EstimatorNetwork::Forward(const Tensor& features, const Tensor& 
     const Tensor seen = torch::cat({x.to(torch::kFloat32).mean({2, 3}), global}, 1);
     global = at::leaky_relu(torch::addmm(global_biases[i], seen, global_weights[i].t()), kLeak);
     x = at::leaky_relu(x + Spread(global, feed_weights[i]).to(compute), kLeak);
-    x = Mixed(x, down_mix_weights[i], down_mix_biases[i], compute);
+    if (residual) x = WithResidual(x, down_residual_weights[i], down_residual_biases[i], compute);
     skips.push_back(Pooled(x, photographs));
   }
   const auto channels_last = [](const Tensor& t) {
@@ -201,7 +202,8 @@ EstimatorOutput EstimatorNetwork::Forward(const Tensor& features, const Tensor& 
   for (int i = kEstimatorLevels - 1; i >= 0; --i) {
     if (i < kEstimatorLevels - 1) x = torch::cat({x, skips[i]}, 1);
     x = at::leaky_relu(UpConvolve(channels_last(x), up_weights[i], up_biases[i], compute), kLeak);
-    if (i > 0) x = Mixed(x, up_mix_weights[i - 1], up_mix_biases[i - 1], compute);
+    if (residual && i > 0)
+      x = WithResidual(x, up_residual_weights[i - 1], up_residual_biases[i - 1], compute);
   }
   const auto convolve = [&](const Tensor& y, const Tensor& weight, const Tensor& bias) {
     return at::conv2d(channels_last(y), AsType(weight, compute), bias.to(compute), 1, 1);

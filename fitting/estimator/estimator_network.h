@@ -6,8 +6,8 @@
 // the photographs of each level's features (Deschaintre et al. 2019, "Flexible SVBRDF capture with
 // a multi-image deep network"), so neither order nor number of photographs matters. The global
 // track starts from each photograph's highlight profile (photograph_features.h) and from what is
-// known of the capture beforehand. Each level mixes its features by one more convolution, added to
-// what it reads (He et al. 2016). Fully convolutional: any size, multiples of 32 inside.
+// known of the capture beforehand. Each level has a residual convolution (He et al. 2016). Fully
+// convolutional: any size, multiples of 32 inside.
 #pragma once
 
 #include <torch/torch.h>
@@ -22,7 +22,7 @@
 namespace glint {
 
 inline constexpr int kEstimatorLevels = 5;
-inline constexpr int kMixedUpLevels = kEstimatorLevels - 1;  // all but the finest
+inline constexpr int kResidualUpLevels = kEstimatorLevels - 1;  // all but the finest
 inline constexpr int kEstimatorDownsampling = 32;
 
 struct EstimatorChannels {
@@ -40,15 +40,18 @@ struct EstimatorNetwork {
   EstimatorChannels channels;
   std::vector<torch::Tensor> down_weights, down_biases;  // [out, in, 4, 4]
   std::vector<torch::Tensor> up_weights, up_biases;      // [4·out, in, 2, 2]
-  // 3×3 convolutions whose results are added to a level's features: [c, c, 3, 3].
-  std::vector<torch::Tensor> down_mix_weights, down_mix_biases;
-  std::vector<torch::Tensor> up_mix_weights, up_mix_biases;  // what level i + 1 gives to level i
+  // 3×3 residual convolutions: [c, c, 3, 3].
+  std::vector<torch::Tensor> down_residual_weights, down_residual_biases;
+  std::vector<torch::Tensor> up_residual_weights,
+      up_residual_biases;                                    // what level i + 1 gives to level i
   std::vector<torch::Tensor> global_weights, global_biases;  // [global, in]
   std::vector<torch::Tensor> feed_weights;                   // [level's channels, global]
   // 3×3 convolutions at full resolution: per photograph, and the decoder's last two.
   torch::Tensor photograph_weight, photograph_bias;
   std::vector<torch::Tensor> full_weights, full_biases;
   torch::Tensor final_feed;  // [18, 2·global]
+  // Whether the residual convolutions do anything: those of an adopted v1 file are 0.
+  bool residual = true;
 
   // Weights drawn for `seed`; diffuse starts as what a matte, flat texel's would be.
   static EstimatorNetwork Random(const EstimatorChannels& channels, std::uint64_t seed);

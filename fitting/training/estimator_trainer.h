@@ -17,7 +17,7 @@ namespace glint {
 struct EstimatorTrainOptions : TrainOptions {
   // A step as long as a few of drawn weights' first ones puts all outputs where tanh is flat, and
   // no gradient brings them back (docs/experiments/training.md).
-  EstimatorTrainOptions() { most_gradient = 0.5; }
+  EstimatorTrainOptions() { max_gradient_norm = 0.5; }
   std::vector<int> channels{32,  64, 128, 224,
                             320, 24, 192};  // five levels, full resolution, global
   double spread_weight = 0.05;

@@ -192,12 +192,12 @@ class Loop {
     for (size_t i = 0; i < state_.moment1.size(); ++i) {
       norms.push_back(state_.network[i].second->grad().norm());
     }
-    return (options_.most_gradient / torch::stack(norms).norm().clamp_min(1e-12)).clamp_max(1);
+    return (options_.max_gradient_norm / torch::stack(norms).norm().clamp_min(1e-12)).clamp_max(1);
   }
 
   void Update() {
     ++state_.step;
-    const bool cut = options_.most_gradient > 0;
+    const bool cut = options_.max_gradient_norm > 0;
     const Tensor scale = cut ? GradientScale() : Tensor();
     const AdamOptions adam{LearningRate()};
     const double t = static_cast<double>(state_.step);

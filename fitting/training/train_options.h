@@ -20,7 +20,7 @@ struct TrainOptions {
   // fewer, as many texels.
   std::vector<int> crops{128};
   double learning_rate = 5e-4;  // the highest; it rises over `warmup_steps`, then falls as a cosine
-  double most_gradient = 0;     // norm of all gradients of a step; longer ones are cut; 0: none is
+  double max_gradient_norm = 0;  // of a step; longer gradients are scaled down to it; 0: none is
   int warmup_steps = 200;
   std::int64_t warmup_from = 0;  // the step it rises from: a checkpoint's, when a resume lengthens
   int accumulate = 1;            // batches whose gradients make one step

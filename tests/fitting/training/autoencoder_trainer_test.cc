@@ -176,11 +176,11 @@ TEST_F(TrainedWeights, OfAnotherEncodingAreRefused) {
   EXPECT_THAT(LoadError(other), testing::HasSubstr("encoding"));
 }
 
-TEST(Trainer, AMostGradientThatNoStepReachesChangesNothing) {
+TEST(Trainer, AMaximumGradientNormThatNoStepReachesChangesNothing) {
   const test::TemporaryFolder folder;
   const auto trained = [&](double most) {
     AutoencoderTrainOptions options = Tiny(3);
-    options.most_gradient = most;
+    options.max_gradient_norm = most;
     const fs::path path = folder.path() / "w.safetensors";
     TrainAutoencoder(options, {path, {}, {}, false}, Toy, Unseen, {});
     return test::ReadAll(path);
