@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-SvbrdfMaps Material(std::uint64_t seed = 12, int size = 32) {
+SvbrdfMaps SmallMaterial(std::uint64_t seed = 12, int size = 32) {
   return MakeMaterial(seed, size, size);
 }
 
@@ -22,7 +22,7 @@ void Shift(SvbrdfMaps* maps, int first_plane, int last_plane, float by) {
 }
 
 TEST(CompareMaps, IdenticalMapsHaveNoError) {
-  const MapErrors errors = CompareMaps(Material(), Material());
+  const MapErrors errors = CompareMaps(SmallMaterial(), SmallMaterial());
   EXPECT_EQ(errors.diffuse, 0);
   EXPECT_EQ(errors.specular, 0);
   EXPECT_EQ(errors.roughness, 0);
@@ -31,7 +31,7 @@ TEST(CompareMaps, IdenticalMapsHaveNoError) {
 }
 
 TEST(CompareMaps, AnOffsetGivesItsSquareInItsOwnFigureAlone) {
-  const SvbrdfMaps truth = Material();
+  const SvbrdfMaps truth = SmallMaterial();
   SvbrdfMaps estimate = truth;
   Shift(&estimate, kDiffuseR, kDiffuseB, 0.1f);
   EXPECT_NEAR(CompareMaps(estimate, truth).diffuse, 0.01, 1e-6);
@@ -52,7 +52,7 @@ TEST(CompareMaps, AnOffsetGivesItsSquareInItsOwnFigureAlone) {
 }
 
 TEST(CompareMaps, IsSymmetricAndDoesNotDependOnTheOrderOfTexels) {
-  const SvbrdfMaps a = Material(1), b = Material(2);
+  const SvbrdfMaps a = SmallMaterial(1), b = SmallMaterial(2);
   const auto reversed = [](SvbrdfMaps maps) {
     for (int p = 0; p < kSvbrdfPlanes; ++p) std::ranges::reverse(maps.plane(p));
     return maps;
@@ -65,7 +65,7 @@ TEST(CompareMaps, IsSymmetricAndDoesNotDependOnTheOrderOfTexels) {
 }
 
 TEST(CompareMaps, DifferentSizesAreRefused) {
-  EXPECT_THROW(CompareMaps(Material(1, 16), Material(1, 32)), std::invalid_argument);
+  EXPECT_THROW(CompareMaps(SmallMaterial(1, 16), SmallMaterial(1, 32)), std::invalid_argument);
   EXPECT_THROW(CompareMaps(SvbrdfMaps(), SvbrdfMaps()), std::invalid_argument);
 }
 
@@ -99,7 +99,7 @@ TEST(NovelViews, FollowFromTheSeed) {
 
 TEST(RenderError, IsZeroForTheSameMapsAndPositiveForOthers) {
   const auto views = NovelViews(10, 3);
-  const SvbrdfMaps truth = Material();
+  const SvbrdfMaps truth = SmallMaterial();
   EXPECT_EQ(RenderError(truth, truth, views, 1), 0);
   SvbrdfMaps swapped = truth;
   std::ranges::swap_ranges(swapped.plane(kNormalX), swapped.plane(kNormalY));
@@ -124,15 +124,16 @@ TEST(RenderError, OfAMattPlaneIsTheSquareOfItsRadiance) {
 
 TEST(RenderError, DoesNotDependOnThreads) {
   const auto views = NovelViews(4, 3);
-  const SvbrdfMaps a = Material(1, 64), b = Material(2, 64);
+  const SvbrdfMaps a = SmallMaterial(1, 64), b = SmallMaterial(2, 64);
   EXPECT_EQ(RenderError(a, b, views, 1), RenderError(a, b, views, 3));
 }
 
 TEST(EvaluateMaps, GivesAllSixFigures) {
-  const Table1Row row = EvaluateMaps(Material(1), Material(2), 1);
+  const Table1Row row = EvaluateMaps(SmallMaterial(1), SmallMaterial(2), 1);
   EXPECT_GT(row.maps.diffuse, 0);
   EXPECT_GT(row.render, 0);
-  EXPECT_EQ(row.render, RenderError(Material(1), Material(2), NovelViews(100, kNovelSeed), 1));
+  EXPECT_EQ(row.render,
+            RenderError(SmallMaterial(1), SmallMaterial(2), NovelViews(100, kNovelSeed), 1));
 }
 
 }  // namespace

@@ -9,12 +9,12 @@
 namespace glint {
 namespace {
 
-constexpr int kSide = 64;
+constexpr int kPlaneSide = 64;
 
 std::vector<float> Noise(unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal(2, 3);
-  std::vector<float> plane(kSide * kSide);
+  std::vector<float> plane(kPlaneSide * kPlaneSide);
   for (float& value : plane) value = normal(random);
   return plane;
 }
@@ -38,28 +38,28 @@ TEST(MomentsTest, CorrelationIsOneForGainsAndMinusOneForNegatives) {
 }
 
 TEST(MomentsTest, CorrelationWithAFlatPlaneIsUndefined) {
-  EXPECT_TRUE(std::isnan(Correlation(Noise(1), std::vector<float>(kSide * kSide, 0.4f))));
+  EXPECT_TRUE(std::isnan(Correlation(Noise(1), std::vector<float>(kPlaneSide * kPlaneSide, 0.4f))));
 }
 
 TEST(MomentsTest, FineCorrelationSeesDetailUnderASlowGradient) {
   const std::vector<float> detail = Noise(1);
   std::vector<float> a = detail, b = detail;
   for (size_t i = 0; i < a.size(); ++i) {  // opposite gradients hide that the details agree
-    a[i] += 1.0f * static_cast<float>(i % kSide);
-    b[i] -= 1.0f * static_cast<float>(i % kSide);
+    a[i] += 1.0f * static_cast<float>(i % kPlaneSide);
+    b[i] -= 1.0f * static_cast<float>(i % kPlaneSide);
   }
   EXPECT_LT(Correlation(a, b), -0.8);
-  EXPECT_NEAR(FineCorrelation(a, b, kSide), 1, 1e-4);
+  EXPECT_NEAR(FineCorrelation(a, b, kPlaneSide), 1, 1e-4);
 }
 
 TEST(MomentsTest, StripesHaveADirectionAndNoiseHasNone) {
   std::vector<float> stripes;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    stripes.push_back(std::sin(0.3f * static_cast<float>(i % kSide + i / kSide)));
+  for (int i = 0; i < kPlaneSide * kPlaneSide; ++i) {
+    stripes.push_back(std::sin(0.3f * static_cast<float>(i % kPlaneSide + i / kPlaneSide)));
   }
-  EXPECT_NEAR(Directionality(stripes, kSide), 1, 1e-3);
-  EXPECT_LT(Directionality(Noise(1), kSide), 0.1);
-  EXPECT_EQ(Directionality(std::vector<float>(kSide * kSide, 0.5f), kSide), 0);
+  EXPECT_NEAR(Directionality(stripes, kPlaneSide), 1, 1e-3);
+  EXPECT_LT(Directionality(Noise(1), kPlaneSide), 0.1);
+  EXPECT_EQ(Directionality(std::vector<float>(kPlaneSide * kPlaneSide, 0.5f), kPlaneSide), 0);
 }
 
 }  // namespace

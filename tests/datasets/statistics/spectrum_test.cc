@@ -12,13 +12,13 @@
 namespace glint {
 namespace {
 
-constexpr int kSide = 128;
+constexpr int kWaveSide = 128;
 
 template <typename Function>
 std::vector<float> Plane(Function value) {
   std::vector<float> plane;
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) plane.push_back(static_cast<float>(value(x, y)));
+  for (int y = 0; y < kWaveSide; ++y) {
+    for (int x = 0; x < kWaveSide; ++x) plane.push_back(static_cast<float>(value(x, y)));
   }
   return plane;
 }
@@ -32,8 +32,8 @@ std::vector<float> WhiteNoise() {
 TEST(FourierTest, InverseReturnsWhatWasTransformed) {
   const std::vector<float> noise = WhiteNoise();
   std::vector<Complex> wave(noise.begin(), noise.end());
-  Fourier2d(&wave, kSide);
-  InverseFourier2d(&wave, kSide);
+  Fourier2d(&wave, kWaveSide);
+  InverseFourier2d(&wave, kWaveSide);
   for (size_t i = 0; i < noise.size(); ++i) ASSERT_NEAR(wave[i].real(), noise[i], 1e-9);
 }
 
@@ -45,18 +45,18 @@ TEST(FourierTest, RefusesSidesThatAreNoPowerOfTwo) {
 TEST(SpectrumTest, AWavePeaksInItsBandAtAnyAngle) {
   for (const auto& [fx, fy] : {std::pair{6, 0}, {0, 21}, {9, 12}, {40, 3}}) {
     const auto plane = Plane([&, fx = fx, fy = fy](int x, int y) {
-      return std::cos(2 * M_PI * (fx * x + fy * y) / kSide);
+      return std::cos(2 * M_PI * (fx * x + fy * y) / kWaveSide);
     });
-    const RadialSpectrum power = PowerSpectrum(plane, kSide);
+    const RadialSpectrum power = PowerSpectrum(plane, kWaveSide);
     const int peak = static_cast<int>(std::max_element(power.begin(), power.end()) - power.begin());
     EXPECT_EQ(peak, static_cast<int>(2 * std::log2(std::hypot(fx, fy)))) << fx << " " << fy;
   }
 }
 
 TEST(SpectrumTest, WhiteNoiseIsLevelAndItsPowerSumsToTheVariance) {
-  const RadialSpectrum power = PowerSpectrum(WhiteNoise(), kSide);
+  const RadialSpectrum power = PowerSpectrum(WhiteNoise(), kWaveSide);
   EXPECT_NEAR(SpectralSlope(power), 0, 0.1);
-  const double per_coefficient = 0.09 / (kSide * kSide);
+  const double per_coefficient = 0.09 / (kWaveSide * kWaveSide);
   for (int band = 6; band < 12; ++band) {
     EXPECT_NEAR(power[static_cast<size_t>(band)] / per_coefficient, 1, 0.2) << band;
   }
@@ -71,7 +71,7 @@ TEST(SpectrumTest, SlopeIsThePowerLaws) {
 }
 
 TEST(SpectrumTest, HeightComesBackFromItsSlopes) {
-  const double u = 2 * M_PI * 6 / kSide, v = 2 * M_PI * 9 / kSide;
+  const double u = 2 * M_PI * 6 / kWaveSide, v = 2 * M_PI * 9 / kWaveSide;
   const auto height = [&](double x, double y) {
     return 2 * std::sin(u * x) + std::cos(v * y + u * x);
   };
@@ -79,9 +79,10 @@ TEST(SpectrumTest, HeightComesBackFromItsSlopes) {
   const auto slope_x =
       Plane([&](int x, int y) { return 2 * u * std::cos(u * x) - u * std::sin(-v * y + u * x); });
   const auto slope_y = Plane([&](int x, int y) { return -v * std::sin(-v * y + u * x); });
-  const auto found = HeightFromSlopes(slope_x, slope_y, kSide, 4);
+  const auto found = HeightFromSlopes(slope_x, slope_y, kWaveSide, 4);
   for (size_t i = 0; i < truth.size(); ++i) ASSERT_NEAR(found[i], truth[i], 1e-4) << i;
-  const auto fine = HeightFromSlopes(slope_x, slope_y, kSide, 8);  // the slower wave is left out
+  const auto fine =
+      HeightFromSlopes(slope_x, slope_y, kWaveSide, 8);  // the slower wave is left out
   EXPECT_GT(std::fabs(fine[16] - truth[16]), 0.5);
 }
 

@@ -9,8 +9,6 @@
 namespace glint {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 TexelSvbrdf<double> Gloss(double roughness, double slope_x = 0, double slope_y = 0) {
   TexelSvbrdf<double> texel{};
   const double z = 1 / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
@@ -26,7 +24,7 @@ TexelSvbrdf<double> Gloss(double roughness, double slope_x = 0, double slope_y =
 RoomHarmonics Toward(double x, double y, double z) {
   const double camera[3] = {-x, -y, z};
   RoomHarmonics terms = RoomReflection(Gloss(0)).Specular(camera);
-  for (double& term : terms) term /= kPi;
+  for (double& term : terms) term /= std::numbers::pi;
   return terms;
 }
 
@@ -37,21 +35,21 @@ void ForEachCell(double polar0, double polar1,
   for (int i = 0; i < kRings; ++i) {
     const double polar = polar0 + (polar1 - polar0) * (i + 0.5) / kRings;
     for (int j = 0; j < kSectors; ++j) {
-      const double azimuth = 2 * kPi * (j + 0.5) / kSectors;
+      const double azimuth = 2 * std::numbers::pi * (j + 0.5) / kSectors;
       const double d[3] = {std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
                            std::cos(polar)};
-      visit(d, std::sin(polar) * (polar1 - polar0) / kRings * 2 * kPi / kSectors);
+      visit(d, std::sin(polar) * (polar1 - polar0) / kRings * 2 * std::numbers::pi / kSectors);
     }
   }
 }
 
 TEST(RoomLight, TermsAreOrthogonalAndOfMeanSquareOne) {
   std::array<std::array<double, kRoomTerms>, kRoomTerms> products{};
-  ForEachCell(0, kPi, [&](const double d[3], double solid_angle) {
+  ForEachCell(0, std::numbers::pi, [&](const double d[3], double solid_angle) {
     const RoomHarmonics terms = Toward(d[0], d[1], d[2]);
     for (size_t i = 0; i < kRoomTerms; ++i) {
       for (size_t j = 0; j < kRoomTerms; ++j) {
-        products[i][j] += terms[i] * terms[j] * solid_angle / (4 * kPi);
+        products[i][j] += terms[i] * terms[j] * solid_angle / (4 * std::numbers::pi);
       }
     }
   });
@@ -74,7 +72,7 @@ TEST(RoomLight, TermsStandInTheUsualOrder) {
 TEST(RoomLight, DiffuseIsTheIrradianceOfTheTexelsPlane) {
   const TexelSvbrdf<double> texel = Gloss(0.5, 0.3, -0.5);
   RoomHarmonics irradiance{};
-  ForEachCell(0, kPi, [&](const double d[3], double solid_angle) {
+  ForEachCell(0, std::numbers::pi, [&](const double d[3], double solid_angle) {
     const double cosine = Dot(texel.normal, d);
     if (cosine <= 0) return;
     const RoomHarmonics terms = Toward(d[0], d[1], d[2]);
@@ -91,11 +89,11 @@ TEST(RoomLight, DiffuseIsTheIrradianceOfTheTexelsPlane) {
 RoomHarmonics Reflected(const TexelSvbrdf<double>& texel, const double camera[3]) {
   const double none[3] = {0, 0, 0};
   RoomHarmonics sums{};
-  ForEachCell(0, kPi / 2, [&](const double d[3], double solid_angle) {
+  ForEachCell(0, std::numbers::pi / 2, [&](const double d[3], double solid_angle) {
     const TexelGeometry<double> geometry = MakeTexelGeometry(d, camera, none, none);
     double brdf[3];
     EvaluateBrdf(texel, geometry, DiffuseWeight::kOne, brdf);
-    const double weight = kPi * brdf[0] * d[2] * solid_angle;
+    const double weight = std::numbers::pi * brdf[0] * d[2] * solid_angle;
     const RoomHarmonics terms = Toward(d[0], d[1], d[2]);
     for (size_t j = 0; j < kRoomTerms; ++j) sums[j] += weight * terms[j];
   });
@@ -125,7 +123,7 @@ TEST(RoomLight, AnEvenRoomLightsLikeAnAmbientLight) {
   view.camera_in_sample_mm = view.light_in_sample_mm = {20, 10, 200};
   view.exposure = 2;
   View lit = view;
-  lit.ambient_rgb = {0.1 * kPi, 0.2 * kPi, 0.3 * kPi};
+  lit.ambient_rgb = {0.1 * std::numbers::pi, 0.2 * std::numbers::pi, 0.3 * std::numbers::pi};
   TexelGeometry<double> by_room = TexelGeometryInView(view, LightFalloff::kNone, 5.0, 5.0);
   const TexelGeometry<double> by_ambient = TexelGeometryInView(lit, LightFalloff::kNone, 5.0, 5.0);
   RoomReflection(Gloss(0.1, 0.4)).AddTo(room, view.exposure, &by_room);

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-AutoencoderTrainOptions Tiny(std::int64_t steps) {
+AutoencoderTrainOptions TinyAutoencoder(std::int64_t steps) {
   auto options = TinyTraining<AutoencoderTrainOptions>(steps);
   options.channels = {8, 12, 16, 24, 32};
   return options;
@@ -46,7 +46,7 @@ TEST(Trainer, AShortTrainingOnProceduralMaterialsHalvesTheLossOnUnseenOnes) {
 
 TEST(Trainer, CodesOfDrawnWeightsHaveUnitVarianceFromTheFirstStep) {
   const test::TemporaryFolder folder;
-  AutoencoderTrainOptions options = Tiny(1);
+  AutoencoderTrainOptions options = TinyAutoencoder(1);
   options.principal_start = false;
   options.learning_rate = 1e-9;
   const fs::path weights = folder.path() / "w.safetensors";
@@ -64,7 +64,7 @@ TEST(Trainer, CodesOfDrawnWeightsHaveUnitVarianceFromTheFirstStep) {
 TEST(Trainer, AResumedTrainingEndsWithTheSameBits) {
   const test::TemporaryFolder folder;
   const auto train = [&](const char* name, std::int64_t stop, std::int64_t steps, bool resume) {
-    AutoencoderTrainOptions options = Tiny(steps);
+    AutoencoderTrainOptions options = TinyAutoencoder(steps);
     TrainFiles files{folder.path() / name, {}, {}, resume};
     options.checkpoint_minutes = 1e-9;  // after every step
     const auto report = [&](const TrainProgress& p) {
@@ -86,7 +86,7 @@ TEST(Trainer, AResumedTrainingEndsWithTheSameBits) {
 TEST(Trainer, EveryNormalisationTrainsAndItsWeightsSayWhichItIs) {
   for (const char* normalisation : {"none", "code", "all"}) {
     const test::TemporaryFolder folder;
-    AutoencoderTrainOptions options = Tiny(60);
+    AutoencoderTrainOptions options = TinyAutoencoder(60);
     options.principal_start = false;
     options.normalisation = normalisation;
     double first = 0;
@@ -105,7 +105,7 @@ TEST(Trainer, EveryNormalisationTrainsAndItsWeightsSayWhichItIs) {
 TEST(Trainer, EitherLossAloneLowersItself) {
   for (const bool maps : {true, false}) {
     const test::TemporaryFolder folder;
-    AutoencoderTrainOptions options = Tiny(80);
+    AutoencoderTrainOptions options = TinyAutoencoder(80);
     options.principal_start = false;
     (maps ? options.render_weight : options.map_weight) = 0;
     options.checkpoint_minutes = 1e-9;
@@ -124,7 +124,7 @@ TEST(Trainer, AccumulatedBatchesGiveTheStepOfTheirMeanGradient) {
   // Adam's first step depends on the gradient's signs alone: the two trainings see the same two
   // batches only if batches are numbered through.
   const test::TemporaryFolder folder;
-  AutoencoderTrainOptions options = Tiny(3);
+  AutoencoderTrainOptions options = TinyAutoencoder(3);
   options.accumulate = 2;
   const TrainFiles files{folder.path() / "w.safetensors", {}, {}, false};
   const TrainProgress last = TrainAutoencoder(options, files, Toy, Unseen, {});
@@ -136,7 +136,8 @@ class TrainedWeights : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test::TemporaryFolder;
-    TrainAutoencoder(Tiny(1), {folder_->path() / "w.safetensors", {}, {}, false}, Toy, Unseen, {});
+    TrainAutoencoder(TinyAutoencoder(1), {folder_->path() / "w.safetensors", {}, {}, false}, Toy,
+                     Unseen, {});
     bytes_ = test::ReadAll(folder_->path() / "w.safetensors");
   }
   static void TearDownTestSuite() { delete folder_; }
@@ -179,7 +180,7 @@ TEST_F(TrainedWeights, OfAnotherEncodingAreRefused) {
 TEST(Trainer, AMaximumGradientNormThatNoStepReachesChangesNothing) {
   const test::TemporaryFolder folder;
   const auto trained = [&](double most) {
-    AutoencoderTrainOptions options = Tiny(3);
+    AutoencoderTrainOptions options = TinyAutoencoder(3);
     options.max_gradient_norm = most;
     const fs::path path = folder.path() / "w.safetensors";
     TrainAutoencoder(options, {path, {}, {}, false}, Toy, Unseen, {});
@@ -193,7 +194,7 @@ TEST(Trainer, AMaximumGradientNormThatNoStepReachesChangesNothing) {
 TEST(Trainer, ThreadsThatMakeMaterialsDoNotChangeAByte) {
   const test::TemporaryFolder folder;
   const auto trained = [&](int threads) {
-    AutoencoderTrainOptions options = Tiny(12);
+    AutoencoderTrainOptions options = TinyAutoencoder(12);
     options.pool.threads = threads;
     const fs::path path = folder.path() / "w.safetensors";
     TrainAutoencoder(options, {path, {}, {}, false}, Toy, Unseen, {});
@@ -205,7 +206,8 @@ TEST(Trainer, ThreadsThatMakeMaterialsDoNotChangeAByte) {
 TEST(Trainer, OptionsThatCannotBeAreRefused) {
   const test::TemporaryFolder folder;
   const TrainFiles files{folder.path() / "w.safetensors", {}, {}, false};
-  AutoencoderTrainOptions crop = Tiny(1), batch = Tiny(1), endless = Tiny(0);
+  AutoencoderTrainOptions crop = TinyAutoencoder(1), batch = TinyAutoencoder(1),
+                          endless = TinyAutoencoder(0);
   crop.crops = {48};
   batch.batch = 0;
   EXPECT_THROW(TrainAutoencoder(crop, files, Toy, Unseen, {}), std::runtime_error);
@@ -216,8 +218,9 @@ TEST(Trainer, OptionsThatCannotBeAreRefused) {
 TEST(Trainer, ATrainingFromWeightsBeginsWhereTheyWere) {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "a.safetensors";
-  const TrainProgress trained = TrainAutoencoder(Tiny(60), {path, {}, {}, false}, Toy, Unseen, {});
-  AutoencoderTrainOptions options = Tiny(1);
+  const TrainProgress trained =
+      TrainAutoencoder(TinyAutoencoder(60), {path, {}, {}, false}, Toy, Unseen, {});
+  AutoencoderTrainOptions options = TinyAutoencoder(1);
   options.from = path;
   double first = 0;
   TrainAutoencoder(options, {folder.path() / "on.safetensors", {}, {}, false}, Toy, Unseen,

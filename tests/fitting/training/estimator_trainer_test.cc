@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-EstimatorTrainOptions Tiny(std::int64_t steps) {
+EstimatorTrainOptions TinyEstimator(std::int64_t steps) {
   auto options = TinyTraining<EstimatorTrainOptions>(steps);
   options.channels = {8, 12, 16, 16, 24, 8, 16};
   return options;
@@ -21,8 +21,8 @@ TEST(EstimatorTrainer, AShortTrainingTakesAThirdOffTheErrorOnUnseenMaterials) {
   const test::TemporaryFolder folder;
   double first = 0;
   const TrainProgress last =
-      TrainEstimator(Tiny(150), {folder.path() / "e.safetensors", {}, {}, false}, Toy, Unseen,
-                     [&](const TrainProgress& p) {
+      TrainEstimator(TinyEstimator(150), {folder.path() / "e.safetensors", {}, {}, false}, Toy,
+                     Unseen, [&](const TrainProgress& p) {
                        if (p.step == 0) first = *p.validation_map_loss;
                      });
   ASSERT_TRUE(last.validation_map_loss.has_value());
@@ -32,7 +32,7 @@ TEST(EstimatorTrainer, AShortTrainingTakesAThirdOffTheErrorOnUnseenMaterials) {
 TEST(EstimatorTrainer, AResumedTrainingEndsWithTheSameBits) {
   const test::TemporaryFolder folder;
   const auto train = [&](const char* name, std::int64_t stop, bool resume) {
-    EstimatorTrainOptions options = Tiny(6);
+    EstimatorTrainOptions options = TinyEstimator(6);
     options.checkpoint_minutes = 1e-9;  // after every step
     const auto report = [&](const TrainProgress& p) {
       if (stop > 0 && p.step == stop) throw std::runtime_error("interrupted");
@@ -53,8 +53,9 @@ TEST(EstimatorTrainer, AResumedTrainingEndsWithTheSameBits) {
 TEST(EstimatorTrainer, ATrainingFromWeightsBeginsWhereTheyWere) {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "e.safetensors";
-  const TrainProgress trained = TrainEstimator(Tiny(100), {path, {}, {}, false}, Toy, Unseen, {});
-  EstimatorTrainOptions options = Tiny(1);
+  const TrainProgress trained =
+      TrainEstimator(TinyEstimator(100), {path, {}, {}, false}, Toy, Unseen, {});
+  EstimatorTrainOptions options = TinyEstimator(1);
   options.from = path;
   options.channels.back() += 8;  // the file's count
   double first = 0;
@@ -68,8 +69,8 @@ TEST(EstimatorTrainer, ATrainingFromWeightsBeginsWhereTheyWere) {
 TEST(EstimatorTrainer, ACheckpointOfOtherChannelsIsRefused) {
   const test::TemporaryFolder folder;
   const TrainFiles files{folder.path() / "e.safetensors", {}, {}, true};
-  TrainEstimator(Tiny(1), files, Toy, Unseen, {});
-  EstimatorTrainOptions other = Tiny(2);
+  TrainEstimator(TinyEstimator(1), files, Toy, Unseen, {});
+  EstimatorTrainOptions other = TinyEstimator(2);
   other.channels[0] = 10;
   try {
     TrainEstimator(other, files, Toy, Unseen, {});

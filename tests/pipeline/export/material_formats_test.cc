@@ -24,14 +24,14 @@ const MaterialFormat& Format(const std::string& name) {
   return chosen.front();
 }
 
-std::string Written(const std::string& name, DiffuseWeight weight = DiffuseWeight::kOne) {
+std::string WrittenText(const std::string& name, DiffuseWeight weight = DiffuseWeight::kOne) {
   return Format(name).write(test::MaterialOf(test::UniformMaps(kValues), weight), FileOfMap, 1);
 }
 
 // Every node that another reads is there.
 TEST(MaterialFormatsTest, MaterialXNamesTheNodesItConnects) {
   for (const auto weight : {DiffuseWeight::kOne, DiffuseWeight::kOneMinusSpecular}) {
-    const std::string text = Written("materialx", weight);
+    const std::string text = WrittenText("materialx", weight);
     const std::regex connected("node(?:name|graph)=\"([a-z_]+)\"");
     int connections = 0;
     for (std::sregex_iterator i(text.begin(), text.end(), connected), end; i != end; ++i) {
@@ -45,7 +45,7 @@ TEST(MaterialFormatsTest, MaterialXNamesTheNodesItConnects) {
 }
 
 TEST(MaterialFormatsTest, UsdHasThePlaneInMetresAndClosesWhatItOpens) {
-  const std::string text = Written("usd");
+  const std::string text = WrittenText("usd");
   EXPECT_THAT(text, HasSubstr("metersPerUnit = 1"));
   EXPECT_THAT(text, HasSubstr("(-0.06, -0.04, 0)"));
   EXPECT_THAT(text, HasSubstr("asset inputs:file = @wood_specular.png@"));
@@ -61,11 +61,11 @@ TEST(MaterialFormatsTest, UsdNamesPrimsByIdentifiers) {
 }
 
 TEST(MaterialFormatsTest, BlendersScriptHasTrueScale) {
-  const std::string text = Written("blender");
+  const std::string text = WrittenText("blender");
   EXPECT_THAT(text, HasSubstr("WIDTH_M, HEIGHT_M = 0.12, 0.08"));
   EXPECT_THAT(text, HasSubstr("HEIGHT_LOW_M, HEIGHT_RANGE_M = -0.0005, 0.00125"));
   EXPECT_THAT(text, HasSubstr("DIFFUSE_WHOLE = True"));
-  EXPECT_THAT(Written("blender", DiffuseWeight::kOneMinusSpecular),
+  EXPECT_THAT(WrittenText("blender", DiffuseWeight::kOneMinusSpecular),
               HasSubstr("DIFFUSE_WHOLE = False"));
 }
 

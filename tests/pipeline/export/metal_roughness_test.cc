@@ -103,14 +103,14 @@ TEST(MetalRoughnessTest, IsTheBestOfItsNeighbourhood) {
 
 // Wider than what is averaged at a time, and neighbours beyond the borders.
 TEST(MetalRoughnessTest, MirroredMapsAreConvertedAlike) {
-  constexpr int kWidth = 300, kHeight = 5;
-  const SvbrdfMaps foils = Foils(kWidth);
-  SvbrdfMaps maps(kWidth, kHeight), mirrored(kWidth, kHeight);
+  constexpr int kFoilsWidth = 300, kFoilsHeight = 5;
+  const SvbrdfMaps foils = Foils(kFoilsWidth);
+  SvbrdfMaps maps(kFoilsWidth, kFoilsHeight), mirrored(kFoilsWidth, kFoilsHeight);
   for (int p = 0; p < kSvbrdfPlanes; ++p) {
-    for (int row = 0; row < kHeight; ++row) {
-      for (int column = 0; column < kWidth; ++column) {
+    for (int row = 0; row < kFoilsHeight; ++row) {
+      for (int column = 0; column < kFoilsWidth; ++column) {
         maps.at(p, row, column) = foils.at(p, row, column);
-        mirrored.at(p, row, kWidth - 1 - column) = foils.at(p, row, column);
+        mirrored.at(p, row, kFoilsWidth - 1 - column) = foils.at(p, row, column);
       }
     }
   }
@@ -118,10 +118,10 @@ TEST(MetalRoughnessTest, MirroredMapsAreConvertedAlike) {
   options.radius = 64;
   const auto found = ToMetalRoughness(maps, DiffuseWeight::kOne, options, 1);
   const auto of_mirrored = ToMetalRoughness(mirrored, DiffuseWeight::kOne, options, 1);
-  for (int row = 0; row < kHeight; ++row) {
-    for (int column = 0; column < kWidth; ++column) {
-      const size_t i = static_cast<size_t>(row) * kWidth + static_cast<size_t>(column);
-      const size_t j = static_cast<size_t>(row + 1) * kWidth - 1 - static_cast<size_t>(column);
+  for (int row = 0; row < kFoilsHeight; ++row) {
+    for (int column = 0; column < kFoilsWidth; ++column) {
+      const size_t i = static_cast<size_t>(row) * kFoilsWidth + static_cast<size_t>(column);
+      const size_t j = static_cast<size_t>(row + 1) * kFoilsWidth - 1 - static_cast<size_t>(column);
       EXPECT_NEAR(found.metallic[i], of_mirrored.metallic[j], 1e-3) << column;
       EXPECT_NEAR(found.ColorAt(i)[1], of_mirrored.ColorAt(j)[1], 1e-3) << column;
     }

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-SamplePlane Plane() {
+SamplePlane SmallPlane() {
   SamplePlane plane;
   plane.width = plane.height = 40;
   plane.width_mm = plane.height_mm = 40;
@@ -24,7 +24,7 @@ std::string MessageFor(const Photo& photo, const Rigid3& pose) {
   ViewCounts counts;
   try {
     RectifyPhoto(LinearPhoto(photo, Encoding::kGamma22),
-                 CameraProjection(TestCamera(300, 300), pose), Plane(), {}, {}, "photos/a.jpg",
+                 CameraProjection(TestCamera(300, 300), pose), SmallPlane(), {}, {}, "photos/a.jpg",
                  &counts);
   } catch (const UserError& error) {
     return error.what();
@@ -55,7 +55,7 @@ TEST(RectifyPhoto, CountsWhereTexelsWent) {
   ViewCounts counts;
   const RectifiedImage image = RectifyPhoto(
       LinearPhoto(FlatPhoto(300, 300, 0.5f, 8), Encoding::kGamma22),
-      CameraProjection(TestCamera(300, 300), aside), Plane(), {}, {}, "a.jpg", &counts);
+      CameraProjection(TestCamera(300, 300), aside), SmallPlane(), {}, {}, "a.jpg", &counts);
   EXPECT_NEAR(counts.outside, 0.5, 1e-9);
   EXPECT_NEAR(counts.usable, 0.5, 1e-9);
   EXPECT_NEAR(counts.pixels_per_texel, 3, 1e-9);
@@ -71,7 +71,7 @@ TEST(RectifyPhoto, RowsAreThoseOfTheWhole) {
   }
   const LinearPhoto linear(photo, Encoding::kGamma22);
   const CameraProjection projection(TestCamera(300, 300), LookAtSample(100, 20, 0));
-  SamplePlane plane = Plane();
+  SamplePlane plane = SmallPlane();
   plane.height = kRowsAtOnce + 100;
   plane.width = 24;
   const FrameStatus frame = [](const SamplePlane& rows) {
