@@ -1,3 +1,8 @@
+# Compiles a target's sources together, eight at a time.
+function(glint_unity name)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
+
 # glint_library(NAME SOURCES a.cc … [APART b.cc …] [DEPENDS glint_x …] [USES Ceres::ceres …])
 #   APART    sources that GLINT_UNITY does not join with others: names within them would meet
 #   DEPENDS  Glint libraries and header-light packages that public headers show
@@ -6,7 +11,7 @@ function(glint_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;APART;DEPENDS;USES" ${ARGN})
   if(ARG_SOURCES)
     add_library(${name} STATIC ${ARG_SOURCES} ${ARG_APART})
-    set_target_properties(${name} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+    glint_unity(${name})
     set_property(SOURCE ${ARG_APART} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
     target_link_libraries(${name} PUBLIC glint_compile_options ${ARG_DEPENDS} PRIVATE ${ARG_USES})
     glint_reuse_headers(${name} ${ARG_DEPENDS} ${ARG_USES})
@@ -60,6 +65,7 @@ endfunction()
 function(glint_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
+  glint_unity(${name})
   target_link_libraries(${name} PRIVATE glint_compile_options ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
   target_compile_definitions(${name} PRIVATE
     GLINT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" GLINT_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
