@@ -3,16 +3,23 @@ function(glint_unity name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
-# glint_library(NAME SOURCES a.cc … [APART b.cc …] [DEPENDS glint_x …] [USES Ceres::ceres …])
+# glint_library(NAME SOURCES a.cc … [LIGHT c.cc …] [APART b.cc …] [DEPENDS glint_x …] [USES Ceres::ceres …])
+#   LIGHT    sources that GLINT_UNITY joins with each other alone: programs that need nothing else of
+#            the library load none of the packages that SOURCES use, and start in milliseconds
 #   APART    sources that GLINT_UNITY does not join with others: names within them would meet
 #   DEPENDS  Glint libraries and header-light packages that public headers show
 #   USES     packages that only the .cc files see
 function(glint_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;APART;DEPENDS;USES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIGHT;APART;DEPENDS;USES" ${ARGN})
   if(ARG_SOURCES)
-    add_library(${name} STATIC ${ARG_SOURCES} ${ARG_APART})
+    add_library(${name} STATIC ${ARG_SOURCES} ${ARG_LIGHT} ${ARG_APART})
     glint_unity(${name})
     set_property(SOURCE ${ARG_APART} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+    if(ARG_LIGHT)
+      set_target_properties(${name} PROPERTIES UNITY_BUILD_MODE GROUP)
+      set_property(SOURCE ${ARG_LIGHT} PROPERTY UNITY_GROUP light)
+      set_property(SOURCE ${ARG_SOURCES} PROPERTY UNITY_GROUP rest)
+    endif()
     target_link_libraries(${name} PUBLIC glint_compile_options ${ARG_DEPENDS} PRIVATE ${ARG_USES})
     glint_reuse_headers(${name} ${ARG_DEPENDS} ${ARG_USES})
   else()

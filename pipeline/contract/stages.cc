@@ -35,6 +35,10 @@ const StageKind* FindStage(std::string_view name) {
   return found == std::end(kStages) ? nullptr : found;
 }
 
+std::string ManifestPath(std::string_view stage) {
+  return "glint/" + std::string(stage) + "/manifest.json";
+}
+
 std::string StageNamesText() {
   std::string text;
   for (const StageKind& stage : kStages) {

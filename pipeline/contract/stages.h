@@ -41,6 +41,9 @@ std::span<const StageKind> Stages();
 // Null for a name that is no stage's.
 const StageKind* FindStage(std::string_view name);
 
+// Relative to the capture's folder: "glint/<stage>/manifest.json".
+std::string ManifestPath(std::string_view stage);
+
 // "calib, rectify, …", for messages.
 std::string StageNamesText();
 

@@ -13,8 +13,8 @@
 
 #include "base/errors/errors.h"
 #include "pipeline/contract/run_progress.h"
+#include "pipeline/contract/stages.h"
 #include "pipeline/driver/child_process.h"
-#include "pipeline/driver/stage_graph.h"
 
 namespace glint {
 namespace {

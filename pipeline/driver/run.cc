@@ -18,6 +18,7 @@
 #include "pipeline/contract/manifest.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/contract/run_progress.h"
+#include "pipeline/contract/stages.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/programs.h"

@@ -80,8 +80,6 @@ const std::vector<std::string>& StageNames() {
   return names;
 }
 
-std::string ManifestPath(const std::string& stage) { return "glint/" + stage + "/manifest.json"; }
-
 std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choices) {
   const bool imported = capture.imported();
   if (!imported && capture.photos.empty()) {

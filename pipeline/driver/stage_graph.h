@@ -39,9 +39,6 @@ struct StageStep {
 // "calib", "rectify", … in order, whether or not a capture needs them.
 const std::vector<std::string>& StageNames();
 
-// "glint/<stage>/manifest.json"
-std::string ManifestPath(const std::string& stage);
-
 // The stages of `capture` in an order in which they can run. A capture without a board was
 // imported: it starts at fit, from the rectified set that is already there. Throws UserError when
 // the capture has a board and no photographs.
