@@ -77,6 +77,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # Stages are run by Ninja; poses without a board come from COLMAP.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "ninja-build")
+# libtorch alone is content with the reference BLAS, the slowest.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS
+  "ninja-build, libopenblas0-serial | libopenblas0-pthread | libopenblas0-openmp")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "colmap")
 include(CPack)
