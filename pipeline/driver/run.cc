@@ -68,7 +68,7 @@ void RemoveLeftovers(const fs::path& work) {
 }
 
 fs::path RequireNinja() {
-  const fs::path ninja = FindProgram("ninja");
+  fs::path ninja = FindProgram("ninja");
   if (!ninja.empty()) return ninja;
   throw EnvironmentError(
       "ninja: no such program in PATH; install it with: apt-get install ninja-build");
@@ -269,9 +269,12 @@ void RequireKnownViews(const Capture& capture, const std::vector<std::string>& n
   };
   for (const std::string& name : RejoinedNames(names, known)) {
     if (known(name)) continue;
-    std::string list;
-    for (const std::string& photo : capture.photos) list += (list.empty() ? "" : ", ") + photo;
-    throw UserError("--exclude: found no photograph named '" + name + "'; there are: " + list);
+    std::string message = "--exclude: found no photograph named '" + name + "'; there are: ";
+    for (const std::string& photo : capture.photos) {
+      if (&photo != &capture.photos.front()) message += ", ";
+      message += photo;
+    }
+    throw UserError(message);
   }
 }
 

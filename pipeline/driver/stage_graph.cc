@@ -27,6 +27,13 @@ StageStep Step(const std::string& stage, std::vector<std::string> files,
   return step;
 }
 
+std::vector<std::string> NamesOf(const std::vector<StageStep>& steps) {
+  std::vector<std::string> names(steps.size());
+  std::transform(steps.begin(), steps.end(), names.begin(),
+                 [](const StageStep& step) { return step.stage; });
+  return names;
+}
+
 void AddSelection(const RunChoices& choices, StageStep* step) {
   if (!choices.exclude.empty()) {
     step->arguments.insert(step->arguments.end(), {"--exclude", Joined(choices.exclude, ",")});
@@ -45,10 +52,9 @@ size_t Find(const std::vector<StageStep>& steps, const std::string& stage,
   const auto found = std::find_if(steps.begin(), steps.end(),
                                   [&](const StageStep& step) { return step.stage == stage; });
   if (found == steps.end()) {
-    std::vector<std::string> names;
-    for (const StageStep& step : steps) names.push_back(step.stage);
-    throw UserError("--" + option + ": found '" + stage +
-                    "', which this run does not have; its stages are: " + Joined(names, ", "));
+    throw UserError(
+        "--" + option + ": found '" + stage +
+        "', which this run does not have; its stages are: " + Joined(NamesOf(steps), ", "));
   }
   return static_cast<size_t>(found - steps.begin());
 }
@@ -121,8 +127,7 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
   }
   const std::string exported = capture.tiles ? "tile" : last;
   steps.push_back(Step("export", {}, {exported}));
-  std::vector<std::string> all_stages;
-  for (const StageStep& step : steps) all_stages.push_back(step.stage);
+  std::vector<std::string> all_stages = NamesOf(steps);
   if (imported) all_stages.insert(all_stages.begin(), "rectify");
   steps.push_back(Step("report", {}, all_stages));
   for (StageStep& step : steps) {
