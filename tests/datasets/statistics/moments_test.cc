@@ -53,9 +53,10 @@ TEST(MomentsTest, FineCorrelationSeesDetailUnderASlowGradient) {
 }
 
 TEST(MomentsTest, StripesHaveADirectionAndNoiseHasNone) {
-  std::vector<float> stripes;
+  std::vector<float> stripes(kPlaneSide * kPlaneSide);
   for (int i = 0; i < kPlaneSide * kPlaneSide; ++i) {
-    stripes.push_back(std::sin(0.3f * static_cast<float>(i % kPlaneSide + i / kPlaneSide)));
+    const int row = i / kPlaneSide, column = i % kPlaneSide;
+    stripes[static_cast<size_t>(i)] = std::sin(0.3f * static_cast<float>(row + column));
   }
   EXPECT_NEAR(Directionality(stripes, kPlaneSide), 1, 1e-3);
   EXPECT_LT(Directionality(Noise(1), kPlaneSide), 0.1);
