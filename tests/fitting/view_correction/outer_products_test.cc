@@ -4,6 +4,8 @@
 
 #include <random>
 
+#include "fitting/view_correction/outer_products_kernel.h"
+
 namespace glint {
 namespace {
 
@@ -24,6 +26,23 @@ TEST(OuterProducts, AreTheMatrixProductOfAnySize) {
     Eigen::MatrixXd expected = Eigen::MatrixXd::Ones(columns, columns);
     expected.triangularView<Eigen::Lower>() -= 2 * (drawn.transpose() * drawn);
     EXPECT_LT((sum - expected).cwiseAbs().maxCoeff(), 1e-10) << rows << " x " << columns;
+  }
+}
+
+// Results do not depend on the processor's vector units.
+TEST(OuterProducts, AreTheSameBitsFromEveryInstructionSet) {
+  constexpr int kStride = 3 * kernel::kStrideUnit, kCount = 37;
+  const Eigen::MatrixXd drawn = Drawn(kStride, kCount);  // a row in each column
+  const auto sums_of = [&](InstructionSet set) {
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(kStride, kStride);
+    kernel::AddProductsFor(set)(drawn.data(), kCount, kStride, sums.data());
+    return Eigen::MatrixXd(sums.triangularView<Eigen::Lower>());
+  };
+  const Eigen::MatrixXd baseline = sums_of(InstructionSet::kBaseline);
+  EXPECT_GT(baseline.norm(), 1);
+  for (const InstructionSet set : {InstructionSet::kAvx2, InstructionSet::kAvx512}) {
+    if (!Available(set)) continue;
+    EXPECT_EQ(sums_of(set), baseline) << Name(set);
   }
 }
 
