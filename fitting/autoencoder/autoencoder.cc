@@ -7,6 +7,7 @@
 #include "fitting/autoencoder/network_file.h"
 #include "fitting/encoding/encoding_torch.h"
 #include "fitting/layers/layers.h"
+#include "fitting/layers/threads.h"
 
 namespace glint {
 namespace {
@@ -114,7 +115,7 @@ LatentCode Autoencoder::Encode(const SvbrdfMaps& maps, int threads) const {
     throw std::invalid_argument("Autoencoder: maps without texels");
   }
   torch::NoGradGuard no_gradient;
-  torch::set_num_threads(threads);
+  UseThreads(threads);
   const Tensor raw = impl_->network.EncodeRaw(PaddedTensor(EncodeMaps(maps)), torch::kFloat32);
   const Tensor z = impl_->network.NormaliseByRunning(raw).contiguous();
   LatentCode code{
@@ -126,7 +127,7 @@ LatentCode Autoencoder::Encode(const SvbrdfMaps& maps, int threads) const {
 EncodedMaps Autoencoder::Decode(const LatentCode& code, int width, int height, int threads) const {
   CheckCode(code, latent_channels(), width, height);
   torch::NoGradGuard no_gradient;
-  torch::set_num_threads(threads);
+  UseThreads(threads);
   return CroppedMaps(impl_->network.Decode(CodeTensor(code), torch::kFloat32), width, height);
 }
 
@@ -195,7 +196,7 @@ std::vector<float> PullBack(const Tensor& decoded, const std::vector<Tensor>& in
 
 EncodedMaps Autoencoder::Tape::Forward(const LatentCode& code, int width, int height) {
   CheckCode(code, state_->network.channels[kLevels - 1], width, height);
-  torch::set_num_threads(state_->threads);
+  UseThreads(state_->threads);
   state_->z = CodeTensor(code).requires_grad_();
   state_->decoded = state_->network.Decode(state_->z, state_->compute);
   return CroppedMaps(state_->decoded.detach(), width, height);
@@ -211,7 +212,7 @@ std::vector<float> Autoencoder::Tape::Backward(const EncodedMaps& gradient) {
 EncodedMaps Autoencoder::Tape::ForwardTuned(const LatentCode& code, std::span<const float> weights,
                                             int width, int height) {
   CheckCode(code, state_->network.channels[kLevels - 1], width, height);
-  torch::set_num_threads(state_->threads);
+  UseThreads(state_->threads);
   SetDecoder(weights, &state_->tuned);
   for (const Tensor& t : DecoderTensors(state_->tuned)) t.set_requires_grad(true);
   state_->z = CodeTensor(code).requires_grad_();

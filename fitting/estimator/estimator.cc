@@ -5,6 +5,7 @@
 #include "fitting/encoding/encoding_torch.h"
 #include "fitting/estimator/estimator_file.h"
 #include "fitting/estimator/photograph_features.h"
+#include "fitting/layers/threads.h"
 
 namespace glint {
 namespace {
@@ -53,7 +54,7 @@ SvbrdfEstimate Estimator::Estimate(std::span<const Photograph> photographs,
                                    const ReflectanceConvention& convention,
                                    const EstimatorConditions& conditions, int threads) const {
   torch::NoGradGuard no_gradient;
-  if (threads > 0) torch::set_num_threads(threads);
+  if (threads > 0) UseThreads(threads);
   const auto count = static_cast<int64_t>(photographs.size());
   const int height = Padded(plane.height), width = Padded(plane.width);
   const Tensor features = torch::empty({1, count, kFeaturePlanes, height, width});

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "fitting/autoencoder/network_file.h"
+#include "fitting/layers/threads.h"
 #include "fitting/training/map_training.h"
 #include "fitting/training/principal_start.h"
 #include "fitting/training/random.h"
@@ -110,7 +111,7 @@ TrainProgress TrainAutoencoder(const AutoencoderTrainOptions& options, const Tra
                                const MaterialSource& materials, const MaterialSource& validation,
                                const TrainReport& report) {
   Check(options);
-  torch::set_num_threads(options.threads);
+  UseThreads(options.threads);
   AutoencoderTraining training(options, FirstStep(files) * options.accumulate, materials,
                                validation);
   return RunTraining(options, files, &training, report);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "fitting/estimator/estimator_file.h"
+#include "fitting/layers/threads.h"
 #include "fitting/training/map_training.h"
 #include "fitting/training/training_photographs.h"
 
@@ -108,7 +109,7 @@ TrainProgress TrainEstimator(const EstimatorTrainOptions& options, const TrainFi
                              const MaterialSource& materials, const MaterialSource& validation,
                              const TrainReport& report) {
   CheckTrainOptions(options);
-  torch::set_num_threads(options.threads);
+  UseThreads(options.threads);
   EstimatorTraining training(options, FirstStep(files) * options.accumulate, materials, validation);
   return RunTraining(options, files, &training, report);
 }
