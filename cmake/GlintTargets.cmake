@@ -1,4 +1,4 @@
-# Compiles a target's sources together, eight at a time.
+# Compiles a target's sources together, eight at a time (those beside a library's LIGHT ones: all).
 function(glint_unity name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()

@@ -269,12 +269,8 @@ void RequireKnownViews(const Capture& capture, const std::vector<std::string>& n
   };
   for (const std::string& name : RejoinedNames(names, known)) {
     if (known(name)) continue;
-    std::string message = "--exclude: found no photograph named '" + name + "'; there are: ";
-    for (const std::string& photo : capture.photos) {
-      if (&photo != &capture.photos.front()) message += ", ";
-      message += photo;
-    }
-    throw UserError(message);
+    throw UserError(fmt::format("--exclude: found no photograph named '{}'; there are: {}", name,
+                                fmt::join(capture.photos, ", ")));
   }
 }
 
