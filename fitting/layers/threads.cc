@@ -6,7 +6,8 @@
 namespace glint {
 
 void UseThreads(int threads) {
-  torch::set_num_threads(threads);
+  // To set it makes libtorch's other pool of threads anew, which then wait spinning.
+  if (torch::get_num_threads() != threads) torch::set_num_threads(threads);
   // libtorch does not say which BLAS is behind it.
   using SetThreads = void (*)(int);
   static const auto of_openblas =
