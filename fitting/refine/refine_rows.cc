@@ -75,8 +75,7 @@ class PartRefiner {
   void Conclude();
   void ConcludeBatch(std::span<const size_t> texels, RefineWorker* worker);
   void ConcludeTexel(size_t texel, int lane, const BatchGram& photographs,
-                     const BatchInverse& inverse, const BatchInverse& without_neighbours,
-                     const RefineWorker& worker);
+                     const BatchInverse& inverse, const RefineWorker& worker);
   // A few rows at a time.
   void ForEachRows(int about,
                    const std::function<void(int begin, int end, RefineWorker* worker)>& visit);
@@ -245,17 +244,18 @@ BatchSearch::Task PartRefiner::FromNeighbours(size_t texel) const {
 
 // Confidence and the texel's share of the summary, of one lane.
 void PartRefiner::ConcludeTexel(size_t texel, int lane, const BatchGram& photographs,
-                                const BatchInverse& inverse, const BatchInverse& without_neighbours,
-                                const RefineWorker& worker) {
+                                const BatchInverse& inverse, const RefineWorker& worker) {
   const size_t texels = start_.texels(), views = problem_.views.size();
-  TexelCovariance covariance = PosteriorCovariance(inverse, lane, model_.residuals().scale());
-  covariance += model_.CommonCovariance(texel, without_neighbours, lane);
-  const auto planes =
-      TexelConfidence(covariance, ReadTexel(result_.maps, texel), photographs.Squares(lane));
+  TexelCovariance covariance =
+      PosteriorCovariance(inverse, lane, model_.measured_residuals().scale());
+  covariance += model_.CommonCovariance(texel, inverse, lane);
+  const TexelValues values = ReadTexel(result_.maps, texel);
+  const double squares = photographs.Squares(lane);
+  const auto planes = TexelConfidence(covariance, values, squares);
   for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];
 
   double* sum = &sums_[texel / static_cast<size_t>(start_.width) * SumColumns()];
-  sum[0] += 0.5 * static_cast<double>(inverse.squares[lane]);
+  sum[0] += 0.5 * (squares + PriorOf(texel).SquaredNorm(values));
   for (size_t v = 0; v < views; ++v) {
     const int view = static_cast<int>(v);
     if (!worker.observed.sees(view, lane)) continue;
@@ -269,23 +269,20 @@ void PartRefiner::ConcludeTexel(size_t texel, int lane, const BatchGram& photogr
 void PartRefiner::ConcludeBatch(std::span<const size_t> texels, RefineWorker* worker) {
   Gather(texels, &worker->observed);
   BatchValues values;
-  BatchPrior prior, without_neighbours;
+  BatchPrior prior;
   for (size_t i = 0; i < texels.size(); ++i) {
     const int lane = static_cast<int>(i);
     SetLane(lane, ReadTexel(result_.maps, texels[i]), &values);
-    prior.SetLane(lane, PriorOf(texels[i]));
-    without_neighbours.SetLane(lane, model_.PriorOf(texels[i]));
+    prior.SetLane(lane, model_.StatedPriorOf(texels[i]));
   }
   BatchEvaluator& evaluator = worker->batches.evaluator();
   BatchGram photographs;
   evaluator.Gram(worker->observed, values, &photographs, &worker->residuals);
-  const double least = LeastInformation(model_.residuals().scale());
-  BatchInverse inverse, inverse_without_neighbours;
-  evaluator.Inverse(photographs, prior, values, least, &inverse);
-  evaluator.Inverse(photographs, without_neighbours, values, least, &inverse_without_neighbours);
+  BatchInverse inverse;
+  evaluator.Inverse(photographs, prior, values,
+                    LeastInformation(model_.measured_residuals().scale()), &inverse);
   for (size_t i = 0; i < texels.size(); ++i) {
-    ConcludeTexel(texels[i], static_cast<int>(i), photographs, inverse, inverse_without_neighbours,
-                  *worker);
+    ConcludeTexel(texels[i], static_cast<int>(i), photographs, inverse, *worker);
   }
 }
 

@@ -110,6 +110,7 @@ SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
       all_views_(part.problem().views.size()),
       initial_errors_(ErrorsOfInitialisation(part.problem())),
       residuals_(part.problem(), {.expected_sigma = options.residual_sigma}),
+      measured_residuals_(residuals_),
       has_sample_priors_(part.problem().views.size() > 1),
       normal_spreads_(static_cast<size_t>(part.substances().count()),
                       has_sample_priors_ ? kExpectedNormalSpread : kUnknownSpread),
@@ -166,11 +167,16 @@ void SampleModel::MultiplyNeighbours(size_t texel, std::span<const Neighbour> ne
   }
 }
 
-TexelPrior SampleModel::Scaled(const TexelGaussian& gaussian) const {
-  return TexelPrior(gaussian, residuals_.scale() * std::sqrt(options_.prior));
+TexelPrior SampleModel::Scaled(const TexelGaussian& gaussian,
+                               const ResidualModel& residuals) const {
+  return TexelPrior(gaussian, residuals.scale() * std::sqrt(options_.prior));
 }
 
-TexelPrior SampleModel::PriorOf(size_t texel) const { return Scaled(Knowledge(texel)); }
+TexelPrior SampleModel::PriorOf(size_t texel) const { return Scaled(Knowledge(texel), residuals_); }
+
+TexelPrior SampleModel::StatedPriorOf(size_t texel) const {
+  return Scaled(Knowledge(texel), measured_residuals_);
+}
 
 TexelPrior SampleModel::PriorOf(size_t texel, const SvbrdfMaps& maps) const {
   std::array<Neighbour, 4> neighbours;
@@ -180,7 +186,7 @@ TexelPrior SampleModel::PriorOf(size_t texel, const SvbrdfMaps& maps) const {
   });
   TexelGaussian gaussian = Knowledge(texel);
   MultiplyNeighbours(texel, std::span(neighbours).first(count), &gaussian);
-  return Scaled(gaussian);
+  return Scaled(gaussian, residuals_);
 }
 
 SampleModel::Sampling SampleModel::Sample(size_t most, const SampleSolver& solver,
@@ -245,7 +251,7 @@ void SampleModel::UpdateSubstances(const Sampling& sampling) {
     }
     samples.push_back(sample);
   }
-  UpdateMeans(samples, SampleWorth(sampling), &means_);
+  UpdateMeans(samples, WorthOf(sampling), &means_);
 }
 
 // Of half the length scale over which discrepancy stays alike.
@@ -275,11 +281,20 @@ void SampleModel::TellHalfVectorsApart(Sampling* sampling) const {
 }
 
 // Discrepancy is a function of the half vector, common to a substance: a mean over n texels and
-// views has variance q²/n + d²/cells.
-double SampleModel::SampleWorth(const Sampling& sampling) const {
-  const double n = static_cast<double>(sampling.texels.size()) * residuals_.effective_views();
-  const double d = residuals_.discrepancy_share();
-  return 1 / ((1 - d) + d * std::max(1.0, n / static_cast<double>(sampling.half_vectors)));
+// views has variance q²/n + d²/cells. What is a view's own (registration, exposure) all its texels
+// have in common. The estimate itself does without that, which it would count as unknown where much
+// of it is found.
+SampleWorth SampleModel::WorthOf(const Sampling& sampling) const {
+  const double texels = static_cast<double>(sampling.texels.size());
+  const auto mean = [](double d, double alike) { return 1 / ((1 - d) + d * alike); };
+  const auto by_half_vector = [&](const ResidualModel& residuals) {
+    return std::max(
+        1.0, texels * residuals.effective_views() / static_cast<double>(sampling.half_vectors));
+  };
+  const double smooth = residuals_.options().smooth_share;
+  return {mean(residuals_.discrepancy_share(), by_half_vector(residuals_)),
+          mean(measured_residuals_.discrepancy_share(),
+               smooth * by_half_vector(measured_residuals_) + (1 - smooth) * texels)};
 }
 
 // MacKay's fixed point ("Bayesian interpolation", Neural Computation 1992): squares over residuals
@@ -288,7 +303,7 @@ double SampleModel::SampleWorth(const Sampling& sampling) const {
 // explain their residuals: wholly where there is one photograph, hardly where there are twenty.
 void SampleModel::UpdateResiduals(const Sampling& sampling) {
   const ResidualModelOptions& model = residuals_.options();
-  double squares = 0, free = 0;
+  double squares = 0, free = 0, believed = 0;
   for (const SampledTexel& solved : sampling.solved) {
     if (solved.views == 0) continue;
     const auto inverse = InverseOf(solved);
@@ -300,22 +315,28 @@ void SampleModel::UpdateResiduals(const Sampling& sampling) {
     const double seen = 3.0 * solved.views;
     const double belief =
         model.expected_residuals * (finds_views_ ? 1 : std::min(determined / seen, 1.0));
-    squares += solved.squares + belief * model.expected_sigma * model.expected_sigma;
-    free += std::max(seen - determined, 0.0) + belief;
+    squares += solved.squares;
+    free += std::max(seen - determined, 0.0);
+    believed += belief;
   }
-  if (free > 0) {
-    residuals_.SetVariance(HyperbolicVariance(squares / free, options_.robust_scale));
-  }
+  const auto variance = [&](double residuals_believed) {
+    const double square = model.expected_sigma * model.expected_sigma;
+    return HyperbolicVariance((squares + residuals_believed * square) / (free + residuals_believed),
+                              options_.robust_scale);
+  };
+  if (free + believed > 0) residuals_.SetVariance(variance(believed));
+  measured_residuals_ = residuals_;
+  if (free > 0) measured_residuals_.SetVariance(variance(0));
 }
 
 // Where the means move by dm, the most probable values move by C·P·dm, with C the texel's posterior
-// covariance and P its substances' precisions. Neighbours are left out of C: theirs move alike.
+// covariance and P its substances' precisions.
 TexelCovariance SampleModel::CommonCovariance(size_t texel, const BatchInverse& inverse,
                                               int lane) const {
   const float* shares = part_->shares(texel);
   const SharedValues variances = means_.Variances(means_.Of(shares));
   const SharedCovariance means = means_.CovarianceOf(shares);
-  const double variance = residuals_.scale() * residuals_.scale();
+  const double variance = measured_residuals_.scale() * measured_residuals_.scale();
   const auto follows = [&](int value) {
     SharedValues by;
     for (size_t p = 0; p < kShared; ++p) {
@@ -388,7 +409,7 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
     texel.products = &solved.of_views;
   }
   const double scale = residuals_.scale();
-  deviations_.Update(texels, SampleWorth(sampling) / (scale * scale));
+  deviations_.Update(texels, WorthOf(sampling).shared_by_half_vector / (scale * scale));
   sampling.solver->deviate(deviations_);
 }
 

@@ -75,15 +75,19 @@ class SampleModel {
   void Estimate(const SampleSolver& solver, int threads);
 
   const ResidualModel& residuals() const { return residuals_; }
+  // The same as they were measured, without the belief beside them: what deviations are stated by.
+  const ResidualModel& measured_residuals() const { return measured_residuals_; }
   const ViewDeviations& deviations() const { return deviations_; }
 
   // The texel's prior: without what its neighbours know, and with their values in `maps`.
   TexelPrior PriorOf(size_t texel) const;
   TexelPrior PriorOf(size_t texel, const SvbrdfMaps& maps) const;
+  // The first of them, to be added to residuals that are judged as they were measured.
+  TexelPrior StatedPriorOf(size_t texel) const;
 
   // What the texel's substances' means leave open: those are uncertain themselves, and all their
   // texels share what they are wrong by. `inverse`: of the normal equations with
-  // PriorOf(texel) and LeastInformation().
+  // StatedPriorOf(texel) and LeastInformation().
   TexelCovariance CommonCovariance(size_t texel, const BatchInverse& inverse, int lane) const;
 
   void Describe(RefineSummary* summary) const;
@@ -115,7 +119,7 @@ class SampleModel {
   // From now on views stay as they are, the residuals' variance is measured rather than believed,
   // and diffuse albedo is shared too, from what was found of it without.
   void HoldViews(double diffuse_spread, const Sampling& sampling);
-  double SampleWorth(const Sampling& sampling) const;
+  SampleWorth WorthOf(const Sampling& sampling) const;
   // By cross-validation, sample_spreads.cc.
   // visit(model, sampling, fitted, held_out) with what is found of the sampled texels without the
   // views held out, one fold after the other.
@@ -136,13 +140,13 @@ class SampleModel {
   // in their departures from their substances by `neighbour_spread_`.
   void MultiplyNeighbours(size_t texel, std::span<const Neighbour> neighbours,
                           TexelGaussian* gaussian) const;
-  TexelPrior Scaled(const TexelGaussian& gaussian) const;
+  TexelPrior Scaled(const TexelGaussian& gaussian, const ResidualModel& residuals) const;
 
   const SamplePart* part_;
   RefineOptions options_;
   std::vector<int> all_views_;
   InitialisationErrors initial_errors_;
-  ResidualModel residuals_;
+  ResidualModel residuals_, measured_residuals_;
   // Whether a surface is level and texels alike says anything beside the initialisation. That of
   // one photograph is an estimate by what materials are like, which knows both already.
   bool has_sample_priors_;

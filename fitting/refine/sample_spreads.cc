@@ -114,7 +114,8 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
           }
           TexelGaussian gaussian = one.Knowledge(texel);
           one.MultiplyNeighbours(texel, neighbours, &gaussian);
-          tasks.push_back({texel, one.Scaled(gaussian), part.solved[centres[k]].values});
+          tasks.push_back(
+              {texel, one.Scaled(gaussian, residuals_), part.solved[centres[k]].values});
           middles_texels.push_back(texel);
         }
         std::vector<SampledTexel> solved(block);

@@ -154,7 +154,8 @@ SharedValues SubstanceMeans::Variances(const SharedValues& of) const {
   return variances;
 }
 
-void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, SubstanceMeans* means) {
+void UpdateMeans(const std::vector<SubstanceSample>& samples, const SampleWorth& worth,
+                 SubstanceMeans* means) {
   constexpr int kN = static_cast<int>(kShared);
   using MatrixS = Eigen::Matrix<double, kN, kN, Eigen::RowMajor>;
   using VectorS = Eigen::Matrix<double, kN, 1>;
@@ -192,8 +193,9 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
     }
   }
   information.triangularView<Eigen::StrictlyUpper>() = information.transpose();
-  information *= worth;
-  gradient *= worth;
+  const Eigen::MatrixXd of_samples = information;
+  information *= worth.shared_by_half_vector;
+  gradient *= worth.shared_by_half_vector;
   // Means are expected within a wide range of their common mean.
   SharedValues common{};
   for (const SharedValues& m : means->mean) {
@@ -233,6 +235,7 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, Subs
   for (Eigen::Index i = 0; i < kN * count; ++i) {
     means->mean[static_cast<size_t>(i / kN)][static_cast<size_t>(i % kN)] += step[i];
   }
+  information += (worth.shared_by_view - worth.shared_by_half_vector) * of_samples;
   const Eigen::MatrixXd covariance =
       information.ldlt().solve(Eigen::MatrixXd::Identity(kN * count, kN * count));
   means->covariance.assign(covariance.data(), covariance.data() + covariance.size());

@@ -56,7 +56,7 @@ struct SubstanceMeans {
   double roughness_spread = kExpectedRoughnessSpread, specular_spread = kExpectedSpecularSpread;
   double diffuse_spread = kUnknownSpread;
 
-  // Posterior covariance of all means, row-major by substance and value; empty: they are certain.
+  // Covariance of all means' errors, row-major by substance and value; empty: they are certain.
   std::vector<double> covariance;
 
   SharedValues Of(const float* shares) const;
@@ -77,9 +77,15 @@ struct SubstanceSample {
   SharedCovariance covariance{};
 };
 
-// One Newton step of the means on the marginal likelihood, and their covariance. `worth`: of a
-// sample, in independent ones, ≤ 1: model discrepancy is common to the texels of a substance that
-// are seen under like half vectors.
-void UpdateMeans(const std::vector<SubstanceSample>& samples, double worth, SubstanceMeans* means);
+// What a sample is worth, in independent ones, ≤ 1, since samples have model discrepancy in common.
+struct SampleWorth {
+  double shared_by_half_vector;  // where those of like half vectors share it …
+  double shared_by_view;         // … and what is a view's own too
+};
+
+// One Newton step of the means on the marginal likelihood, each sample worth as much as where half
+// vectors share discrepancy, and the covariance of their errors, where views do too.
+void UpdateMeans(const std::vector<SubstanceSample>& samples, const SampleWorth& worth,
+                 SubstanceMeans* means);
 
 }  // namespace glint

@@ -600,7 +600,6 @@ void Inverse(const BatchGram& photographs, const BatchPrior& prior, const BatchV
   for (int first = 0; first < kBatch; first += kLanes<float>) {
     Normal normal = LoadNormal(photographs, first);
     AddPrior(prior, LoadValues(values, first), first, &normal);
-    Put(normal.squares(), first, &inverse->squares);
     VectorValues added;
     for (Floats& value : added.of) value = Broadcast(least);
     const Factor factor(normal, added);

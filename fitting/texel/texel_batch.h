@@ -116,10 +116,9 @@ struct BatchGram {
   double Squares(int lane) const { return shared[kShared - 1][lane]; }
 };
 
-// The inverse of normal equations, symmetric, and the residuals' squares, the prior's included.
+// The inverse of normal equations, the prior included; symmetric.
 struct BatchInverse {
   BatchRow of[kTexelParameters][kTexelParameters];
-  BatchRow squares;
   double at(int i, int j, int lane) const { return of[i][j][lane]; }
 };
 

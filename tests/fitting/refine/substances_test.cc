@@ -84,7 +84,7 @@ TEST(UpdateMeans, FindsEachSubstanceHoweverLittleATexelKnows) {
     means.diffuse_spread = kExpectedDiffuseSpread;
     means.mean.assign(2, {0.1, 0.1, 0.1, 0.45, 0.2, 0.2, 0.2});
     for (int round = 0; round < 12; ++round) {
-      UpdateMeans(Samples(shares, noise, means), 1, &means);
+      UpdateMeans(Samples(shares, noise, means), {1, 1}, &means);
     }
     const SharedValues first = means.Of(shares.data());
     const SharedValues second = means.Of(shares.data() + 2 * 5);
@@ -102,7 +102,7 @@ TEST(UpdateMeans, SubstancesThatLittleIsKnownOfStayTogether) {
   SubstanceMeans means;
   means.mean.assign(2, {0.1, 0.1, 0.1, 0.45});
   for (int round = 0; round < 12; ++round) {
-    UpdateMeans(Samples(shares, 0.3, means), 1e-4, &means);
+    UpdateMeans(Samples(shares, 0.3, means), {1e-4, 1e-4}, &means);
   }
   EXPECT_LT(std::abs(means.mean[0][3] - means.mean[1][3]), 0.15);
 }
@@ -132,7 +132,7 @@ TEST(UpdateMeans, WhereOneIsHeldAtItsBoundTheOtherMakesUpForIt) {
   }
   SubstanceMeans means;
   means.mean.assign(2, {0.5, 0.5, 0.5, 0.055});
-  for (int round = 0; round < 12; ++round) UpdateMeans(MixedSamples(shares, means), 1, &means);
+  for (int round = 0; round < 12; ++round) UpdateMeans(MixedSamples(shares, means), {1, 1}, &means);
   const float middle[2] = {0.575f, 0.425f};
   EXPECT_NEAR(means.Of(middle)[3], 0.055, 0.005);
   EXPECT_NEAR(means.mean[0][3], 0.03, 1e-9);
@@ -146,7 +146,7 @@ TEST(UpdateMeans, MeansAreOffByAsMuchAsTheirCovarianceSays) {
     SubstanceMeans means;
     means.mean.assign(2, {0.1, 0.1, 0.1, 0.45});
     for (int round = 0; round < 12; ++round) {
-      UpdateMeans(Samples(shares, 0.3, means, static_cast<unsigned>(seed)), 1, &means);
+      UpdateMeans(Samples(shares, 0.3, means, static_cast<unsigned>(seed)), {1, 1}, &means);
     }
     const double error = means.Of(shares.data())[3] - 0.3;
     squares += error * error / means.CovarianceOf(shares.data())[(kShared + 1) * 3];

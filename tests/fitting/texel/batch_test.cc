@@ -286,8 +286,6 @@ TEST(BatchKernel, InverseIsThatOfTheNormalEquationsWithThePrior) {
 
       TexelGram gram = GramOfLane(photographs, lane);
       lanes.priors[k].AddTo(lanes.texels[k], &gram);
-      EXPECT_NEAR(inverse.squares[lane], gram[kTexelParameters][kTexelParameters],
-                  1e-5 * gram[kTexelParameters][kTexelParameters]);
       Eigen::Matrix<double, kTexelParameters, kTexelParameters> information;
       for (int i = 0; i < kTexelParameters; ++i) {
         for (int j = i; j < kTexelParameters; ++j) {
