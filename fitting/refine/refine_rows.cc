@@ -248,8 +248,9 @@ void PartRefiner::ConcludeTexel(size_t texel, int lane, const BatchGram& photogr
   const size_t texels = start_.texels(), views = problem_.views.size();
   TexelCovariance covariance =
       PosteriorCovariance(inverse, lane, model_.measured_residuals().scale());
-  covariance += model_.CommonCovariance(texel, inverse, lane);
   const TexelValues values = ReadTexel(result_.maps, texel);
+  covariance += model_.CommonCovariance(texel, inverse, lane);
+  covariance += model_.AlikeCovariance(texel, values, inverse, lane);
   const double squares = photographs.Squares(lane);
   const auto planes = TexelConfidence(covariance, values, squares);
   for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];

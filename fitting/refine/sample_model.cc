@@ -129,16 +129,24 @@ SampleModel SampleModel::On(const SamplePart& part) const {
   return model;
 }
 
-TexelGaussian SampleModel::Knowledge(size_t texel) const {
-  TexelGaussian gaussian(ReadTexel(part_->initial(), texel), initial_errors_);
+TexelGaussian SampleModel::Initialisation(size_t texel) const {
+  return TexelGaussian(ReadTexel(part_->initial(), texel), initial_errors_);
+}
+
+void SampleModel::MultiplySubstance(size_t texel, TexelGaussian* gaussian) const {
   const SharedValues mean = means_.Of(part_->shares(texel));
   const SharedValues variances = means_.Variances(mean);
   for (size_t p = 0; p < kShared; ++p) {
-    gaussian.Multiply(kSharedParameters[p], mean[p], 1 / variances[p]);
+    gaussian->Multiply(kSharedParameters[p], mean[p], 1 / variances[p]);
   }
   const double precision = NormalPrecision(texel);
-  gaussian.Multiply(kSlopeX, 0, precision);
-  gaussian.Multiply(kSlopeY, 0, precision);
+  gaussian->Multiply(kSlopeX, 0, precision);
+  gaussian->Multiply(kSlopeY, 0, precision);
+}
+
+TexelGaussian SampleModel::Knowledge(size_t texel) const {
+  TexelGaussian gaussian = Initialisation(texel);
+  MultiplySubstance(texel, &gaussian);
   return gaussian;
 }
 
@@ -359,6 +367,36 @@ TexelCovariance SampleModel::CommonCovariance(size_t texel, const BatchInverse& 
     common.variances[static_cast<size_t>(i)] = covariance(by, by);
   }
   common.slopes = covariance(follows(kSlopeX), follows(kSlopeY));
+  return common;
+}
+
+// With errors a of variance 1/p and b of 1/q, of which the smaller is part of the other, p·a + q·b,
+// by which the normal equations are off, has variance p + q + 2 min(p, q).
+TexelCovariance SampleModel::AlikeCovariance(size_t texel, const TexelValues& values,
+                                             const BatchInverse& inverse, int lane) const {
+  const TexelGaussian initial = Initialisation(texel);
+  TexelGaussian expected, alike;
+  MultiplySubstance(texel, &expected);
+  for (int i = 0; i < kTexelParameters; ++i) {
+    alike.Multiply(i, 0, 2 * std::min(initial.precision(i), expected.precision(i)));
+  }
+  TexelGram products{};
+  Scaled(alike, measured_residuals_).AddTo(values, &products);
+  const auto covariance = [&](int a, int b) {
+    double sum = 0;
+    for (int i = 0; i < kTexelParameters; ++i) {
+      for (int j = 0; j < kTexelParameters; ++j) {
+        sum += inverse.at(a, i, lane) * inverse.at(b, j, lane) *
+               products[static_cast<size_t>(std::min(i, j))][static_cast<size_t>(std::max(i, j))];
+      }
+    }
+    return measured_residuals_.scale() * measured_residuals_.scale() * sum;
+  };
+  TexelCovariance common;
+  for (int i = 0; i < kTexelParameters; ++i) {
+    common.variances[static_cast<size_t>(i)] = covariance(i, i);
+  }
+  common.slopes = covariance(kSlopeX, kSlopeY);
   return common;
 }
 

@@ -90,6 +90,12 @@ class SampleModel {
   // StatedPriorOf(texel) and LeastInformation().
   TexelCovariance CommonCovariance(size_t texel, const BatchInverse& inverse, int lane) const;
 
+  // What two sources of the prior leave open together: the initialisation is an estimate which
+  // knows already what texels have in common and that surfaces are level, so that it errs where
+  // these do.
+  TexelCovariance AlikeCovariance(size_t texel, const TexelValues& values,
+                                  const BatchInverse& inverse, int lane) const;
+
   void Describe(RefineSummary* summary) const;
 
  private:
@@ -131,6 +137,9 @@ class SampleModel {
   // Of texels and their neighbours, about `most` in all.
   void ChooseNeighbourSpread(size_t most, const SampleSolver& solver, int threads);
 
+  // What is known of a texel by itself; what its substance and a level surface say; both.
+  TexelGaussian Initialisation(size_t texel) const;
+  void MultiplySubstance(size_t texel, TexelGaussian* gaussian) const;
   TexelGaussian Knowledge(size_t texel) const;
   struct Neighbour {
     size_t texel;

@@ -17,6 +17,7 @@ namespace glint {
 namespace {
 
 using test::DisturbedMaps;
+using test::LevelSubstance;
 using test::MeanSquare;
 using test::Photograph;
 using test::QuarteredMaps;
@@ -66,6 +67,29 @@ TEST(Refine, OnePhotographSaysHowFarALevelStartMayBeOff) {
       std::sqrt(MeanSquare(start, truth, kNormalX, kNormalY)) / InitialisationErrors().normal;
   EXPECT_GT(rms, 0.5);
   EXPECT_LT(rms, 1.2 * more);
+}
+
+// An estimator takes a substance's texels for alike where it cannot tell, and so does the prior:
+// both err by what texels depart from the mean, and that is not known twice.
+TEST(Refine, TwoPhotographsSayHowFarAnEvenStartMayBeOff) {
+  const SvbrdfMaps start = LevelSubstance(32, 0.5f);
+  SvbrdfMaps truth = start;
+  std::mt19937 random(29);
+  std::normal_distribution<float> departure(0.0f,
+                                            static_cast<float>(InitialisationErrors().roughness));
+  for (float& roughness : truth.plane(kRoughness)) {
+    roughness = std::clamp(roughness + departure(random), 0.05f, 1.0f);
+  }
+  const RefineResult result = Refine(Photograph(truth, 2, 8).Problem(), start, {}, 1);
+  double squares = 0;  // of errors, in stated deviations
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    const double error = result.maps.plane(kRoughness)[t] - truth.plane(kRoughness)[t];
+    const double deviation = result.confidence[kSigmaRoughness * truth.texels() + t];
+    squares += error * error / (deviation * deviation);
+  }
+  const double rms = std::sqrt(squares / static_cast<double>(truth.texels()));
+  EXPECT_GT(rms, 0.8);
+  EXPECT_LT(rms, 1.2);
 }
 
 TEST(Refine, TwoPhotographsKeepWhatTheStartKnowsOfRoughness) {
