@@ -80,9 +80,8 @@ double ViewHolds::Add(const Eigen::VectorXd& x, NormalEquations* equations) cons
     cost += AddSimple(x, unknowns_.shared_light() + i,
                       i < 2 ? expected_.shared_light : expected_.distance, equations);
   }
-  // One room against the evidence of all views.
   for (int i = 0; i < 3 * kinds.room_terms; ++i) {
-    cost += AddSimple(x, unknowns_.room(0) + i, expected_.ambient / std::sqrt(views), equations);
+    cost += AddSimple(x, unknowns_.room(0) + i, expected_.ambient, equations);
   }
   return cost;
 }

@@ -95,7 +95,6 @@ TEST(CorrectViews, FindsHowPicturesAreDisplaced) {
 TEST(CorrectViews, FindsTheAmbientLight) {
   const DisturbedSet disturbed = Disturb(12, 0, 0, true);
   ViewCorrectionOptions options = Few();
-  options.expected.ambient = 1;  // albedos explain most of it too: a firm prior would prefer them
   const ViewCorrectionResult found = Correct(disturbed, options);
   for (size_t c = 0; c < 3; ++c) {
     EXPECT_NEAR(found.corrections.room.PlaneIrradiance()[c], 3.14159 * test::kAmbientShare, 0.035);
@@ -119,7 +118,6 @@ TEST(CorrectViews, TheRoomsLightIsTheSameForViewsFromAnyDistance) {
   }
   ViewCorrectionOptions options = Few();
   options.light = options.registration = false;
-  options.expected.ambient = 1;
   const ViewCorrectionResult found = Correct(disturbed, options);
   const Vec3d irradiance = found.corrections.room.PlaneIrradiance();
   for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(irradiance[c], 3.14159 * test::kAmbientShare, 0.035);
