@@ -28,6 +28,22 @@ TexelCovariance PosteriorCovariance(const BatchInverse& inverse, int lane, doubl
   return covariance;
 }
 
+TexelCovariance CovarianceOf(const CommonDeviations& deviations, const TexelValues& texel) {
+  TexelCovariance covariance;
+  const auto set = [&](int parameter, double deviation) {
+    covariance.variances[static_cast<size_t>(parameter)] = deviation * deviation;
+  };
+  for (int c = 0; c < 3; ++c) {
+    set(DiffuseParameter(c), deviations.diffuse * texel[static_cast<size_t>(DiffuseParameter(c))]);
+    set(SpecularParameter(c),
+        deviations.specular * texel[static_cast<size_t>(SpecularParameter(c))]);
+  }
+  set(kRough, deviations.roughness);
+  set(kSlopeX, deviations.slope);
+  set(kSlopeY, deviations.slope);
+  return covariance;
+}
+
 std::array<float, kConfidencePlanes> TexelConfidence(const TexelCovariance& covariance,
                                                      const TexelValues& texel, double squares) {
   // n_x, n_y by the slopes.

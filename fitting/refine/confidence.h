@@ -22,6 +22,9 @@ struct TexelCovariance {
 // (residual_model.h).
 TexelCovariance PosteriorCovariance(const BatchInverse& inverse, int lane, double scale);
 
+// Of errors that a texel has in common with all others.
+TexelCovariance CovarianceOf(const CommonDeviations& deviations, const TexelValues& texel);
+
 // Square roots. The cost's place holds half of `squares`, the photographs' weighted squared
 // residuals.
 std::array<float, kConfidencePlanes> TexelConfidence(const TexelCovariance& covariance,

@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "fitting/photographs/photographs.h"
 #include "fitting/reflectance/convention.h"
 #include "fitting/reflectance/room_light.h"
 #include "fitting/reflectance/svbrdf_maps.h"
@@ -47,7 +48,8 @@ struct RefineProblem {
   SamplePlane plane;
   ReflectanceConvention convention;
   std::vector<RefineView> views;
-  RoomLight room;  // beside what each view has as ambient light
+  RoomLight room;              // beside what each view has as ambient light
+  CommonDeviations left_open;  // of maps, by what is not known of the views
 };
 
 struct RefineOptions {

@@ -251,6 +251,7 @@ void PartRefiner::ConcludeTexel(size_t texel, int lane, const BatchGram& photogr
   const TexelValues values = ReadTexel(result_.maps, texel);
   covariance += model_.CommonCovariance(texel, inverse, lane);
   covariance += model_.AlikeCovariance(texel, values, inverse, lane);
+  covariance += CovarianceOf(problem_.left_open, values);
   const double squares = photographs.Squares(lane);
   const auto planes = TexelConfidence(covariance, values, squares);
   for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];

@@ -26,7 +26,8 @@ constexpr int kTexelStarts = 2;
 constexpr size_t kTexelsPerPiece = 4 * kBatch;
 // Sums of normal equations, whatever the number of threads: each has views² memory.
 constexpr int kSums = 8;
-constexpr double kMostStep = 0.3;  // of roughness and slopes together, as a texel follows
+constexpr size_t kEveryLeftOpen = 8;  // a mean square over so many fewer is known to a tenth
+constexpr double kMostStep = 0.3;     // of roughness and slopes together, as a texel follows
 
 using Jet = ceres::Jet<double, 3>;  // by the light's offset
 
@@ -438,6 +439,38 @@ Eigen::MatrixXd SampledTexels::MeanSlopeByViews() const {
     for (int i = 0; i < 2; ++i) by.row(i) -= following.ByViewsOf(kSlopeX + i);
   }
   return by / std::max(1, size());
+}
+
+CommonDeviations SampledTexels::LeftOpen(const Eigen::LLT<Eigen::MatrixXd>& hessian,
+                                         const Values& values) const {
+  TexelValues variances{}, squares{};
+  Eigen::MatrixXd by_views(kTexelParameters, unknowns_.size());
+  for (size_t k = 0; k < texels_.size(); k += kEveryLeftOpen) {
+    double variables[kTexelParameters];
+    TexelValues value, derivatives;
+    ToVariables(values[k], variables);
+    ToTexelValues(variables, &value, &derivatives);
+    for (int i = 0; i < kTexelParameters; ++i) {
+      by_views.row(i) = derivatives[static_cast<size_t>(i)] * following_[k].ByViewsOf(i);
+    }
+    const Eigen::MatrixXd root = hessian.matrixL().solve(by_views.transpose());
+    for (size_t i = 0; i < kTexelParameters; ++i) {
+      variances[i] += root.col(static_cast<Eigen::Index>(i)).squaredNorm();
+      squares[i] += value[i] * value[i];
+    }
+  }
+  const auto relative = [](const TexelValues& of, int (*parameter)(int)) {
+    return of[static_cast<size_t>(parameter(0))] + of[static_cast<size_t>(parameter(1))] +
+           of[static_cast<size_t>(parameter(2))];
+  };
+  const double count = static_cast<double>((texels_.size() + kEveryLeftOpen - 1) / kEveryLeftOpen);
+  const auto root_of = [](double sum, double by) { return by > 0 ? std::sqrt(sum / by) : 0; };
+  return {.diffuse =
+              root_of(relative(variances, DiffuseParameter), relative(squares, DiffuseParameter)),
+          .specular =
+              root_of(relative(variances, SpecularParameter), relative(squares, SpecularParameter)),
+          .roughness = root_of(variances[kRough], count),
+          .slope = root_of(variances[kSlopeX] + variances[kSlopeY], 2 * count)};
 }
 
 double SampledTexels::SharedNoise(const Eigen::VectorXd& x, const Values& values) {

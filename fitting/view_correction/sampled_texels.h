@@ -1,6 +1,7 @@
 // Sampled texels that follow the views: what all texels together say of the views.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <memory>
 #include <span>
@@ -44,6 +45,10 @@ class SampledTexels {
   Eigen::Vector2d MeanSlope(const Values& values) const;
   // Its derivatives by the views, where Reduce() was called: a row each.
   Eigen::MatrixXd MeanSlopeByViews() const;
+
+  // What the views leave open of the texels: the mean square by which these follow, where Reduce()
+  // was called. `hessian`: of the views' negative log posterior, whose inverse is their covariance.
+  CommonDeviations LeftOpen(const Eigen::LLT<Eigen::MatrixXd>& hessian, const Values& values) const;
 
   // See residual_noise.h.
   double SharedNoise(const Eigen::VectorXd& x, const Values& values);

@@ -71,12 +71,17 @@ class Adjustment {
   double residual_rms() const { return std::sqrt(2 * cost_ / sampled_.residuals()); }
   double SharedNoise() { return sampled_.SharedNoise(x_, values_); }
   ViewCorrections Corrections() const { return unknowns_.CorrectionsAt(x_); }
+  CommonDeviations LeftOpen() {
+    return sampled_.LeftOpen(Damped(Equations().hessian, 0).llt(), values_);
+  }
 
  private:
   ViewHolds Holds() const { return ViewHolds(unknowns_, expected_, sampled_.UsableViews()); }
   double HoldCost(const VectorXd& x, const SampledTexels::Values& values) const;
   NormalEquations Equations();
   std::vector<bool> Free() const;
+  // Views that nothing is seen in stay as they are.
+  MatrixXd Damped(MatrixXd hessian, double damping) const;
   VectorXd Step(const NormalEquations& equations, double damping) const;
 
   const ViewCorrectionOptions& options_;
@@ -140,19 +145,25 @@ std::vector<bool> Adjustment::Free() const {
   return free;
 }
 
+MatrixXd Adjustment::Damped(MatrixXd hessian, double damping) const {
+  const std::vector<bool> free = Free();
+  for (int i = 0; i < unknowns_.size(); ++i) {
+    hessian(i, i) += damping * hessian(i, i) + 1e-12;
+    if (free[static_cast<size_t>(i)]) continue;
+    hessian.row(i).setZero();
+    hessian.col(i).setZero();
+    hessian(i, i) = 1;
+  }
+  return hessian;
+}
+
 VectorXd Adjustment::Step(const NormalEquations& equations, double damping) const {
-  MatrixXd damped = equations.hessian;
   VectorXd gradient = equations.gradient;
   const std::vector<bool> free = Free();
   for (int i = 0; i < unknowns_.size(); ++i) {
-    damped(i, i) += damping * equations.hessian(i, i) + 1e-12;
-    if (free[static_cast<size_t>(i)]) continue;
-    damped.row(i).setZero();
-    damped.col(i).setZero();
-    damped(i, i) = 1;
-    gradient[i] = 0;
+    if (!free[static_cast<size_t>(i)]) gradient[i] = 0;
   }
-  VectorXd to = x_ - damped.ldlt().solve(gradient);
+  VectorXd to = x_ - Damped(equations.hessian, damping).ldlt().solve(gradient);
   for (int c = 0; unknowns_.kinds().room_terms > 0 && c < 3; ++c) {
     double& even = to[unknowns_.room(c)];
     even = std::max(even, unknowns_.LeastRoom(c));
@@ -223,6 +234,7 @@ ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
   result.cost_after = fine->cost();
   result.rounding_cost = fine->RoundingCost();
   result.corrections = fine->Corrections();
+  result.corrections.left_open = fine->LeftOpen();
   result.noise_left = NoiseLeft(result.corrections);
   return result;
 }
@@ -324,6 +336,7 @@ PhotographSet Corrected(PhotographSet set, const ViewCorrections& corrections, i
     ShiftMask(c.shifts, set.plane.width, set.plane.height, &photograph.mask, rows);
   });
   set.room.Add(corrections.room);
+  set.left_open = corrections.left_open;
   return set;
 }
 

@@ -40,6 +40,8 @@ struct ViewCorrection {
 struct ViewCorrections {
   std::vector<ViewCorrection> views;  // one per photograph
   RoomLight room;                     // added to the set's
+  // What the corrections, themselves uncertain, leave open of texels' values.
+  CommonDeviations left_open;
 };
 
 // Standard deviations expected beforehand.

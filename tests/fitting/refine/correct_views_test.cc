@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 
 #include "tests/fitting/view_correction/disturbed_set.h"
 
@@ -66,6 +68,39 @@ TEST(FindCorrections, ARoomsLightMovesNoFlash) {
   for (size_t c = 0; c < 3; ++c) {
     EXPECT_NEAR(found.corrections.room.PlaneIrradiance()[c], room.PlaneIrradiance()[c],
                 0.25 * room.PlaneIrradiance()[c]);
+  }
+}
+
+// Root mean square of the errors of some planes, in stated deviations.
+double ErrorsInDeviations(const RefineResult& result, const SvbrdfMaps& truth, int plane, int sigma,
+                          int count) {
+  double squares = 0;
+  for (int c = 0; c < count; ++c) {
+    for (size_t t = 0; t < truth.texels(); ++t) {
+      const double error = result.maps.plane(plane + c)[t] - truth.plane(plane + c)[t];
+      const double deviation =
+          result.confidence[static_cast<size_t>(sigma + c) * truth.texels() + t];
+      squares += error * error / (deviation * deviation);
+    }
+  }
+  return std::sqrt(squares / (count * static_cast<double>(truth.texels())));
+}
+
+// Of a matte sample a brighter room and darker albedos explain nearly the same.
+TEST(FindCorrections, DeviationsHoldWhatIsNotKnownOfTheViews) {
+  const DisturbedSet disturbed = Disturb(20, kTenDegrees / 2, 0.5, true, 32);
+  const CorrectionResult found = Find(disturbed);
+  ASSERT_TRUE(found.taken);
+  const PhotographSet corrected = Corrected(disturbed.set, found.corrections, 1);
+  const SvbrdfMaps start = test::UniformMaps(disturbed.maps.width, 0.35f, 0.06f, 0.45f);
+  const RefineResult result = Refine(ProblemOf(corrected), start, {}, 1);
+  for (const auto& [plane, sigma, count] : {std::tuple{kDiffuseR, kSigmaDiffuseR, 3},
+                                            {kSpecularR, kSigmaSpecularR, 3},
+                                            {kRoughness, kSigmaRoughness, 1},
+                                            {kNormalX, kSigmaNormalX, 2}}) {
+    const double errors = ErrorsInDeviations(result, disturbed.maps, plane, sigma, count);
+    EXPECT_GT(errors, 0.2) << plane;
+    EXPECT_LT(errors, 1.5) << plane;
   }
 }
 

@@ -101,6 +101,22 @@ TEST(CorrectViews, FindsTheAmbientLight) {
   }
 }
 
+// Of a matte sample a brighter room and darker albedos explain nearly the same.
+TEST(CorrectViews, SaysHowFarARoomsLightLeavesAlbedosOpen) {
+  const DisturbedSet disturbed = Disturb(12, 0.1, 0, true);
+  ViewCorrectionOptions options = Few();
+  const auto find = [&](double expected) {
+    options.expected.ambient = expected;
+    return Correct(disturbed, options).corrections;
+  };
+  const ViewCorrections open = find(0.1), firm = find(0.001);
+  // What is missing of the room is in the albedos instead, by the flash's mean cosine of .8.
+  const double missing = test::kAmbientShare - open.room.PlaneIrradiance()[0] / 3.14159;
+  EXPECT_LT(std::abs(missing) / 0.8, 2.5 * open.left_open.diffuse);
+  EXPECT_LT(open.left_open.diffuse, 0.1);
+  EXPECT_LT(firm.left_open.diffuse, 0.8 * open.left_open.diffuse);
+}
+
 // Phones are now nearer, now farther; the room is not.
 TEST(CorrectViews, TheRoomsLightIsTheSameForViewsFromAnyDistance) {
   DisturbedSet disturbed = Disturb(12, 0, 0, false);
