@@ -7,6 +7,7 @@
 
 #include "fitting/reflectance/convention.h"
 #include "fitting/reflectance/room_light.h"
+#include "fitting/reflectance/systematic_deviations.h"
 #include "fitting/reflectance/view.h"
 
 namespace glint {
@@ -19,20 +20,13 @@ struct Photograph {
   double pixels_per_texel = 0;  // side of a texel in the picture that this was; 0: not known
 };
 
-// Standard deviations of errors that all texels have in common; 0: none.
-struct CommonDeviations {
-  double diffuse = 0, specular = 0;  // of albedos, relative
-  double roughness = 0;
-  double slope = 0;  // of the normal (slope_x, slope_y, 1)
-};
-
 struct PhotographSet {
   SamplePlane plane;
   ReflectanceConvention convention;
   bool light_power_known = true;  // false: light_rgb is a first guess up to one common factor
   RoomLight room;                 // beside what each view has as ambient light; refine finds it
-  // Of maps, by what is not known of the views.
-  CommonDeviations left_open;
+  // Of the maps' errors that follow from what is uncertain about the views.
+  SystematicDeviations systematic_sd;
   std::vector<Photograph> photographs;
 
   // Empty: all is well; otherwise what is wrong (sizes, no photograph, no usable texel).

@@ -28,7 +28,8 @@ TexelCovariance PosteriorCovariance(const BatchInverse& inverse, int lane, doubl
   return covariance;
 }
 
-TexelCovariance CovarianceOf(const CommonDeviations& deviations, const TexelValues& texel) {
+TexelCovariance SystematicCovariance(const SystematicDeviations& deviations,
+                                     const TexelValues& texel) {
   TexelCovariance covariance;
   const auto set = [&](int parameter, double deviation) {
     covariance.variances[static_cast<size_t>(parameter)] = deviation * deviation;

@@ -22,8 +22,9 @@ struct TexelCovariance {
 // (residual_model.h).
 TexelCovariance PosteriorCovariance(const BatchInverse& inverse, int lane, double scale);
 
-// Of errors that a texel has in common with all others.
-TexelCovariance CovarianceOf(const CommonDeviations& deviations, const TexelValues& texel);
+// Of errors that all texels have in common, at this one.
+TexelCovariance SystematicCovariance(const SystematicDeviations& deviations,
+                                     const TexelValues& texel);
 
 // Square roots. The cost's place holds half of `squares`, the photographs' weighted squared
 // residuals.

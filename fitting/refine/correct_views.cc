@@ -57,7 +57,7 @@ RefineProblem ProblemOf(const PhotographSet& set) {
   problem.plane = set.plane;
   problem.convention = set.convention;
   problem.room = set.room;
-  problem.left_open = set.left_open;
+  problem.systematic_sd = set.systematic_sd;
   for (const Photograph& p : set.photographs) {
     problem.views.push_back({p.view, p.ldr, p.rgb, p.mask, p.pixels_per_texel});
   }

@@ -23,10 +23,10 @@
 #include <string>
 #include <vector>
 
-#include "fitting/photographs/photographs.h"
 #include "fitting/reflectance/convention.h"
 #include "fitting/reflectance/room_light.h"
 #include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/reflectance/systematic_deviations.h"
 #include "fitting/reflectance/view.h"
 #include "fitting/view_correction/shared_light.h"
 
@@ -48,8 +48,8 @@ struct RefineProblem {
   SamplePlane plane;
   ReflectanceConvention convention;
   std::vector<RefineView> views;
-  RoomLight room;              // beside what each view has as ambient light
-  CommonDeviations left_open;  // of maps, by what is not known of the views
+  RoomLight room;                      // beside what each view has as ambient light
+  SystematicDeviations systematic_sd;  // of errors that follow from uncertain views
 };
 
 struct RefineOptions {

@@ -250,8 +250,8 @@ void PartRefiner::ConcludeTexel(size_t texel, int lane, const BatchGram& photogr
       PosteriorCovariance(inverse, lane, model_.measured_residuals().scale());
   const TexelValues values = ReadTexel(result_.maps, texel);
   covariance += model_.CommonCovariance(texel, inverse, lane);
-  covariance += model_.AlikeCovariance(texel, values, inverse, lane);
-  covariance += CovarianceOf(problem_.left_open, values);
+  covariance += model_.CorrelatedPriorCovariance(texel, values, inverse, lane);
+  covariance += SystematicCovariance(problem_.systematic_sd, values);
   const double squares = photographs.Squares(lane);
   const auto planes = TexelConfidence(covariance, values, squares);
   for (int p = 0; p < kConfidencePlanes; ++p) result_.confidence[p * texels + texel] = planes[p];

@@ -138,7 +138,8 @@ void DescribeCorrection(const CorrectionResult& found, const RectifiedSet& set,
     flash += light_scale_rgb[k] * centre.irradiance[k] / views[0].view.exposure;
     room += ambient[k];
   }
-  result->metrics["correction"].update({{"views_moved", moved},
+  result->metrics["correction"].update({{"systematic_sd", JsonOf(found.corrections.systematic_sd)},
+                                        {"views_moved", moved},
                                         {"light_turned_deg", turned_deg},
                                         {"registration_texel", shifted},
                                         {"ambient_of_flash", room / flash}});
@@ -285,7 +286,9 @@ std::string EstimateHash(const Sample& sample) {
                {"normal_spread", KnownOrNull(summary.normal_spread)},
                {"exposure_spread", summary.exposure_spread},
                {"light_spread", summary.light_spread},
-               {"shared_light", JsonOf(summary.shared_light)}};
+               {"shared_light", JsonOf(summary.shared_light)},
+               {"room_light", JsonOf(sample.correction.corrections.room)},
+               {"systematic_sd", JsonOf(sample.correction.corrections.systematic_sd)}};
   AddCorrections(Corrections(sample.correction, summary), sample.views, &json);
   return HashBytes(json.dump());
 }

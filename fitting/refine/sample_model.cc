@@ -370,34 +370,36 @@ TexelCovariance SampleModel::CommonCovariance(size_t texel, const BatchInverse& 
   return common;
 }
 
-// With errors a of variance 1/p and b of 1/q, of which the smaller is part of the other, p·a + q·b,
-// by which the normal equations are off, has variance p + q + 2 min(p, q).
-TexelCovariance SampleModel::AlikeCovariance(size_t texel, const TexelValues& values,
-                                             const BatchInverse& inverse, int lane) const {
+// Errors a of variance 1/p (initialisation) and b of 1/q (substance, level surface) have the
+// covariance min(1/p, 1/q), so that p·a + q·b, by which the normal equations' right side is off,
+// has the variance p + q + 2 min(p, q). M holds the last of it: what is added is C·M·C.
+TexelCovariance SampleModel::CorrelatedPriorCovariance(size_t texel, const TexelValues& values,
+                                                       const BatchInverse& inverse,
+                                                       int lane) const {
   const TexelGaussian initial = Initialisation(texel);
-  TexelGaussian expected, alike;
+  TexelGaussian expected, common;
   MultiplySubstance(texel, &expected);
   for (int i = 0; i < kTexelParameters; ++i) {
-    alike.Multiply(i, 0, 2 * std::min(initial.precision(i), expected.precision(i)));
+    common.Multiply(i, 0, 2 * std::min(initial.precision(i), expected.precision(i)));
   }
-  TexelGram products{};
-  Scaled(alike, measured_residuals_).AddTo(values, &products);
+  TexelGram m{};
+  Scaled(common, measured_residuals_).AddTo(values, &m);
+  const double variance = measured_residuals_.scale() * measured_residuals_.scale();
   const auto covariance = [&](int a, int b) {
-    double sum = 0;
+    const auto c = [&](int i, int j) { return inverse.at(i, j, lane); };
+    double sum =
+        m[kSlopeX][kSlopeY] * (c(a, kSlopeX) * c(b, kSlopeY) + c(a, kSlopeY) * c(b, kSlopeX));
     for (int i = 0; i < kTexelParameters; ++i) {
-      for (int j = 0; j < kTexelParameters; ++j) {
-        sum += inverse.at(a, i, lane) * inverse.at(b, j, lane) *
-               products[static_cast<size_t>(std::min(i, j))][static_cast<size_t>(std::max(i, j))];
-      }
+      sum += m[static_cast<size_t>(i)][static_cast<size_t>(i)] * c(a, i) * c(b, i);
     }
-    return measured_residuals_.scale() * measured_residuals_.scale() * sum;
+    return variance * sum;
   };
-  TexelCovariance common;
+  TexelCovariance added;
   for (int i = 0; i < kTexelParameters; ++i) {
-    common.variances[static_cast<size_t>(i)] = covariance(i, i);
+    added.variances[static_cast<size_t>(i)] = covariance(i, i);
   }
-  common.slopes = covariance(kSlopeX, kSlopeY);
-  return common;
+  added.slopes = covariance(kSlopeX, kSlopeY);
+  return added;
 }
 
 double SampleModel::NormalPrecision(size_t texel) const {

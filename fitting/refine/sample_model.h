@@ -90,11 +90,10 @@ class SampleModel {
   // StatedPriorOf(texel) and LeastInformation().
   TexelCovariance CommonCovariance(size_t texel, const BatchInverse& inverse, int lane) const;
 
-  // What two sources of the prior leave open together: the initialisation is an estimate which
-  // knows already what texels have in common and that surfaces are level, so that it errs where
-  // these do.
-  TexelCovariance AlikeCovariance(size_t texel, const TexelValues& values,
-                                  const BatchInverse& inverse, int lane) const;
+  // What is added because two sources of the prior err together: the initialisation is an estimate
+  // that expects level surfaces and texels like their substance, and is off where these are not.
+  TexelCovariance CorrelatedPriorCovariance(size_t texel, const TexelValues& values,
+                                            const BatchInverse& inverse, int lane) const;
 
   void Describe(RefineSummary* summary) const;
 

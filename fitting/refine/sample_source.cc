@@ -67,7 +67,7 @@ SampleSource::Part SampleSource::Every(int stride, int threads) {
     };
     take(from.start.planes, &part.start.planes);
     part.photographs.room = from.photographs.room;
-    part.photographs.left_open = from.photographs.left_open;
+    part.photographs.systematic_sd = from.photographs.systematic_sd;
     for (size_t v = 0; v < from.photographs.photographs.size(); ++v) {
       Photograph &some = from.photographs.photographs[v], &to = part.photographs.photographs[v];
       to.view = some.view;

@@ -70,6 +70,13 @@ SharedLight ReadSharedLight(const std::filesystem::path& manifest_file, const Js
 
 Json JsonOf(const RoomLight& room) { return {{"radiance_rgb", room.radiance_rgb}}; }
 
+Json JsonOf(const SystematicDeviations& deviations) {
+  return {{"diffuse_relative", deviations.diffuse},
+          {"specular_relative", deviations.specular},
+          {"roughness", deviations.roughness},
+          {"slope", deviations.slope}};
+}
+
 RoomLight ReadRoomLight(const std::filesystem::path& manifest_file, const Json& data) {
   RoomLight room;
   if (!data.contains("room_light")) return room;

@@ -25,6 +25,8 @@ SharedLight ReadSharedLight(const std::filesystem::path& manifest_file, const Js
 
 Json JsonOf(const RoomLight& room);
 
+Json JsonOf(const SystematicDeviations& deviations);
+
 // Dark where `data` has no room_light. Throws UserError.
 RoomLight ReadRoomLight(const std::filesystem::path& manifest_file, const Json& data);
 

@@ -2,6 +2,7 @@
 
 #include <ceres/jet.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,8 +27,9 @@ constexpr int kTexelStarts = 2;
 constexpr size_t kTexelsPerPiece = 4 * kBatch;
 // Sums of normal equations, whatever the number of threads: each has views² memory.
 constexpr int kSums = 8;
-constexpr size_t kEveryLeftOpen = 8;  // a mean square over so many fewer is known to a tenth
-constexpr double kMostStep = 0.3;     // of roughness and slopes together, as a texel follows
+// A mean square over so many is known to a tenth. A prime: the sampled texels stand in columns.
+constexpr size_t kPropagated = 281;
+constexpr double kMostStep = 0.3;  // of roughness and slopes together, as a texel follows
 
 using Jet = ceres::Jet<double, 3>;  // by the light's offset
 
@@ -441,36 +443,43 @@ Eigen::MatrixXd SampledTexels::MeanSlopeByViews() const {
   return by / std::max(1, size());
 }
 
-CommonDeviations SampledTexels::LeftOpen(const Eigen::LLT<Eigen::MatrixXd>& hessian,
-                                         const Values& values) const {
+SystematicDeviations SampledTexels::PropagatedDeviations(const Eigen::MatrixXd& hessian,
+                                                         const Values& values) const {
+  const Eigen::LDLT<Eigen::MatrixXd> factor(hessian);
+  const size_t count = std::min(kPropagated, texels_.size());
   TexelValues variances{}, squares{};
-  Eigen::MatrixXd by_views(kTexelParameters, unknowns_.size());
-  for (size_t k = 0; k < texels_.size(); k += kEveryLeftOpen) {
+  Eigen::MatrixXd by_views(unknowns_.size(), kTexelParameters);
+  for (size_t i = 0; i < count; ++i) {
+    const size_t k = i * texels_.size() / count;
     double variables[kTexelParameters];
     TexelValues value, derivatives;
     ToVariables(values[k], variables);
     ToTexelValues(variables, &value, &derivatives);
-    for (int i = 0; i < kTexelParameters; ++i) {
-      by_views.row(i) = derivatives[static_cast<size_t>(i)] * following_[k].ByViewsOf(i);
+    for (int p = 0; p < kTexelParameters; ++p) {
+      by_views.col(p) =
+          derivatives[static_cast<size_t>(p)] * following_[k].ByViewsOf(p).transpose();
     }
-    const Eigen::MatrixXd root = hessian.matrixL().solve(by_views.transpose());
-    for (size_t i = 0; i < kTexelParameters; ++i) {
-      variances[i] += root.col(static_cast<Eigen::Index>(i)).squaredNorm();
-      squares[i] += value[i] * value[i];
+    const Eigen::MatrixXd covariance_by_views = factor.solve(by_views);
+    for (int p = 0; p < kTexelParameters; ++p) {
+      variances[static_cast<size_t>(p)] += by_views.col(p).dot(covariance_by_views.col(p));
+      squares[static_cast<size_t>(p)] +=
+          value[static_cast<size_t>(p)] * value[static_cast<size_t>(p)];
     }
   }
-  const auto relative = [](const TexelValues& of, int (*parameter)(int)) {
-    return of[static_cast<size_t>(parameter(0))] + of[static_cast<size_t>(parameter(1))] +
-           of[static_cast<size_t>(parameter(2))];
+  const auto of_channels = [](const TexelValues& values_of, int (*parameter)(int)) {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) sum += values_of[static_cast<size_t>(parameter(c))];
+    return sum;
   };
-  const double count = static_cast<double>((texels_.size() + kEveryLeftOpen - 1) / kEveryLeftOpen);
-  const auto root_of = [](double sum, double by) { return by > 0 ? std::sqrt(sum / by) : 0; };
-  return {.diffuse =
-              root_of(relative(variances, DiffuseParameter), relative(squares, DiffuseParameter)),
-          .specular =
-              root_of(relative(variances, SpecularParameter), relative(squares, SpecularParameter)),
-          .roughness = root_of(variances[kRough], count),
-          .slope = root_of(variances[kSlopeX] + variances[kSlopeY], 2 * count)};
+  const auto relative = [&](int (*parameter)(int)) {
+    const double all = of_channels(squares, parameter);
+    return all > 0 ? std::sqrt(of_channels(variances, parameter) / all) : 0;
+  };
+  const double texels = static_cast<double>(count);
+  return {.diffuse = relative(DiffuseParameter),
+          .specular = relative(SpecularParameter),
+          .roughness = std::sqrt(variances[kRough] / texels),
+          .slope = std::sqrt((variances[kSlopeX] + variances[kSlopeY]) / (2 * texels))};
 }
 
 double SampledTexels::SharedNoise(const Eigen::VectorXd& x, const Values& values) {

@@ -1,7 +1,6 @@
 // Sampled texels that follow the views: what all texels together say of the views.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <memory>
 #include <span>
@@ -46,9 +45,11 @@ class SampledTexels {
   // Its derivatives by the views, where Reduce() was called: a row each.
   Eigen::MatrixXd MeanSlopeByViews() const;
 
-  // What the views leave open of the texels: the mean square by which these follow, where Reduce()
-  // was called. `hessian`: of the views' negative log posterior, whose inverse is their covariance.
-  CommonDeviations LeftOpen(const Eigen::LLT<Eigen::MatrixXd>& hessian, const Values& values) const;
+  // Standard deviations of the texels' errors that follow from errors of the views (root mean
+  // square over texels), where Reduce() was called: of ∂texel/∂views · e, with e of the covariance
+  // H⁻¹. `hessian` H: of the views' negative log posterior. No number if H has no inverse.
+  SystematicDeviations PropagatedDeviations(const Eigen::MatrixXd& hessian,
+                                            const Values& values) const;
 
   // See residual_noise.h.
   double SharedNoise(const Eigen::VectorXd& x, const Values& values);

@@ -71,18 +71,16 @@ class Adjustment {
   double residual_rms() const { return std::sqrt(2 * cost_ / sampled_.residuals()); }
   double SharedNoise() { return sampled_.SharedNoise(x_, values_); }
   ViewCorrections Corrections() const { return unknowns_.CorrectionsAt(x_); }
-  CommonDeviations LeftOpen() {
-    return sampled_.LeftOpen(Damped(Equations().hessian, 0).llt(), values_);
-  }
+  SystematicDeviations PropagatedDeviations();
 
  private:
   ViewHolds Holds() const { return ViewHolds(unknowns_, expected_, sampled_.UsableViews()); }
   double HoldCost(const VectorXd& x, const SampledTexels::Values& values) const;
   NormalEquations Equations();
   std::vector<bool> Free() const;
-  // Views that nothing is seen in stay as they are.
-  MatrixXd Damped(MatrixXd hessian, double damping) const;
-  VectorXd Step(const NormalEquations& equations, double damping) const;
+  // Views that no texel is seen in stay as they are.
+  void FixUnseen(NormalEquations* equations) const;
+  VectorXd Step(NormalEquations equations, double damping) const;
 
   const ViewCorrectionOptions& options_;
   ViewUnknowns unknowns_;
@@ -145,25 +143,27 @@ std::vector<bool> Adjustment::Free() const {
   return free;
 }
 
-MatrixXd Adjustment::Damped(MatrixXd hessian, double damping) const {
+void Adjustment::FixUnseen(NormalEquations* equations) const {
   const std::vector<bool> free = Free();
   for (int i = 0; i < unknowns_.size(); ++i) {
-    hessian(i, i) += damping * hessian(i, i) + 1e-12;
     if (free[static_cast<size_t>(i)]) continue;
-    hessian.row(i).setZero();
-    hessian.col(i).setZero();
-    hessian(i, i) = 1;
+    equations->hessian.row(i).setZero();
+    equations->hessian.col(i).setZero();
+    equations->hessian(i, i) = 1;
+    equations->gradient[i] = 0;
   }
-  return hessian;
 }
 
-VectorXd Adjustment::Step(const NormalEquations& equations, double damping) const {
-  VectorXd gradient = equations.gradient;
-  const std::vector<bool> free = Free();
-  for (int i = 0; i < unknowns_.size(); ++i) {
-    if (!free[static_cast<size_t>(i)]) gradient[i] = 0;
-  }
-  VectorXd to = x_ - Damped(equations.hessian, damping).ldlt().solve(gradient);
+SystematicDeviations Adjustment::PropagatedDeviations() {
+  NormalEquations equations = Equations();
+  FixUnseen(&equations);
+  return sampled_.PropagatedDeviations(equations.hessian, values_);
+}
+
+VectorXd Adjustment::Step(NormalEquations equations, double damping) const {
+  equations.hessian.diagonal().array() += damping * equations.hessian.diagonal().array() + 1e-12;
+  FixUnseen(&equations);
+  VectorXd to = x_ - equations.hessian.ldlt().solve(equations.gradient);
   for (int c = 0; unknowns_.kinds().room_terms > 0 && c < 3; ++c) {
     double& even = to[unknowns_.room(c)];
     even = std::max(even, unknowns_.LeastRoom(c));
@@ -234,7 +234,7 @@ ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
   result.cost_after = fine->cost();
   result.rounding_cost = fine->RoundingCost();
   result.corrections = fine->Corrections();
-  result.corrections.left_open = fine->LeftOpen();
+  result.corrections.systematic_sd = fine->PropagatedDeviations();
   result.noise_left = NoiseLeft(result.corrections);
   return result;
 }
@@ -336,7 +336,7 @@ PhotographSet Corrected(PhotographSet set, const ViewCorrections& corrections, i
     ShiftMask(c.shifts, set.plane.width, set.plane.height, &photograph.mask, rows);
   });
   set.room.Add(corrections.room);
-  set.left_open = corrections.left_open;
+  set.systematic_sd = corrections.systematic_sd;
   return set;
 }
 

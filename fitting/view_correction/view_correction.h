@@ -24,6 +24,7 @@
 #include "fitting/photographs/picture_shift.h"
 #include "fitting/reflectance/room_light.h"
 #include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/reflectance/systematic_deviations.h"
 
 namespace glint {
 
@@ -40,8 +41,8 @@ struct ViewCorrection {
 struct ViewCorrections {
   std::vector<ViewCorrection> views;  // one per photograph
   RoomLight room;                     // added to the set's
-  // What the corrections, themselves uncertain, leave open of texels' values.
-  CommonDeviations left_open;
+  // Of the maps' errors that follow from the corrections' own.
+  SystematicDeviations systematic_sd;
 };
 
 // Standard deviations expected beforehand.

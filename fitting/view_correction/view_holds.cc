@@ -80,6 +80,7 @@ double ViewHolds::Add(const Eigen::VectorXd& x, NormalEquations* equations) cons
     cost += AddSimple(x, unknowns_.shared_light() + i,
                       i < 2 ? expected_.shared_light : expected_.distance, equations);
   }
+  // The same whatever the number of views: they share it.
   for (int i = 0; i < 3 * kinds.room_terms; ++i) {
     cost += AddSimple(x, unknowns_.room(0) + i, expected_.ambient, equations);
   }

@@ -86,14 +86,14 @@ double ErrorsInDeviations(const RefineResult& result, const SvbrdfMaps& truth, i
   return std::sqrt(squares / (count * static_cast<double>(truth.texels())));
 }
 
-// Of a matte sample a brighter room and darker albedos explain nearly the same.
 TEST(FindCorrections, DeviationsHoldWhatIsNotKnownOfTheViews) {
   const DisturbedSet disturbed = Disturb(20, kTenDegrees / 2, 0.5, true, 32);
   const CorrectionResult found = Find(disturbed);
   ASSERT_TRUE(found.taken);
   const PhotographSet corrected = Corrected(disturbed.set, found.corrections, 1);
   const SvbrdfMaps start = test::UniformMaps(disturbed.maps.width, 0.35f, 0.06f, 0.45f);
-  const RefineResult result = Refine(ProblemOf(corrected), start, {}, 1);
+  RefineProblem problem = ProblemOf(corrected);
+  const RefineResult result = Refine(problem, start, {}, 1);
   for (const auto& [plane, sigma, count] : {std::tuple{kDiffuseR, kSigmaDiffuseR, 3},
                                             {kSpecularR, kSigmaSpecularR, 3},
                                             {kRoughness, kSigmaRoughness, 1},
@@ -102,6 +102,10 @@ TEST(FindCorrections, DeviationsHoldWhatIsNotKnownOfTheViews) {
     EXPECT_GT(errors, 0.2) << plane;
     EXPECT_LT(errors, 1.5) << plane;
   }
+  problem.systematic_sd = {};  // as if the corrections were certain
+  EXPECT_GT(ErrorsInDeviations(Refine(problem, start, {}, 1), disturbed.maps, kDiffuseR,
+                               kSigmaDiffuseR, 3),
+            3);
 }
 
 TEST(FindCorrections, LeavesViewsAloneThatAreRight) {

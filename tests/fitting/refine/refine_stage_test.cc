@@ -313,10 +313,12 @@ TEST(SampleSource, GivesPartsOfTheCorrectedWhole) {
     corrections.views[1].shifts.row[k] = 0.7 * k - 1.3;
     corrections.views[1].shifts.column[k] = 0.4 - 0.3 * k;
   }
+  corrections.systematic_sd = {.diffuse = 0.1, .specular = 0.2, .roughness = 0.3, .slope = 0.4};
   source.Correct(corrections);
   const SampleSource::Part whole = source.Rows(0, kSize, 2);
   const auto same = [&](const SampleSource::Part& part, int first, int stride) {
     const SamplePlane& plane = part.photographs.plane;
+    EXPECT_EQ(part.photographs.systematic_sd, corrections.systematic_sd);
     for (size_t v = 0; v < set.views.size(); ++v) {
       const Photograph &all = whole.photographs.photographs[v],
                        &some = part.photographs.photographs[v];
