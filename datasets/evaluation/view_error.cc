@@ -136,7 +136,7 @@ RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
   const auto found = fit.corrections.find(view.name);
   if (found == fit.corrections.end() || !found->second.shifts.any()) return photograph;
   const CornerShifts shifts =
-      AtSize({{found->second}, {}}, set.plane.width, set.plane.height, width, height)
+      AtSize({{found->second}, {}, {}}, set.plane.width, set.plane.height, width, height)
           .views[0]
           .shifts;
   ShiftPicture(shifts, width, height, &photograph.rgb);

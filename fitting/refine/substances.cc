@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/cpu/vector_clones.h"
-#include "fitting/refine/bounded_step.h"
 #include "fitting/texel/texel_parameters.h"
+#include "fitting/view_correction/bounded_step.h"
 
 namespace glint {
 namespace {

@@ -3,10 +3,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 
 #include "base/parallel/parallel.h"
+#include "fitting/view_correction/bounded_step.h"
 #include "fitting/view_correction/sampled_texels.h"
 #include "fitting/view_correction/view_holds.h"
 #include "fitting/view_correction/view_unknowns.h"
@@ -163,12 +165,13 @@ SystematicDeviations Adjustment::PropagatedDeviations() {
 VectorXd Adjustment::Step(NormalEquations equations, double damping) const {
   equations.hessian.diagonal().array() += damping * equations.hessian.diagonal().array() + 1e-12;
   FixUnseen(&equations);
-  VectorXd to = x_ - equations.hessian.ldlt().solve(equations.gradient);
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  VectorXd least = VectorXd::Constant(unknowns_.size(), -kAny);
+  const VectorXd most = VectorXd::Constant(unknowns_.size(), kAny);
   for (int c = 0; unknowns_.kinds().room_terms > 0 && c < 3; ++c) {
-    double& even = to[unknowns_.room(c)];
-    even = std::max(even, unknowns_.LeastRoom(c));
+    least[unknowns_.room(c)] = std::min(unknowns_.LeastRoom(c) - x_[unknowns_.room(c)], 0.0);
   }
-  return to - x_;
+  return StepWithin(equations.hessian, -equations.gradient, least, most);
 }
 
 void Adjustment::Descend(double tolerance) {
@@ -264,7 +267,9 @@ std::string ViewCorrectionOptions::Check() const {
     return "the light's expected offsets must be above 0";
   }
   if (!above_zero(expected.level)) return "the sample's expected slope must be above 0";
-  if (!above_zero(expected.ambient)) return "the expected ambient light must be above 0";
+  if (!above_zero(expected.ambient) || !above_zero(expected.ambient_direction)) {
+    return "the expected ambient light must be above 0";
+  }
   if (room_terms < 0 || !AreRoomTerms(static_cast<size_t>(room_terms))) {
     return "the terms of a room's light must make up complete degrees";
   }

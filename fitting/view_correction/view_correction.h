@@ -51,8 +51,10 @@ struct ViewExpectations {
   double distance = 0.03;  // … and along it; both beside what all lights share:
   // the flash stands elsewhere beside the lens of an upright camera.
   double shared_light = 0.3;
-  double level = 0.01;    // of the sample's mean slope
-  double ambient = 0.1;   // of each term of the room's light, of the flash's at the sample's centre
+  double level = 0.01;  // of the sample's mean slope
+  // Of ambient illumination, of the flash's at the sample's centre: in the mean of all directions,
+  // and of each term that says where it comes from.
+  double ambient = 0.1, ambient_direction = 0.02;
   double exposure = 0.1;  // of its logarithm
   double registration_texel = 1.0;
 };

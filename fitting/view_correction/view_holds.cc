@@ -82,7 +82,9 @@ double ViewHolds::Add(const Eigen::VectorXd& x, NormalEquations* equations) cons
   }
   // The same whatever the number of views: they share it.
   for (int i = 0; i < 3 * kinds.room_terms; ++i) {
-    cost += AddSimple(x, unknowns_.room(0) + i, expected_.ambient, equations);
+    const bool even = i % kinds.room_terms == 0;
+    cost += AddSimple(x, unknowns_.room(0) + i,
+                      even ? expected_.ambient : expected_.ambient_direction, equations);
   }
   return cost;
 }

@@ -149,7 +149,7 @@ TEST(CorrectViews, FindsWhereTheRoomsLightComesFrom) {
   const DisturbedSet disturbed = test::DisturbLitBy(room, 12, 0, 0, 64, false);
   ViewCorrectionOptions options = Few();
   options.light = options.registration = false;
-  options.expected.ambient = 1;
+  options.expected.ambient = options.expected.ambient_direction = 1;
   options.room_terms = 9;
   const ViewCorrectionResult found = Correct(disturbed, options);
   EXPECT_LT(found.cost_after, 0.05 * found.cost_before);

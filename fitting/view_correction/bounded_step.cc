@@ -1,4 +1,4 @@
-#include "fitting/refine/bounded_step.h"
+#include "fitting/view_correction/bounded_step.h"
 
 #include <Eigen/Cholesky>
 #include <vector>
