@@ -78,11 +78,11 @@ std::string PhotographSet::Check() const {
   for (size_t i = 0; i < photographs.size(); ++i) {
     const std::string wrong = CheckPhotograph(photographs[i], texels);
     if (wrong.empty()) continue;
-    const std::string named = "photograph " + std::to_string(i) + " " + wrong;
+    std::string named = "photograph " + std::to_string(i) + " " + wrong;
     // A photograph that shows nothing is no harm as long as another does.
     if (wrong.rfind("has no usable", 0) != 0) return named;
     ++bad;
-    unusable = named;
+    unusable = std::move(named);
   }
   return bad == photographs.size() ? unusable : "";
 }

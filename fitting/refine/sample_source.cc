@@ -13,7 +13,7 @@ constexpr int kRowsAtOnce = 256;
 
 RectifiedSet WithWeightOf(RectifiedSet set, const std::filesystem::path& maps_file) {
   ReflectanceConvention of_maps;
-  SvbrdfReader(maps_file, &of_maps);
+  const SvbrdfReader reader(maps_file, &of_maps);
   set.convention.diffuse_weight = of_maps.diffuse_weight;
   return set;
 }
