@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "base/parallel/parallel.h"
 #include "base/resampling/resampling.h"
