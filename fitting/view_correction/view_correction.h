@@ -53,7 +53,7 @@ struct ViewExpectations {
   double shared_light = 0.3;
   double level = 0.01;  // of the sample's mean slope
   // Of ambient illumination, of the flash's at the sample's centre: in the mean of all directions,
-  // and of each term that says where it comes from.
+  // and of each term that says where it comes from (docs/experiments/wrong-views.md).
   double ambient = 0.1, ambient_direction = 0.02;
   double exposure = 0.1;  // of its logarithm
   double registration_texel = 1.0;

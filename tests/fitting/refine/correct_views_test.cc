@@ -91,9 +91,9 @@ TEST(FindCorrections, DeviationsHoldWhatIsNotKnownOfTheViews) {
   const CorrectionResult found = Find(disturbed);
   ASSERT_TRUE(found.taken);
   const PhotographSet corrected = Corrected(disturbed.set, found.corrections, 1);
-  const SvbrdfMaps start = test::UniformMaps(disturbed.maps.width, 0.35f, 0.06f, 0.45f);
+  const SvbrdfMaps initial = test::UniformMaps(disturbed.maps.width, 0.35f, 0.06f, 0.45f);
   RefineProblem problem = ProblemOf(corrected);
-  const RefineResult result = Refine(problem, start, {}, 1);
+  const RefineResult result = Refine(problem, initial, {}, 1);
   for (const auto& [plane, sigma, count] : {std::tuple{kDiffuseR, kSigmaDiffuseR, 3},
                                             {kSpecularR, kSigmaSpecularR, 3},
                                             {kRoughness, kSigmaRoughness, 1},
@@ -103,7 +103,7 @@ TEST(FindCorrections, DeviationsHoldWhatIsNotKnownOfTheViews) {
     EXPECT_LT(errors, 1.5) << plane;
   }
   problem.systematic_sd = {};  // as if the corrections were certain
-  EXPECT_GT(ErrorsInDeviations(Refine(problem, start, {}, 1), disturbed.maps, kDiffuseR,
+  EXPECT_GT(ErrorsInDeviations(Refine(problem, initial, {}, 1), disturbed.maps, kDiffuseR,
                                kSigmaDiffuseR, 3),
             3);
 }

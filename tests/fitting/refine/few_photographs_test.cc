@@ -71,16 +71,16 @@ TEST(Refine, OnePhotographSaysHowFarALevelStartMayBeOff) {
 
 // An estimator takes a substance's texels for alike where it cannot tell, and so does the prior:
 // both err by what texels depart from the mean, and that is not known twice.
-TEST(Refine, TwoPhotographsSayHowFarAnEvenStartMayBeOff) {
-  const SvbrdfMaps start = LevelSubstance(32, 0.5f);
-  SvbrdfMaps truth = start;
+TEST(Refine, TwoPhotographsSayHowFarAnEvenInitialisationMayBeOff) {
+  const SvbrdfMaps initial = LevelSubstance(32, 0.5f);
+  SvbrdfMaps truth = initial;
   std::mt19937 random(29);
   std::normal_distribution<float> departure(0.0f,
                                             static_cast<float>(InitialisationErrors().roughness));
   for (float& roughness : truth.plane(kRoughness)) {
     roughness = std::clamp(roughness + departure(random), 0.05f, 1.0f);
   }
-  const RefineResult result = Refine(Photograph(truth, 2, 8).Problem(), start, {}, 1);
+  const RefineResult result = Refine(Photograph(truth, 2, 8).Problem(), initial, {}, 1);
   double squares = 0;  // of errors, in stated deviations
   for (size_t t = 0; t < truth.texels(); ++t) {
     const double error = result.maps.plane(kRoughness)[t] - truth.plane(kRoughness)[t];
