@@ -31,7 +31,7 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined, in
   const Json& correction = refined.metrics["correction"];
   if (refined.correction.taken && !correction["views_moved"].get<bool>()) {
     result.text += fmt::format(
-        "  room's light found: {:.1f} % of the flash; lights and pictures as they were\n",
+        "  ambient illumination found: {:.1f} % of the flash; lights and pictures as they were\n",
         100 * correction["ambient_of_flash"].get<double>());
   } else if (refined.correction.taken) {
     result.text += fmt::format(

@@ -80,11 +80,11 @@ Experiment Table2(const PaperExperimentOptions& options) {
       experiment.conditions.push_back(light);
     }
     for (const double strength : kStrengths) {
-      Condition room =
+      Condition environment =
           Named(plain, fmt::format("environment{:02g}", strength), EnvironmentName(strength));
-      room.views.disturbance.environment_percent = strength;
-      room.views.disturbance.environment = options.views.disturbance.environment;
-      experiment.conditions.push_back(room);
+      environment.views.disturbance.environment_percent = strength;
+      environment.views.disturbance.environment = options.views.disturbance.environment;
+      experiment.conditions.push_back(environment);
     }
   }
   return experiment;

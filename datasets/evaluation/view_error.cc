@@ -11,8 +11,8 @@
 #include "fitting/photographs/photographs.h"
 #include "fitting/photographs/picture_shift.h"
 #include "fitting/reflectance/log_radiance.h"
+#include "fitting/render/render_environment.h"
 #include "fitting/render/render_lit.h"
-#include "fitting/render/render_room.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/manifest.h"
 #include "pipeline/contract/rectified_rows.h"
@@ -109,7 +109,7 @@ FittedMaps ReadFittedMaps(const fs::path& path, int most_side) {
       OptionalNumbers(file, manifest.data, "light_scale_rgb", fit.light_scale_rgb);
   fit.shared_light = ReadSharedLight(file, manifest.data);
   fit.corrections = ReadCorrections(file, manifest.data);
-  fit.room = ReadRoomLight(file, manifest.data);
+  fit.environment = ReadEnvironmentLighting(file, manifest.data);
   return fit;
 }
 
@@ -164,7 +164,8 @@ std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
   const View lit = ViewOfFit(fit, view);
   std::vector<float> rendered(3 * maps.texels());
   RenderLit(maps, set.plane, lit, convention, rendered.data(), threads);
-  AddRoomLight(fit.room, maps, set.plane, lit, convention, rendered.data(), threads);
+  AddEnvironmentLighting(fit.environment, maps, set.plane, lit, convention, rendered.data(),
+                         threads);
   return rendered;
 }
 

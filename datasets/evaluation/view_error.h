@@ -40,7 +40,7 @@ struct FittedMaps {
   std::array<double, 3> light_scale_rgb{1, 1, 1};     // multiplies every light_rgb
   SharedLight shared_light;                           // of every view
   std::map<std::string, ViewCorrection> corrections;  // by view, of those that were refined from
-  RoomLight room;                                     // added to every view's
+  EnvironmentLighting environment;                    // added to every view's
 };
 
 // `path`: manifest.json of fit or refine, the folder that holds it, or svbrdf.exr alone (then the
@@ -56,7 +56,7 @@ RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
 RectifiedImage PhotographOfFit(const FittedMaps& fit, const RectifiedSet& set,
                                const RectifiedView& view, int width, int height);
 
-// Camera and light of `view` as the fit found them; the room's light apart.
+// Camera and light of `view` as the fit found them; environment lighting apart.
 View ViewOfFit(const FittedMaps& fit, const RectifiedView& view);
 
 // Renders `view` of `set`, as the fit found it to be lit, from the fit, at the set's size.

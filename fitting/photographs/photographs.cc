@@ -122,7 +122,7 @@ PhotographSet Downsampled(const PhotographSet& set, int width, int height, int t
   small.plane.height = height;
   small.convention = set.convention;
   small.light_power_known = set.light_power_known;
-  small.room = set.room;
+  small.environment = set.environment;
   small.systematic_sd = set.systematic_sd;
   for (const Photograph& p : set.photographs) {
     const ReadRows rows = [&](int first_row, int count) {

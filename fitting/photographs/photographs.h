@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/room_light.h"
+#include "fitting/reflectance/environment_lighting.h"
 #include "fitting/reflectance/systematic_deviations.h"
 #include "fitting/reflectance/view.h"
 
@@ -23,8 +23,8 @@ struct Photograph {
 struct PhotographSet {
   SamplePlane plane;
   ReflectanceConvention convention;
-  bool light_power_known = true;  // false: light_rgb is a first guess up to one common factor
-  RoomLight room;                 // beside what each view has as ambient light; refine finds it
+  bool light_power_known = true;    // false: light_rgb is a first guess up to one common factor
+  EnvironmentLighting environment;  // beside what each view has as ambient light; refine finds it
   // Of the maps' errors that follow from what is uncertain about the views.
   SystematicDeviations systematic_sd;
   std::vector<Photograph> photographs;

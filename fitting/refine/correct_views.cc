@@ -21,13 +21,14 @@ struct Finding {
 Finding Find(const PhotographSet& set, const SvbrdfMaps& start, const CorrectionOptions& options,
              const ViewCorrectionOptions& view, int threads) {
   Finding all{view, CorrectViews(set, start, view, threads)};
-  if (options.room_terms == 0) return all;
-  ViewCorrectionOptions room_alone = view;
-  room_alone.light = room_alone.exposure = room_alone.registration = false;
-  room_alone.room_terms = options.room_terms;
-  Finding room{room_alone, CorrectViews(set, start, room_alone, threads)};
-  const bool views_tell = all.result.GainOver(room.result.cost_after) > options.least_views_gain;
-  return views_tell ? all : room;
+  if (options.environment_terms == 0) return all;
+  ViewCorrectionOptions environment_alone = view;
+  environment_alone.light = environment_alone.exposure = environment_alone.registration = false;
+  environment_alone.environment_terms = options.environment_terms;
+  Finding environment{environment_alone, CorrectViews(set, start, environment_alone, threads)};
+  const bool views_tell =
+      all.result.GainOver(environment.result.cost_after) > options.least_views_gain;
+  return views_tell ? all : environment;
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ RefineProblem ProblemOf(const PhotographSet& set) {
   RefineProblem problem;
   problem.plane = set.plane;
   problem.convention = set.convention;
-  problem.room = set.room;
+  problem.environment = set.environment;
   problem.systematic_sd = set.systematic_sd;
   for (const Photograph& p : set.photographs) {
     problem.views.push_back({p.view, p.ldr, p.rgb, p.mask, p.pixels_per_texel});

@@ -20,11 +20,10 @@ struct CorrectionOptions {
   // ViewCorrectionResult::GainOver() up to which nothing is taken: views that are right stay
   // untouched.
   double least_gain = 0.02;
-  // Terms of the room's light where that is all that is put right: polished samples mirror the
-  // room.
-  int room_terms = kRoomTerms;
+  // Terms of environment lighting where that is all that is corrected: polished samples mirror it.
+  int environment_terms = kEnvironmentTerms;
   // Lights, exposures and registration are put right only where that explains so much more than a
-  // room's light alone does: what is left of a room is a little like lights that are off.
+  // environment lighting alone does: what remains of it is a little like lights that are off.
   double least_views_gain = 0.05;
   // Corrections and refinements in turn, at most: texels in wrong minima hold the views back, and
   // refined with views that are nearly right they leave them.

@@ -54,15 +54,15 @@ void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps,
     }
     observations->Complete(at, BatchView(view.view, problem.convention.falloff));
   }
-  if (!problem.room.any()) return;
+  if (!problem.environment.any()) return;
   for (size_t i = 0; i < texels.size(); ++i) {
     const Place place = PlaceOf(problem.plane, texels[i]);
-    const RoomReflection reflection(TexelAt(maps, texels[i]));
+    const EnvironmentReflection reflection(TexelAt(maps, texels[i]));
     for (size_t k = 0; k < views.size(); ++k) {
       const View& view = problem.views[static_cast<size_t>(views[k])].view;
       TexelGeometry<double> geometry =
           TexelGeometryInView<double>(view, problem.convention.falloff, place.x_mm, place.y_mm);
-      reflection.AddTo(problem.room, view.exposure, &geometry);
+      reflection.AddTo(problem.environment, view.exposure, &geometry);
       observations->SetAmbient(static_cast<int>(i), static_cast<int>(k), geometry.ambient,
                                geometry.ambient_specular);
     }

@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/room_light.h"
+#include "fitting/reflectance/environment_lighting.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/reflectance/systematic_deviations.h"
 #include "fitting/reflectance/view.h"
@@ -48,7 +48,7 @@ struct RefineProblem {
   SamplePlane plane;
   ReflectanceConvention convention;
   std::vector<RefineView> views;
-  RoomLight room;                      // beside what each view has as ambient light
+  EnvironmentLighting environment;     // beside what each view has as ambient light
   SystematicDeviations systematic_sd;  // of errors that follow from uncertain views
 };
 

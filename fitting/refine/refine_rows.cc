@@ -14,8 +14,8 @@
 #include "fitting/refine/neighbours.h"
 #include "fitting/refine/point_spread.h"
 #include "fitting/refine/refine_worker.h"
+#include "fitting/render/render_environment.h"
 #include "fitting/render/render_lit.h"
-#include "fitting/render/render_room.h"
 #include "fitting/texel/texel_parameters.h"
 
 namespace glint {
@@ -167,8 +167,8 @@ void PartRefiner::Deblur() {
     if (spread.none()) return;
     std::vector<float> rendering(3 * start_.texels());
     RenderLit(result_.maps, problem_.plane, view.view, problem_.convention, rendering.data());
-    AddRoomLight(problem_.room, result_.maps, problem_.plane, view.view, problem_.convention,
-                 rendering.data());
+    AddEnvironmentLighting(problem_.environment, result_.maps, problem_.plane, view.view,
+                           problem_.convention, rendering.data());
     std::vector<float>& deblurred = deblurred_[static_cast<size_t>(v)];
     deblurred =
         Deblurred(spread, view.rgb, view.mask, view.ldr, std::move(rendering), width, height);

@@ -113,7 +113,7 @@ void AddCorrections(const std::vector<ViewCorrection>& corrections,
   (*data)["corrections"] = entries;
 }
 
-// What was found and taken before refinement: the room, and the corrections' sizes.
+// What was found and taken before refinement: environment lighting, and the corrections' sizes.
 // `light_scale_rgb`: of the views' power, as the fit found it.
 void DescribeCorrection(const CorrectionResult& found, const RectifiedSet& set,
                         const std::vector<RectifiedView>& views, const Vec3d& light_scale_rgb,
@@ -129,20 +129,20 @@ void DescribeCorrection(const CorrectionResult& found, const RectifiedSet& set,
     shifted += c.shifts.rms() / static_cast<double>(views.size());
     moved = moved || !c.none();
   }
-  result->data["room_light"] = JsonOf(found.corrections.room);
-  const Vec3d ambient = found.corrections.room.PlaneIrradiance();
+  result->data["room_light"] = JsonOf(found.corrections.environment);
+  const Vec3d ambient = found.corrections.environment.PlaneIrradiance();
   const TexelGeometry<double> centre =
       TexelGeometryInView(views[0].view, set.convention.falloff, 0.0, 0.0);
-  double flash = 0, room = 0;
+  double flash = 0, environment = 0;
   for (size_t k = 0; k < 3; ++k) {
     flash += light_scale_rgb[k] * centre.irradiance[k] / views[0].view.exposure;
-    room += ambient[k];
+    environment += ambient[k];
   }
   result->metrics["correction"].update({{"systematic_sd", JsonOf(found.corrections.systematic_sd)},
                                         {"views_moved", moved},
                                         {"light_turned_deg", turned_deg},
                                         {"registration_texel", shifted},
-                                        {"ambient_of_flash", room / flash}});
+                                        {"ambient_of_flash", environment / flash}});
 }
 
 CorrectionResult CorrectViewsWithBar(const RefineOptions& refine, const CorrectionOptions& options,
@@ -287,7 +287,7 @@ std::string EstimateHash(const Sample& sample) {
                {"exposure_spread", summary.exposure_spread},
                {"light_spread", summary.light_spread},
                {"shared_light", JsonOf(summary.shared_light)},
-               {"room_light", JsonOf(sample.correction.corrections.room)},
+               {"room_light", JsonOf(sample.correction.corrections.environment)},
                {"systematic_sd", JsonOf(sample.correction.corrections.systematic_sd)}};
   AddCorrections(Corrections(sample.correction, summary), sample.views, &json);
   return HashBytes(json.dump());

@@ -28,8 +28,8 @@ std::vector<float> MedianColour(const RefineProblem& problem, const SvbrdfMaps& 
   using Obs = BatchObservations;
   const size_t texels = initial.texels();
   const int views = static_cast<int>(problem.views.size());
-  RefineProblem without_room = problem;
-  without_room.room = {};
+  RefineProblem without_environment = problem;
+  without_environment.environment = {};
   std::vector<int> all(problem.views.size());
   std::iota(all.begin(), all.end(), 0);
   std::vector<float> colour(3 * texels);
@@ -40,8 +40,8 @@ std::vector<float> MedianColour(const RefineProblem& problem, const SvbrdfMaps& 
       std::array<size_t, kBatch> batch;
       std::iota(batch.begin(), batch.end(), static_cast<size_t>(first));
       const int count = std::min(kBatch, end - first);
-      GatherObservations(without_room, initial, std::span(batch).first(static_cast<size_t>(count)),
-                         all, &seen);
+      GatherObservations(without_environment, initial,
+                         std::span(batch).first(static_cast<size_t>(count)), all, &seen);
       for (int lane = 0; lane < count; ++lane) {
         for (int c = 0; c < 3; ++c) {
           values.clear();

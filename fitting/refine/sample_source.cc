@@ -66,7 +66,7 @@ SampleSource::Part SampleSource::Every(int stride, int threads) {
               first / stride, *to);
     };
     take(from.start.planes, &part.start.planes);
-    part.photographs.room = from.photographs.room;
+    part.photographs.environment = from.photographs.environment;
     part.photographs.systematic_sd = from.photographs.systematic_sd;
     for (size_t v = 0; v < from.photographs.photographs.size(); ++v) {
       Photograph &some = from.photographs.photographs[v], &to = part.photographs.photographs[v];

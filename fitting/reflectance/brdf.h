@@ -9,7 +9,7 @@
 //   radiance = exposure·(E·f·NoL + ambient·(w·k_d + k_s)/π)
 //
 // The ambient term is a uniform surround reflected by a flat surface, its specular part without
-// Fresnel's rise toward grazing views: what a metal shows of a room.
+// Fresnel's rise toward grazing views: what a metal shows of its surroundings.
 //
 // The scalar T may be float, double or an automatic-differentiation type (ceres::Jet).
 //
@@ -47,7 +47,8 @@ struct TexelGeometry {
   T fresnel;              // the power of two in F: depends on the directions only
   T irradiance[3];        // exposure·E
   T ambient[3];           // exposure·ambient, as the diffuse lobe receives it …
-  T ambient_specular[3];  // … and as the specular one does: the same but under a RoomLight
+  T ambient_specular[3];  // … and as the specular one does: the same but under a
+                          // EnvironmentLighting
 };
 
 template <class T>

@@ -68,7 +68,9 @@ SharedLight ReadSharedLight(const std::filesystem::path& manifest_file, const Js
   return shared;
 }
 
-Json JsonOf(const RoomLight& room) { return {{"radiance_rgb", room.radiance_rgb}}; }
+Json JsonOf(const EnvironmentLighting& environment) {
+  return {{"radiance_rgb", environment.radiance_rgb}};
+}
 
 Json JsonOf(const SystematicDeviations& deviations) {
   return {{"diffuse_relative", deviations.diffuse},
@@ -77,22 +79,23 @@ Json JsonOf(const SystematicDeviations& deviations) {
           {"slope", deviations.slope}};
 }
 
-RoomLight ReadRoomLight(const std::filesystem::path& manifest_file, const Json& data) {
-  RoomLight room;
-  if (!data.contains("room_light")) return room;
+EnvironmentLighting ReadEnvironmentLighting(const std::filesystem::path& manifest_file,
+                                            const Json& data) {
+  EnvironmentLighting environment;
+  if (!data.contains("room_light")) return environment;
   const Json& terms =
       RequireField(manifest_file, data["room_light"], "data.room_light", "radiance_rgb");
-  if (!terms.is_array() || !AreRoomTerms(terms.size())) {
+  if (!terms.is_array() || !AreEnvironmentTerms(terms.size())) {
     throw UserError(manifest_file, "data.room_light.radiance_rgb", terms.dump(),
                     "run glint-refine again");
   }
-  room.radiance_rgb.resize(terms.size());
+  environment.radiance_rgb.resize(terms.size());
   for (size_t j = 0; j < terms.size(); ++j) {
     const auto rgb = RequireNumbers(manifest_file, Json{{"term", terms[j]}},
                                     "data.room_light.radiance_rgb[]", "term", 3);
-    std::copy(rgb.begin(), rgb.end(), room.radiance_rgb[j].begin());
+    std::copy(rgb.begin(), rgb.end(), environment.radiance_rgb[j].begin());
   }
-  return room;
+  return environment;
 }
 
 }  // namespace glint

@@ -23,11 +23,12 @@ Json JsonOf(const SharedLight& shared);
 // data.shared_light; as said where `data` has none. Throws UserError.
 SharedLight ReadSharedLight(const std::filesystem::path& manifest_file, const Json& data);
 
-Json JsonOf(const RoomLight& room);
+Json JsonOf(const EnvironmentLighting& environment);
 
 Json JsonOf(const SystematicDeviations& deviations);
 
 // Dark where `data` has no room_light. Throws UserError.
-RoomLight ReadRoomLight(const std::filesystem::path& manifest_file, const Json& data);
+EnvironmentLighting ReadEnvironmentLighting(const std::filesystem::path& manifest_file,
+                                            const Json& data);
 
 }  // namespace glint

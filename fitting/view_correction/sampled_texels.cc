@@ -102,15 +102,18 @@ struct SampledTexels::Texel {
   double corner_weights[4];
   TexelValues start;
   std::vector<int> views;  // that see it
-  // What it reflects of each term of the room, as the start says (that changes slowly with the
-  // normal): its diffuse lobe and, by view that sees it, its specular one.
-  std::vector<double> room;
-  std::span<const double> room_diffuse(int terms) const { return OfRoom(0, terms); }
-  std::span<const double> room_specular(size_t k, int terms) const { return OfRoom(k + 1, terms); }
+  // What it reflects of each term of environment lighting, as the initial maps say (that changes
+  // slowly with the normal): its diffuse lobe and, by view that sees it, its specular one.
+  std::vector<double> environment;
+  std::span<const double> environment_diffuse(int terms) const { return OfEnvironment(0, terms); }
+  std::span<const double> environment_specular(size_t k, int terms) const {
+    return OfEnvironment(k + 1, terms);
+  }
 
  private:
-  std::span<const double> OfRoom(size_t k, int terms) const {
-    return std::span(room).subspan(k * static_cast<size_t>(terms), static_cast<size_t>(terms));
+  std::span<const double> OfEnvironment(size_t k, int terms) const {
+    return std::span(environment)
+        .subspan(k * static_cast<size_t>(terms), static_cast<size_t>(terms));
   }
 };
 
@@ -146,7 +149,8 @@ SampledTexels::SampledTexels(const PhotographSet& set, const SvbrdfMaps& maps,
   const int width = set.plane.width, height = set.plane.height;
   const int stride = std::max(
       1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(maps.texels()) / texels))));
-  const RoomLight room = unknowns.RoomAt(Eigen::VectorXd::Zero(unknowns.size()));
+  const EnvironmentLighting environment =
+      unknowns.EnvironmentAt(Eigen::VectorXd::Zero(unknowns.size()));
   for (int row = kMargin + stride / 2; row < height - kMargin; row += stride) {
     for (int column = kMargin + stride / 2; column < width - kMargin; column += stride) {
       const size_t index = static_cast<size_t>(row) * width + column;
@@ -157,7 +161,7 @@ SampledTexels::SampledTexels(const PhotographSet& set, const SvbrdfMaps& maps,
       }
       if (texel.views.empty()) continue;
       texel.start = ReadTexel(maps, index);
-      if (room.any()) AddRoom(TexelAt(maps, index), room, &texel);
+      if (environment.any()) AddEnvironment(TexelAt(maps, index), environment, &texel);
       CornerWeights((column + 0.5) / width, (row + 0.5) / height, texel.corner_weights);
       residuals_ += 3.0 * static_cast<double>(texel.views.size());
       texels_.push_back(std::move(texel));
@@ -190,23 +194,24 @@ TexelPrior SampledTexels::PriorOf(const Texel& texel) const {
   return TexelPrior(TexelGaussian(texel.start, ErrorsOfStart()), hold_);
 }
 
-void SampledTexels::AddRoom(const TexelSvbrdf<double>& svbrdf, const RoomLight& room,
-                            Texel* texel) const {
-  const RoomReflection reflection(svbrdf);
-  const auto add = [&](const RoomHarmonics& harmonics) {
-    texel->room.insert(texel->room.end(), harmonics.begin(), harmonics.begin() + room.terms());
+void SampledTexels::AddEnvironment(const TexelSvbrdf<double>& svbrdf,
+                                   const EnvironmentLighting& environment, Texel* texel) const {
+  const EnvironmentReflection reflection(svbrdf);
+  const auto add = [&](const EnvironmentHarmonics& harmonics) {
+    texel->environment.insert(texel->environment.end(), harmonics.begin(),
+                              harmonics.begin() + environment.terms());
   };
   add(reflection.diffuse());
   for (const int v : texel->views) {
     const TexelGeometry<double> geometry =
         TexelGeometryInView<double>(set_.photographs[static_cast<size_t>(v)].view,
                                     set_.convention.falloff, texel->x_mm, texel->y_mm);
-    add(reflection.Specular(geometry.camera, room.degree()));
+    add(reflection.Specular(geometry.camera, environment.degree()));
   }
 }
 
 SampledTexels::ViewsAt SampledTexels::At(const Eigen::VectorXd& x) const {
-  ViewsAt at{x, {}, unknowns_.RoomAt(x)};
+  ViewsAt at{x, {}, unknowns_.EnvironmentAt(x)};
   for (int v = 0; v < unknowns_.views(); ++v) at.views.push_back(unknowns_.ViewAt(v, x));
   return at;
 }
@@ -215,7 +220,7 @@ void SampledTexels::Gather(std::span<const size_t> texels, const ViewsAt& at, Wo
                            BatchObservations* observations) const {
   const SamplePlane& plane = set_.plane;
   const size_t all = static_cast<size_t>(plane.width) * plane.height;
-  const auto& [x, views, room] = at;
+  const auto& [x, views, environment] = at;
   const bool displaced = unknowns_.kinds().registration;
   observations->Clear(unknowns_.views());
   for (size_t i = 0; i < texels.size(); ++i) {
@@ -248,13 +253,15 @@ void SampledTexels::Gather(std::span<const size_t> texels, const ViewsAt& at, Wo
   for (int v = 0; v < unknowns_.views(); ++v) {
     observations->Complete(v, BatchView(views[static_cast<size_t>(v)], set_.convention.falloff));
   }
-  if (!room.any()) return;
+  if (!environment.any()) return;
   for (size_t i = 0; i < texels.size(); ++i) {
     const Texel& texel = texels_[texels[i]];
-    const Vec3d diffuse = RoomIrradiance(room, texel.room_diffuse(room.terms()));
+    const Vec3d diffuse =
+        EnvironmentIrradiance(environment, texel.environment_diffuse(environment.terms()));
     for (size_t k = 0; k < texel.views.size(); ++k) {
       const View& view = views[static_cast<size_t>(texel.views[k])];
-      const Vec3d specular = RoomIrradiance(room, texel.room_specular(k, room.terms()));
+      const Vec3d specular =
+          EnvironmentIrradiance(environment, texel.environment_specular(k, environment.terms()));
       double ambient[3], ambient_specular[3];
       for (size_t c = 0; c < 3; ++c) {
         ambient[c] = view.exposure * (view.ambient_rgb[c] + diffuse[c]);
@@ -328,8 +335,8 @@ void SampledTexels::AddResiduals(const Texel& texel, int lane, const ViewsAt& at
                                  TexelReduction* reduction) const {
   const TexelSvbrdf<double> svbrdf = TexelFromValues(values.data());
   const UnknownKinds& kinds = unknowns_.kinds();
-  const RoomLight& room = at.room;
-  Eigen::VectorXd by_room(room.terms());
+  const EnvironmentLighting& environment = at.environment;
+  Eigen::VectorXd by_environment(environment.terms());
   std::vector<std::pair<int, double>> by_views;
   for (size_t k = 0; k < texel.views.size(); ++k) {
     const int v = texel.views[k];
@@ -340,7 +347,8 @@ void SampledTexels::AddResiduals(const Texel& texel, int lane, const ViewsAt& at
     const bool ldr = set_.photographs[static_cast<size_t>(v)].ldr;
     for (int c = 0; c < 3; ++c) {
       const LookedUp& seen = worker.seen[Worker::PlaceOf(v, c, lane)];
-      radiance[c].a += ReflectRoom(texel, k, svbrdf, view.exposure, room, c, &by_room);
+      radiance[c].a +=
+          ReflectEnvironment(texel, k, svbrdf, view.exposure, environment, c, &by_environment);
       const LogResidual residual(radiance[c].a, seen.value, worker.kernel.robust_scale);
       if (ldr && seen.value >= kClipped && residual.error > 0) continue;  // satisfied
       by_views.clear();
@@ -356,24 +364,26 @@ void SampledTexels::AddResiduals(const Texel& texel, int lane, const ViewsAt& at
         by_views.emplace_back(unknowns_.shift(v) + 4 + i, weight * seen.by_row);
       }
       reduction->Add(worker.residuals, v, c, lane, by_views,
-                     residual.by_rendered * unknowns_.room_unit() * by_room.head(kinds.room_terms));
+                     residual.by_rendered * unknowns_.environment_unit() *
+                         by_environment.head(kinds.environment_terms));
     }
   }
 }
 
-double SampledTexels::ReflectRoom(const Texel& texel, size_t k, const TexelSvbrdf<double>& svbrdf,
-                                  double exposure, const RoomLight& room, int channel,
-                                  Eigen::VectorXd* by_term) const {
+double SampledTexels::ReflectEnvironment(const Texel& texel, size_t k,
+                                         const TexelSvbrdf<double>& svbrdf, double exposure,
+                                         const EnvironmentLighting& environment, int channel,
+                                         Eigen::VectorXd* by_term) const {
   const double diffuse =
       exposure * DiffuseLobe(svbrdf, set_.convention.diffuse_weight, channel).value;
   const double specular = exposure * svbrdf.specular[channel] * kInversePi;
-  const std::span<const double> of_diffuse = texel.room_diffuse(room.terms());
-  const std::span<const double> of_specular = texel.room_specular(k, room.terms());
+  const std::span<const double> of_diffuse = texel.environment_diffuse(environment.terms());
+  const std::span<const double> of_specular = texel.environment_specular(k, environment.terms());
   double radiance = 0;
-  for (size_t j = 0; j < room.radiance_rgb.size(); ++j) {
+  for (size_t j = 0; j < environment.radiance_rgb.size(); ++j) {
     const double by = diffuse * of_diffuse[j] + specular * of_specular[j];
     (*by_term)[static_cast<Eigen::Index>(j)] = by;
-    radiance += by * room.radiance_rgb[j][static_cast<size_t>(channel)];
+    radiance += by * environment.radiance_rgb[j][static_cast<size_t>(channel)];
   }
   return radiance;
 }
@@ -381,7 +391,7 @@ double SampledTexels::ReflectRoom(const Texel& texel, size_t k, const TexelSvbrd
 NormalEquations SampledTexels::Reduce(const Eigen::VectorXd& x, const Values& values) {
   const ViewsAt views = At(x);
   while (reductions_.size() < kSums) {
-    reductions_.emplace_back(unknowns_.size(), unknowns_.kinds().room_terms);
+    reductions_.emplace_back(unknowns_.size(), unknowns_.kinds().environment_terms);
   }
   ForEachPieceByWorker(kSums, threads_, [&](int piece, int at) {
     const size_t k = static_cast<size_t>(piece);

@@ -61,12 +61,13 @@ class SampledTexels {
   struct ViewsAt {
     const Eigen::VectorXd& x;
     std::vector<View> views;
-    RoomLight room;
+    EnvironmentLighting environment;
   };
   ViewsAt At(const Eigen::VectorXd& x) const;
   TexelPrior PriorOf(const Texel& texel) const;
-  // What it reflects of the room's terms.
-  void AddRoom(const TexelSvbrdf<double>& svbrdf, const RoomLight& room, Texel* texel) const;
+  // What it reflects of each term of environment lighting.
+  void AddEnvironment(const TexelSvbrdf<double>& svbrdf, const EnvironmentLighting& environment,
+                      Texel* texel) const;
   // The observations of some texels, each in its lane; all of the set's views.
   void Gather(std::span<const size_t> texels, const ViewsAt& at, Worker* worker,
               BatchObservations* observations) const;
@@ -78,10 +79,10 @@ class SampledTexels {
   // One texel's residuals with their derivatives by the views.
   void AddResiduals(const Texel& texel, int lane, const ViewsAt& at, const TexelValues& values,
                     const Worker& worker, TexelReduction* reduction) const;
-  // What the texel's k-th view shows of the room, and its derivatives by the room's terms.
-  double ReflectRoom(const Texel& texel, size_t k, const TexelSvbrdf<double>& svbrdf,
-                     double exposure, const RoomLight& room, int channel,
-                     Eigen::VectorXd* by_term) const;
+  // What the texel's k-th view shows of the environment lighting, and its derivatives by the terms.
+  double ReflectEnvironment(const Texel& texel, size_t k, const TexelSvbrdf<double>& svbrdf,
+                            double exposure, const EnvironmentLighting& environment, int channel,
+                            Eigen::VectorXd* by_term) const;
 
   const PhotographSet& set_;
   const ViewUnknowns& unknowns_;

@@ -14,18 +14,19 @@ Eigen::RowVectorXd TexelFollowing::ByViewsOf(int variable) const {
   return row.transpose() * half_;
 }
 
-TexelReduction::TexelReduction(int unknowns, int room_terms)
+TexelReduction::TexelReduction(int unknowns, int environment_terms)
     : equations(unknowns),
-      room_terms_(room_terms),
+      environment_terms_(environment_terms),
       products_(kTexelParameters, unknowns),
       texels_(unknowns),
-      room_{OuterProducts(room_terms), OuterProducts(room_terms), OuterProducts(room_terms)} {}
+      environment_{OuterProducts(environment_terms), OuterProducts(environment_terms),
+                   OuterProducts(environment_terms)} {}
 
 void TexelReduction::Clear() {
   equations.hessian.setZero();
   equations.gradient.setZero();
   texels_.Clear();
-  for (OuterProducts& room : room_) room.Clear();
+  for (OuterProducts& environment : environment_) environment.Clear();
 }
 
 void TexelReduction::Begin(const TexelValues& values) {
@@ -38,7 +39,7 @@ void TexelReduction::Begin(const TexelValues& values) {
 
 void TexelReduction::Add(const BatchResiduals& residuals, int view, int channel, int lane,
                          const std::vector<std::pair<int, double>>& by_views,
-                         const Eigen::VectorXd& by_room) {
+                         const Eigen::VectorXd& by_environment) {
   const auto at = [&](BatchResiduals::Row row) { return residuals.at(view, channel, row, lane); };
   const std::pair<int, double> by_texel[] = {
       {DiffuseParameter(channel), at(BatchResiduals::kByDiffuse)},
@@ -49,23 +50,25 @@ void TexelReduction::Add(const BatchResiduals& residuals, int view, int channel,
   for (const auto& [parameter, derivative] : by_texel) {
     const double by = derivative * by_variable_[static_cast<size_t>(parameter)];
     for (const auto& [unknown, by_view] : by_views) products_(parameter, unknown) += by * by_view;
-    products_.row(parameter).segment(first_of_room(channel), room_terms_) +=
-        by * by_room.transpose();
+    products_.row(parameter).segment(first_of_environment(channel), environment_terms_) +=
+        by * by_environment.transpose();
   }
   equations.Add(at(BatchResiduals::kResidual), by_views);
-  if (room_terms_ > 0) AddRoom(channel, at(BatchResiduals::kResidual), by_views, by_room);
+  if (environment_terms_ > 0)
+    AddEnvironment(channel, at(BatchResiduals::kResidual), by_views, by_environment);
 }
 
-// The room's terms are many and dense.
-void TexelReduction::AddRoom(int channel, double residual,
-                             const std::vector<std::pair<int, double>>& by_views,
-                             const Eigen::VectorXd& by_room) {
-  const int first = first_of_room(channel);
-  equations.gradient.segment(first, room_terms_) += residual * by_room;
+// The terms of environment lighting are many and dense.
+void TexelReduction::AddEnvironment(int channel, double residual,
+                                    const std::vector<std::pair<int, double>>& by_views,
+                                    const Eigen::VectorXd& by_environment) {
+  const int first = first_of_environment(channel);
+  equations.gradient.segment(first, environment_terms_) += residual * by_environment;
   for (const auto& [unknown, by_view] : by_views) {
-    equations.hessian.row(unknown).segment(first, room_terms_) += by_view * by_room.transpose();
+    equations.hessian.row(unknown).segment(first, environment_terms_) +=
+        by_view * by_environment.transpose();
   }
-  room_[static_cast<size_t>(channel)].AddRow() = by_room.transpose();
+  environment_[static_cast<size_t>(channel)].AddRow() = by_environment.transpose();
 }
 
 void TexelReduction::Eliminate(const TexelGram& gram, TexelFollowing* following) {
@@ -99,9 +102,9 @@ void TexelReduction::Eliminate(const TexelGram& gram, TexelFollowing* following)
 void TexelReduction::Finish() {
   texels_.AddTo(-1, equations.hessian);
   for (int c = 0; c < 3; ++c) {
-    const int first = first_of_room(c);
-    room_[static_cast<size_t>(c)].AddTo(
-        1, equations.hessian.block(first, first, room_terms_, room_terms_));
+    const int first = first_of_environment(c);
+    environment_[static_cast<size_t>(c)].AddTo(
+        1, equations.hessian.block(first, first, environment_terms_, environment_terms_));
   }
 }
 

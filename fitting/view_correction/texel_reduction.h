@@ -41,17 +41,20 @@ class TexelFollowing {
 
 class TexelReduction {
  public:
-  // `room_terms`: of a channel; the room's unknowns come first of all, channel by channel.
-  TexelReduction(int unknowns, int room_terms);
+  // `environment_terms`: of a channel; the environment's unknowns come first of all, channel by
+  // channel.
+  TexelReduction(int unknowns, int environment_terms);
 
   // To begin anew.
   void Clear();
   // A texel with these values.
   void Begin(const TexelValues& values);
   // One residual of it, and its derivatives by a few unknowns and by the channel's terms of the
-  // room's light (of no size without these); those by the texel's values are in `residuals`.
+  // environment lighting (of no size without these); those by the texel's values are in
+  // `residuals`.
   void Add(const BatchResiduals& residuals, int view, int channel, int lane,
-           const std::vector<std::pair<int, double>>& by_views, const Eigen::VectorXd& by_room);
+           const std::vector<std::pair<int, double>>& by_views,
+           const Eigen::VectorXd& by_environment);
   // Takes the texel out; `gram`: its own products.
   void Eliminate(const TexelGram& gram, TexelFollowing* following);
   // After the last texel. Only the lower triangle of `equations` is complete.
@@ -60,15 +63,16 @@ class TexelReduction {
   NormalEquations equations;
 
  private:
-  void AddRoom(int channel, double residual, const std::vector<std::pair<int, double>>& by_views,
-               const Eigen::VectorXd& by_room);
-  int first_of_room(int channel) const { return room_terms_ * channel; }
+  void AddEnvironment(int channel, double residual,
+                      const std::vector<std::pair<int, double>>& by_views,
+                      const Eigen::VectorXd& by_environment);
+  int first_of_environment(int channel) const { return environment_terms_ * channel; }
 
-  int room_terms_;
+  int environment_terms_;
   TexelValues by_variable_{};  // ∂value/∂(the solver's variable): a value at its bound stays
   TexelFollowing::ByViews products_;
   OuterProducts texels_;
-  std::array<OuterProducts, 3> room_;  // by channel
+  std::array<OuterProducts, 3> environment_;  // by channel
 };
 
 }  // namespace glint

@@ -45,7 +45,7 @@ class Adjustment {
   Adjustment(const PhotographSet& set, const SvbrdfMaps& maps, const ViewCorrectionOptions& options,
              bool registration, int texels, int threads)
       : options_(options),
-        unknowns_(set, {options.light, options.exposure, registration, options.room_terms}),
+        unknowns_(set, {options.light, options.exposure, registration, options.environment_terms}),
         sampled_(set, maps, unknowns_, texels, options.robust_scale, threads),
         expected_(options.expected),
         x_(VectorXd::Zero(unknowns_.size())) {}
@@ -168,8 +168,9 @@ VectorXd Adjustment::Step(NormalEquations equations, double damping) const {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   VectorXd least = VectorXd::Constant(unknowns_.size(), -kAny);
   const VectorXd most = VectorXd::Constant(unknowns_.size(), kAny);
-  for (int c = 0; unknowns_.kinds().room_terms > 0 && c < 3; ++c) {
-    least[unknowns_.room(c)] = std::min(unknowns_.LeastRoom(c) - x_[unknowns_.room(c)], 0.0);
+  for (int c = 0; unknowns_.kinds().environment_terms > 0 && c < 3; ++c) {
+    least[unknowns_.environment(c)] =
+        std::min(unknowns_.LeastEnvironment(c) - x_[unknowns_.environment(c)], 0.0);
   }
   return StepWithin(equations.hessian, -equations.gradient, least, most);
 }
@@ -270,8 +271,8 @@ std::string ViewCorrectionOptions::Check() const {
   if (!above_zero(expected.ambient) || !above_zero(expected.ambient_direction)) {
     return "the expected ambient light must be above 0";
   }
-  if (room_terms < 0 || !AreRoomTerms(static_cast<size_t>(room_terms))) {
-    return "the terms of a room's light must make up complete degrees";
+  if (environment_terms < 0 || !AreEnvironmentTerms(static_cast<size_t>(environment_terms))) {
+    return "the terms of environment lighting must make up complete degrees";
   }
   if (!above_zero(expected.exposure)) return "the exposures' expected deviation must be above 0";
   if (!above_zero(expected.registration_texel)) {
@@ -340,7 +341,7 @@ PhotographSet Corrected(PhotographSet set, const ViewCorrections& corrections, i
     ShiftPicture(c.shifts, set.plane.width, set.plane.height, &photograph.rgb, rows);
     ShiftMask(c.shifts, set.plane.width, set.plane.height, &photograph.mask, rows);
   });
-  set.room.Add(corrections.room);
+  set.environment.Add(corrections.environment);
   set.systematic_sd = corrections.systematic_sd;
   return set;
 }

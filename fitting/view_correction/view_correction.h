@@ -1,6 +1,6 @@
 // What calibration and rectification left wrong in the views, found from the photographs alone:
-// where each flash was, what the room adds, and by how much each picture is displaced on the
-// sample:
+// where each flash was, what environment lighting adds, and by how much each picture is displaced
+// on the // sample:
 //
 //   min over views  Σ_texels min over texel Σ_views ρ( log(R(texel; view) + 0.01) − log(I + 0.01) )
 //       + expectations of the views' errors
@@ -22,7 +22,7 @@
 
 #include "fitting/photographs/photographs.h"
 #include "fitting/photographs/picture_shift.h"
-#include "fitting/reflectance/room_light.h"
+#include "fitting/reflectance/environment_lighting.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/reflectance/systematic_deviations.h"
 
@@ -40,7 +40,7 @@ struct ViewCorrection {
 // All that is to be corrected about a set.
 struct ViewCorrections {
   std::vector<ViewCorrection> views;  // one per photograph
-  RoomLight room;                     // added to the set's
+  EnvironmentLighting environment;    // added to the set's
   // Of the maps' errors that follow from the corrections' own.
   SystematicDeviations systematic_sd;
 };
@@ -61,9 +61,9 @@ struct ViewExpectations {
 
 struct ViewCorrectionOptions {
   bool light = true;
-  // Of the room's light (room_light.h); 0: none, 1: an even one. Lights that are off and a room
-  // that is not even explain some of the same.
-  int room_terms = 1;
+  // Of the environment lighting (environment_lighting.h); 0: none, 1: an even one. Lights that are
+  // off and an environment that is not even explain some of the same.
+  int environment_terms = 1;
   bool exposure = false;
   bool registration = true;
   ViewExpectations expected;
@@ -112,9 +112,9 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
 // The view as the correction says.
 View CorrectedView(View view, const ViewCorrection& correction);
 
-// The photographs as the corrections say: lights moved, the room lit, pictures looked up anew.
-// Of rows of a sample, the outermost RowsReached() at a cut are wrong.
-// Throws std::invalid_argument unless there is a correction for every photograph.
+// The photographs as the corrections say: lights moved, environment lighting added, pictures
+// resampled. Of rows of a sample, the outermost RowsReached() at a cut are wrong. Throws
+// std::invalid_argument unless there is a correction for every photograph.
 PhotographSet Corrected(PhotographSet set, const ViewCorrections& corrections, int threads);
 int RowsReached(const ViewCorrections& corrections);
 

@@ -81,9 +81,9 @@ double ViewHolds::Add(const Eigen::VectorXd& x, NormalEquations* equations) cons
                       i < 2 ? expected_.shared_light : expected_.distance, equations);
   }
   // The same whatever the number of views: they share it.
-  for (int i = 0; i < 3 * kinds.room_terms; ++i) {
-    const bool even = i % kinds.room_terms == 0;
-    cost += AddSimple(x, unknowns_.room(0) + i,
+  for (int i = 0; i < 3 * kinds.environment_terms; ++i) {
+    const bool even = i % kinds.environment_terms == 0;
+    cost += AddSimple(x, unknowns_.environment(0) + i,
                       even ? expected_.ambient : expected_.ambient_direction, equations);
   }
   return cost;

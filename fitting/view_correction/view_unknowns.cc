@@ -17,9 +17,9 @@ ViewUnknowns::ViewUnknowns(const PhotographSet& set, const UnknownKinds& kinds)
     light_distance_mm_.push_back(std::hypot(light[0], light[1], light[2]));
     const TexelGeometry<double> centre =
         TexelGeometryInView(photograph.view, set.convention.falloff, 0.0, 0.0);
-    room_unit_ += (centre.irradiance[0] + centre.irradiance[1] + centre.irradiance[2]) /
-                  (3 * std::numbers::pi * photograph.view.exposure *
-                   static_cast<double>(set.photographs.size()));
+    environment_unit_ += (centre.irradiance[0] + centre.irradiance[1] + centre.irradiance[2]) /
+                         (3 * std::numbers::pi * photograph.view.exposure *
+                          static_cast<double>(set.photographs.size()));
   }
 }
 
@@ -36,13 +36,13 @@ Eigen::Matrix3d ViewUnknowns::LightFrame(int view) const {
       .toRotationMatrix();
 }
 
-double ViewUnknowns::LeastRoom(int channel) const {
+double ViewUnknowns::LeastEnvironment(int channel) const {
   const size_t c = static_cast<size_t>(channel);
-  const double even = set_.room.any() ? set_.room.radiance_rgb[0][c] : 0;
+  const double even = set_.environment.any() ? set_.environment.radiance_rgb[0][c] : 0;
   double least = -1e9;
   for (int v = 0; v < views(); ++v) {
     const Vec3d& ambient_rgb = set_.photographs[At(v)].view.ambient_rgb;
-    least = std::max(least, -(ambient_rgb[c] / std::numbers::pi + even) / room_unit_);
+    least = std::max(least, -(ambient_rgb[c] / std::numbers::pi + even) / environment_unit_);
   }
   return least;
 }
@@ -64,35 +64,36 @@ ViewCorrection ViewUnknowns::CorrectionAt(int view, const Eigen::VectorXd& unkno
   return correction;
 }
 
-RoomLight ViewUnknowns::RoomOf(const Eigen::VectorXd& unknowns) const {
-  RoomLight light;
-  light.radiance_rgb.resize(At(kinds_.room_terms));
-  for (int j = 0; j < kinds_.room_terms; ++j) {
+EnvironmentLighting ViewUnknowns::EnvironmentOf(const Eigen::VectorXd& unknowns) const {
+  EnvironmentLighting light;
+  light.radiance_rgb.resize(At(kinds_.environment_terms));
+  for (int j = 0; j < kinds_.environment_terms; ++j) {
     for (int c = 0; c < 3; ++c) {
-      light.radiance_rgb[At(j)][At(c)] = unknowns[room(c) + j] * room_unit_;
+      light.radiance_rgb[At(j)][At(c)] = unknowns[environment(c) + j] * environment_unit_;
     }
   }
   return light;
 }
 
-RoomLight ViewUnknowns::RoomAt(const Eigen::VectorXd& unknowns) const {
-  RoomLight light = set_.room;
-  light.Add(RoomOf(unknowns));
+EnvironmentLighting ViewUnknowns::EnvironmentAt(const Eigen::VectorXd& unknowns) const {
+  EnvironmentLighting light = set_.environment;
+  light.Add(EnvironmentOf(unknowns));
   return light;
 }
 
 ViewCorrections ViewUnknowns::CorrectionsAt(const Eigen::VectorXd& unknowns) const {
   ViewCorrections corrections;
   for (int v = 0; v < views(); ++v) corrections.views.push_back(CorrectionAt(v, unknowns));
-  corrections.room = RoomOf(unknowns);
+  corrections.environment = EnvironmentOf(unknowns);
   return corrections;
 }
 
 Eigen::VectorXd ViewUnknowns::Of(const ViewCorrections& corrections) const {
   Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(size());
-  for (int j = 0; j < std::min(kinds_.room_terms, corrections.room.terms()); ++j) {
+  for (int j = 0; j < std::min(kinds_.environment_terms, corrections.environment.terms()); ++j) {
     for (int c = 0; c < 3; ++c) {
-      unknowns[room(c) + j] = corrections.room.radiance_rgb[At(j)][At(c)] / room_unit_;
+      unknowns[environment(c) + j] =
+          corrections.environment.radiance_rgb[At(j)][At(c)] / environment_unit_;
     }
   }
   for (int v = 0; v < views(); ++v) {

@@ -11,22 +11,23 @@
 namespace glint {
 namespace {
 
-constexpr int kRoom_px = 192;
+constexpr int kEnvironment_px = 192;
 constexpr char kLink[] = "../refine/manifest.json";
 
 // The hemisphere above the sample, the zenith in the middle, angles from it along the radius.
-Image RoomPicture(const RoomLight& room) {
-  Image image(kRoom_px, kRoom_px, {"R", "G", "B"});
+Image EnvironmentPicture(const EnvironmentLighting& environment) {
+  Image image(kEnvironment_px, kEnvironment_px, {"R", "G", "B"});
   float brightest = 0;
-  for (int row = 0; row < kRoom_px; ++row) {
-    for (int column = 0; column < kRoom_px; ++column) {
-      const double x = 2 * (column + 0.5) / kRoom_px - 1, y = 1 - 2 * (row + 0.5) / kRoom_px;
+  for (int row = 0; row < kEnvironment_px; ++row) {
+    for (int column = 0; column < kEnvironment_px; ++column) {
+      const double x = 2 * (column + 0.5) / kEnvironment_px - 1,
+                   y = 1 - 2 * (row + 0.5) / kEnvironment_px;
       const double radius = std::hypot(x, y);
       if (radius > 1) continue;
-      const size_t pixel = static_cast<size_t>(row) * kRoom_px + static_cast<size_t>(column);
+      const size_t pixel = static_cast<size_t>(row) * kEnvironment_px + static_cast<size_t>(column);
       const double polar = 0.5 * std::numbers::pi * radius;
       const double across = radius > 0 ? std::sin(polar) / radius : 0;
-      const Vec3d rgb = room.RadianceFrom({x * across, y * across, std::cos(polar)});
+      const Vec3d rgb = environment.RadianceFrom({x * across, y * across, std::cos(polar)});
       for (size_t c = 0; c < 3; ++c) {
         const float value = static_cast<float>(std::max(0.0, rgb[c]));
         image.channel(static_cast<int>(c))[pixel] = value;
@@ -34,15 +35,18 @@ Image RoomPicture(const RoomLight& room) {
       }
     }
   }
-  return DisplayImage(image.samples, kRoom_px, kRoom_px, brightest > 0 ? 1 / brightest : 1);
+  return DisplayImage(image.samples, kEnvironment_px, kEnvironment_px,
+                      brightest > 0 ? 1 / brightest : 1);
 }
 
-std::string RoomFigure(const RoomLight& room) {
+std::string EnvironmentFigure(const EnvironmentLighting& environment) {
   const std::string caption =
-      "the room as the sample sees it: straight up in the middle, the horizon at the edge, "
+      "the surroundings as the sample sees them: straight up in the middle, the horizon at the "
+      "edge, "
       "x right, y up; brightest as white, gamma 2.2";
-  return "<div class=\"pictures\"><figure>" + ImageHtml(PngUri(RoomPicture(room)), caption) +
-         "<figcaption>" + HtmlText(caption) + "</figcaption></figure></div>\n";
+  return "<div class=\"pictures\"><figure>" +
+         ImageHtml(PngUri(EnvironmentPicture(environment)), caption) + "<figcaption>" +
+         HtmlText(caption) + "</figcaption></figure></div>\n";
 }
 
 std::string ViewsTable(const ReportInput& input) {
@@ -72,13 +76,13 @@ std::string ViewsTable(const ReportInput& input) {
 }  // namespace
 
 std::string CorrectionsSection(const ReportInput& input) {
-  const bool any = input.fit.room.any() || !input.fit.corrections.empty();
+  const bool any = input.fit.environment.any() || !input.fit.corrections.empty();
   if (!input.Has("refine") || !any) return "";
   const Trace metrics{kLink, "metrics.correction"};
   const Json correction = input.manifests.at("refine").metrics.value("correction", Json::object());
   std::string body = "<p>Nobody had said so; the photographs themselves do. ";
-  if (input.fit.room.any()) {
-    body += "The room's light on the sample is " +
+  if (input.fit.environment.any()) {
+    body += "Ambient illumination of the sample is " +
             FigureHtml(correction.value("ambient_of_flash", Json()),
                        metrics.Field("ambient_of_flash")) +
             " of the flash's. ";
@@ -88,7 +92,7 @@ std::string CorrectionsSection(const ReportInput& input) {
   body +=
       moved ? "Lights, exposures and pictures are as the table says; all views are shown so.</p>\n"
             : "Lights, exposures and pictures are as they were said to be.</p>\n";
-  if (input.fit.room.degree() > 0) body += RoomFigure(input.fit.room);
+  if (input.fit.environment.degree() > 0) body += EnvironmentFigure(input.fit.environment);
   if (moved) body += ViewsTable(input);
   return "<section>\n" + SourceLink(kLink) + "<h2>Corrected</h2>\n" + body + "</section>\n";
 }

@@ -1,5 +1,5 @@
-// What refine found that nobody had said of the photographs: where the room's light comes from,
-// and where flashes and pictures really were.
+// What refine found that nobody had said of the photographs: where the environment lighting comes
+// from, and where flashes and pictures really were.
 #pragma once
 
 #include <string>

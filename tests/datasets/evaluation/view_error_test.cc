@@ -8,8 +8,8 @@
 #include "base/errors/errors.h"
 #include "datasets/procedural/material.h"
 #include "datasets/synth/view_set.h"
+#include "fitting/render/render_environment.h"
 #include "fitting/render/render_lit.h"
-#include "fitting/render/render_room.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/files/files.h"
@@ -141,21 +141,22 @@ TEST_F(FittedMapsTest, EveryViewIsLitByTheFlashThatWasFound) {
   EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"shared_light", nowhere}})), UserError);
 }
 
-// The room lights held-out views, too.
-TEST_F(FittedMapsTest, EveryViewIsLitByTheRoomThatWasFound) {
-  RoomLight room;
-  room.radiance_rgb = {{0.2, 0.1, 0.1}, {0, 0, 0}, {0.1, 0, 0}, {0, 0, 0}};
+// Environment lighting reaches held-out views, too.
+TEST_F(FittedMapsTest, EveryViewIsLitByTheEnvironmentThatWasFound) {
+  EnvironmentLighting environment;
+  environment.radiance_rgb = {{0.2, 0.1, 0.1}, {0, 0, 0}, {0.1, 0, 0}, {0, 0, 0}};
   const FittedMaps dark = ReadFittedMaps(WriteFit("refine", Json::object()));
-  const FittedMaps fit = ReadFittedMaps(WriteFit("refine", {{"room_light", JsonOf(room)}}));
+  const FittedMaps fit = ReadFittedMaps(WriteFit("refine", {{"room_light", JsonOf(environment)}}));
   for (const RectifiedView& view : set_.views) {
     std::vector<float> expected = RenderFit(dark, set_, view, 1);
-    AddRoomLight(room, material_.maps, set_.plane, view.view, set_.convention, expected.data());
+    AddEnvironmentLighting(environment, material_.maps, set_.plane, view.view, set_.convention,
+                           expected.data());
     EXPECT_EQ(RenderFit(fit, set_, view, 2), expected);
     EXPECT_NE(expected, RenderFit(dark, set_, view, 1));
   }
 }
 
-TEST_F(FittedMapsTest, ABrokenRoomIsAUserError) {
+TEST_F(FittedMapsTest, BrokenEnvironmentLightingIsAUserError) {
   EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"room_light", 3}})), UserError);
   const Json two_terms = {{"radiance_rgb", {{1, 1, 1}, {0, 0, 0}}}};
   EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"room_light", two_terms}})), UserError);

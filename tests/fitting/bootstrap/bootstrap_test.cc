@@ -144,9 +144,9 @@ TEST(PhotographSet, SaysWhatIsWrong) {
 
 TEST(Downsampled, KeepsMeansAndIgnoresMaskedTexels) {
   PhotographSet set = PhotographMaps(ToyMaterial(2, 30, 20), 1);
-  set.room.radiance_rgb = {{0.1, 0.2, 0.3}};
+  set.environment.radiance_rgb = {{0.1, 0.2, 0.3}};
   const PhotographSet small = Downsampled(set, 15, 10, 1);
-  EXPECT_EQ(small.room.radiance_rgb, set.room.radiance_rgb);
+  EXPECT_EQ(small.environment.radiance_rgb, set.environment.radiance_rgb);
   const auto mean = [](const std::vector<float>& v) {
     return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
   };

@@ -51,23 +51,25 @@ TEST(FindCorrections, LightsThatAreOffByTenDegreesComeBack) {
   }
 }
 
-// A room that is not even explains a little of what lights that are off would, and the other way.
-TEST(FindCorrections, ARoomsLightMovesNoFlash) {
-  RoomLight room;
-  room.radiance_rgb.assign(16, {0, 0, 0});
+// Environment lighting that is not even explains a little of what lights that are off would, and
+// the other way.
+TEST(FindCorrections, EnvironmentLightingMovesNoFlash) {
+  EnvironmentLighting environment;
+  environment.radiance_rgb.assign(16, {0, 0, 0});
   for (size_t j = 0; j < 16; ++j) {
     for (size_t c = 0; c < 3; ++c) {
-      room.radiance_rgb[j][c] = j == 0 ? 0.06 : 0.02 * std::sin(2.7 * static_cast<double>(j));
+      environment.radiance_rgb[j][c] =
+          j == 0 ? 0.06 : 0.02 * std::sin(2.7 * static_cast<double>(j));
     }
   }
-  const DisturbedSet disturbed = test::DisturbLitBy(room, 20, 0, 0, 32, false);
+  const DisturbedSet disturbed = test::DisturbLitBy(environment, 20, 0, 0, 32, false);
   const CorrectionResult found = Find(disturbed);
   ASSERT_TRUE(found.taken);
   EXPECT_LT(found.cost_after, 0.5 * found.cost_before);
   EXPECT_LT(LightErrorDeg(disturbed, found), 1e-4);
   for (size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(found.corrections.room.PlaneIrradiance()[c], room.PlaneIrradiance()[c],
-                0.25 * room.PlaneIrradiance()[c]);
+    EXPECT_NEAR(found.corrections.environment.PlaneIrradiance()[c],
+                environment.PlaneIrradiance()[c], 0.25 * environment.PlaneIrradiance()[c]);
   }
 }
 

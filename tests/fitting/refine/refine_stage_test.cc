@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "fitting/refine/sample_source.h"
-#include "fitting/render/render_room.h"
+#include "fitting/render/render_environment.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_file.h"
@@ -30,15 +30,15 @@ struct SaidOfLights {
   std::optional<double> sd_mm;
 };
 
-void WriteCapture(const fs::path& folder, int views = 3, const RoomLight& room = {},
-                  const SaidOfLights& said = {}) {
+void WriteCapture(const fs::path& folder, int views = 3,
+                  const EnvironmentLighting& environment = {}, const SaidOfLights& said = {}) {
   test::WriteAll(folder / "capture.toml",
                  "[sample]\nsize_mm = [2, 2]\n[photos]\nfiles = [\"photos/*.png\"]\n");
   test::WriteAll(folder / "photos/0.png", "refine reads rectified views only");
   test::SyntheticScene scene = test::Photograph(test::QuarteredMaps(kSize, 1), views, 8);
   for (size_t i = 0; i < scene.views.size(); ++i) {
-    AddRoomLight(room, scene.truth, scene.plane, scene.views[i], scene.convention,
-                 scene.photographs[i].data());
+    AddEnvironmentLighting(environment, scene.truth, scene.plane, scene.views[i], scene.convention,
+                           scene.photographs[i].data());
   }
   Json names = Json::array();
   CommonOptions common;
@@ -148,24 +148,24 @@ TEST(RefineStage, AFlashThatWasMeasuredMovesNoFurtherThanItsAccuracyAllows) {
   EXPECT_LT(largest_offset_mm({0.6, 0.002}), 0.02);
 }
 
-TEST(RefineStage, ARoomThatIsFoundStandsInTheManifest) {
+TEST(RefineStage, EnvironmentLightingThatIsFoundStandsInTheManifest) {
   const test::TemporaryFolder folder;
   WriteCapture(folder.path(), 9, {{{0.1, 0.1, 0.12}, {0, 0, 0}, {0, 0, 0}, {0.05, 0.05, 0.05}}});
   const test::Outcome outcome = Refine(folder.path(), {"--correct-views", "always"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("room's light found"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("ambient illumination found"), std::string::npos) << outcome.out;
   const fs::path file = folder.path() / "glint/refine/manifest.json";
   const Manifest manifest = ReadManifest(file, "refine");
   EXPECT_EQ(manifest.metrics["correction"]["views_moved"], false);
   const auto corrections = ReadCorrections(file, manifest.data);
   ASSERT_EQ(corrections.size(), 9u);
-  for (const auto& [name, correction] : corrections) {  // what a room leaves is small
+  for (const auto& [name, correction] : corrections) {  // what environment lighting leaves is small
     EXPECT_FALSE(correction.shifts.any()) << name;
     EXPECT_NEAR(correction.exposure, 1, 0.03) << name;
     const Vec3d& offset = correction.light_offset_mm;
     EXPECT_LT(std::hypot(offset[0], offset[1], offset[2]), 3) << name;
   }
-  const Vec3d irradiance = ReadRoomLight(file, manifest.data).PlaneIrradiance();
+  const Vec3d irradiance = ReadEnvironmentLighting(file, manifest.data).PlaneIrradiance();
   for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(irradiance[c], c == 2 ? 0.38 : 0.31, 0.15);
 }
 
@@ -214,7 +214,7 @@ TEST(RefineStage, PartsInAnyOrderJoinToTheBytesOfTheWhole) {
   EXPECT_FALSE(fs::exists(parts / "glint/refine-3of5"));
 }
 
-// What corrections move at the parts' borders, and the room, are the whole's.
+// What corrections move at the parts' borders, and environment lighting, are the whole's.
 TEST(RefineStage, PartsOfCorrectedViewsJoinToTheBytesOfTheWhole) {
   const test::TemporaryFolder folder;
   for (const char* name : {"whole", "parts"}) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "fitting/render/render_room.h"
+#include "fitting/render/render_environment.h"
 #include "fitting/render/renderer.h"
 #include "fitting/view_correction/view_correction.h"
 #include "tests/fitting/bootstrap/synthetic_set.h"
@@ -55,12 +55,12 @@ struct DisturbedSet {
   ViewCorrections errors;  // what would make it right
 };
 
-// As below, with a room's light of any kind.
-inline DisturbedSet DisturbLitBy(const RoomLight& room, int count, double light_off,
-                                 double shift_texel, int size, bool together) {
+// As below, with environment lighting of any kind.
+inline DisturbedSet DisturbLitBy(const EnvironmentLighting& environment, int count,
+                                 double light_off, double shift_texel, int size, bool together) {
   DisturbedSet made{CrossedWaves(size), {}, {}};
   made.set = PhotographMaps(made.maps, count, false);
-  made.errors.room = room;
+  made.errors.environment = environment;
   for (int i = 0; i < count; ++i) {
     Photograph& photo = made.set.photographs[static_cast<size_t>(i)];
     ViewCorrection error;
@@ -75,7 +75,8 @@ inline DisturbedSet DisturbLitBy(const RoomLight& room, int count, double light_
     }
     const View real = CorrectedView(photo.view, error);
     RenderView(made.maps, made.set.plane, real, made.set.convention, photo.rgb.data());
-    AddRoomLight(room, made.maps, made.set.plane, real, made.set.convention, photo.rgb.data());
+    AddEnvironmentLighting(environment, made.maps, made.set.plane, real, made.set.convention,
+                           photo.rgb.data());
     // Looked up the other way: what a picture that is moved so shows.
     CornerShifts away;
     for (int k = 0; k < 4; ++k) {
@@ -89,13 +90,13 @@ inline DisturbedSet DisturbLitBy(const RoomLight& room, int count, double light_
 }
 
 // Every light `light_off` of its distance away from where it is believed to be, every picture moved
-// by up to `shift_texel` at its corners (at most a texel), an even room of kAmbientShare of the
-// flash if `ambient`. `together`: all lights in one direction.
+// by up to `shift_texel` at its corners (at most a texel), an even environment of kAmbientShare of
+// the flash if `ambient`. `together`: all lights in one direction.
 inline DisturbedSet Disturb(int count, double light_off, double shift_texel, bool ambient,
                             int size = 64, bool together = false) {
-  RoomLight room;
-  if (ambient) room.radiance_rgb = {{kAmbientShare, kAmbientShare, kAmbientShare}};
-  return DisturbLitBy(room, count, light_off, shift_texel, size, together);
+  EnvironmentLighting environment;
+  if (ambient) environment.radiance_rgb = {{kAmbientShare, kAmbientShare, kAmbientShare}};
+  return DisturbLitBy(environment, count, light_off, shift_texel, size, together);
 }
 
 }  // namespace glint::test

@@ -16,13 +16,13 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kViews = 6;
-constexpr int kTerms = 16;  // of the room's light
+constexpr int kTerms = 16;  // of the environment lighting
 
 // Corrections of every kind.
 VectorXd SomeCorrections(const ViewUnknowns& unknowns) {
   VectorXd x(unknowns.size());
   for (int i = 0; i < x.size(); ++i) x[i] = 0.02 * std::sin(2.3 * i + 1);
-  for (int c = 0; c < 3; ++c) x[unknowns.room(c)] = 0.05 + 0.01 * c;
+  for (int c = 0; c < 3; ++c) x[unknowns.environment(c)] = 0.05 + 0.01 * c;
   for (int v = 0; unknowns.kinds().registration && v < unknowns.views(); ++v) {
     for (int i = 0; i < 8; ++i) x[unknowns.shift(v) + i] *= 10;
   }

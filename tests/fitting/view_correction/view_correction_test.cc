@@ -97,7 +97,8 @@ TEST(CorrectViews, FindsTheAmbientLight) {
   ViewCorrectionOptions options = Few();
   const ViewCorrectionResult found = Correct(disturbed, options);
   for (size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(found.corrections.room.PlaneIrradiance()[c], 3.14159 * test::kAmbientShare, 0.035);
+    EXPECT_NEAR(found.corrections.environment.PlaneIrradiance()[c], 3.14159 * test::kAmbientShare,
+                0.035);
   }
 }
 
@@ -112,17 +113,18 @@ TEST(CorrectViews, AmbientIlluminationLeavesAlbedosUncertain) {
   };
   const ViewCorrections open = found(0.1), firm = found(0.001);
   // What is missing of it is in the albedos instead, by the flash's mean cosine of .8.
-  const double missing = test::kAmbientShare - open.room.PlaneIrradiance()[0] / 3.14159;
+  const double missing = test::kAmbientShare - open.environment.PlaneIrradiance()[0] / 3.14159;
   EXPECT_LT(std::abs(missing) / 0.8, 3 * open.systematic_sd.diffuse);
   EXPECT_LT(open.systematic_sd.diffuse, 0.1);
   EXPECT_LT(firm.systematic_sd.diffuse, 0.1 * open.systematic_sd.diffuse);
 }
 
-// Phones are now nearer, now farther; the room is not.
-TEST(CorrectViews, TheRoomsLightIsTheSameForViewsFromAnyDistance) {
+// Phones are now nearer, now farther; the surroundings are not.
+TEST(CorrectViews, EnvironmentLightingIsTheSameForViewsFromAnyDistance) {
   DisturbedSet disturbed = Disturb(12, 0, 0, false);
   disturbed.set.convention.falloff = LightFalloff::kInverseSquare;
-  const RoomLight room{{{test::kAmbientShare, test::kAmbientShare, test::kAmbientShare}}};
+  const EnvironmentLighting environment{
+      {{test::kAmbientShare, test::kAmbientShare, test::kAmbientShare}}};
   for (size_t i = 0; i < disturbed.set.photographs.size(); ++i) {
     Photograph& photograph = disturbed.set.photographs[i];
     View& view = photograph.view;
@@ -130,32 +132,32 @@ TEST(CorrectViews, TheRoomsLightIsTheSameForViewsFromAnyDistance) {
     for (double& power : view.light_rgb) power *= 5;
     RenderView(disturbed.maps, disturbed.set.plane, view, disturbed.set.convention,
                photograph.rgb.data());
-    AddRoomLight(room, disturbed.maps, disturbed.set.plane, view, disturbed.set.convention,
-                 photograph.rgb.data());
+    AddEnvironmentLighting(environment, disturbed.maps, disturbed.set.plane, view,
+                           disturbed.set.convention, photograph.rgb.data());
   }
   ViewCorrectionOptions options = Few();
   options.light = options.registration = false;
   const ViewCorrectionResult found = Correct(disturbed, options);
-  const Vec3d irradiance = found.corrections.room.PlaneIrradiance();
+  const Vec3d irradiance = found.corrections.environment.PlaneIrradiance();
   for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(irradiance[c], 3.14159 * test::kAmbientShare, 0.035);
 }
 
 // A window to the right that the sample's gloss sees too.
-TEST(CorrectViews, FindsWhereTheRoomsLightComesFrom) {
-  RoomLight room;
-  room.radiance_rgb.assign(9, {0, 0, 0});
-  room.radiance_rgb[0] = {0.05, 0.05, 0.06};
-  room.radiance_rgb[3] = {0.03, 0.02, 0.02};  // toward +x
-  const DisturbedSet disturbed = test::DisturbLitBy(room, 12, 0, 0, 64, false);
+TEST(CorrectViews, FindsWhereEnvironmentLightingComesFrom) {
+  EnvironmentLighting environment;
+  environment.radiance_rgb.assign(9, {0, 0, 0});
+  environment.radiance_rgb[0] = {0.05, 0.05, 0.06};
+  environment.radiance_rgb[3] = {0.03, 0.02, 0.02};  // toward +x
+  const DisturbedSet disturbed = test::DisturbLitBy(environment, 12, 0, 0, 64, false);
   ViewCorrectionOptions options = Few();
   options.light = options.registration = false;
   options.expected.ambient = options.expected.ambient_direction = 1;
-  options.room_terms = 9;
+  options.environment_terms = 9;
   const ViewCorrectionResult found = Correct(disturbed, options);
   EXPECT_LT(found.cost_after, 0.05 * found.cost_before);
-  const std::vector<Vec3d>& terms = found.corrections.room.radiance_rgb;
+  const std::vector<Vec3d>& terms = found.corrections.environment.radiance_rgb;
   for (size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(terms[3][c], room.radiance_rgb[3][c], 0.003);
+    EXPECT_NEAR(terms[3][c], environment.radiance_rgb[3][c], 0.003);
     EXPECT_NEAR(terms[1][c], 0, 0.003);  // toward +y
   }
 }
@@ -180,7 +182,7 @@ TEST(CorrectViews, FindsAnExposureThatIsOffWhereItMay) {
   for (float& value : disturbed.set.photographs[3].rgb) value *= 1.15f;
   ViewCorrectionOptions options = Few();
   options.registration = false;
-  options.room_terms = 0;
+  options.environment_terms = 0;
   EXPECT_EQ(Correct(disturbed, options).corrections.views[3].exposure, 1);
   options.exposure = true;
   const ViewCorrectionResult found = Correct(disturbed, options);
@@ -226,7 +228,7 @@ TEST(CorrectViews, HoldsWhatItIsToldToHold) {
   const DisturbedSet disturbed = Disturb(6, 0.1, 0.5, true);
   ViewCorrectionOptions options = Few();
   options.light = false;
-  options.room_terms = 0;
+  options.environment_terms = 0;
   const ViewCorrectionResult found = Correct(disturbed, options);
   bool moved = false;
   for (const ViewCorrection& c : found.corrections.views) {
@@ -235,7 +237,7 @@ TEST(CorrectViews, HoldsWhatItIsToldToHold) {
     moved = moved || c.shifts.any();
   }
   EXPECT_TRUE(moved);
-  EXPECT_FALSE(found.corrections.room.any());
+  EXPECT_FALSE(found.corrections.environment.any());
 }
 
 TEST(CorrectViews, AViewThatShowsNothingStaysAsItIs) {
@@ -259,7 +261,7 @@ TEST(CorrectViews, TheSameForAnyNumberOfThreads) {
   for (size_t i = 0; i < one.corrections.views.size(); ++i) {
     EXPECT_EQ(one.corrections.views[i].light_offset_mm, three.corrections.views[i].light_offset_mm);
   }
-  EXPECT_EQ(one.corrections.room.radiance_rgb, three.corrections.room.radiance_rgb);
+  EXPECT_EQ(one.corrections.environment.radiance_rgb, three.corrections.environment.radiance_rgb);
   EXPECT_EQ(one.corrections.systematic_sd, three.corrections.systematic_sd);
 }
 
@@ -270,7 +272,7 @@ TEST(CorrectViews, RefusesMapsOfAnotherSize) {
   wrong.expected.light = 0;
   EXPECT_THROW(Correct(disturbed, wrong), std::invalid_argument);
   wrong = Few();
-  wrong.room_terms = 5;
+  wrong.environment_terms = 5;
   EXPECT_THROW(Correct(disturbed, wrong), std::invalid_argument);
 }
 
@@ -284,7 +286,8 @@ TEST(Corrected, UndoesTheDisturbanceForAnyNumberOfThreads) {
     EXPECT_EQ(one.photographs[i].rgb, two.photographs[i].rgb);
     const View& view = one.photographs[i].view;
     RenderView(disturbed.maps, one.plane, view, one.convention, rendered.data());
-    AddRoomLight(one.room, disturbed.maps, one.plane, view, one.convention, rendered.data());
+    AddEnvironmentLighting(one.environment, disturbed.maps, one.plane, view, one.convention,
+                           rendered.data());
     for (size_t t = 0; t < rendered.size(); ++t) {
       if (one.photographs[i].mask[t % disturbed.maps.texels()] < 0.5f) continue;
       left += std::abs(rendered[t] - one.photographs[i].rgb[t]);

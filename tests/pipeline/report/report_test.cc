@@ -237,12 +237,12 @@ TEST_F(ReportTest, ShowsWhatCalibAdvisesOnceWithItsPictures) {
   EXPECT_THAT(html, Not(HasSubstr("<h3>guidance")));
 }
 
-TEST_F(ReportTest, ShowsWhatWasCorrectedAndTheRoom) {
+TEST_F(ReportTest, ShowsWhatWasCorrectedAndTheEnvironment) {
   ViewCorrection moved;
   moved.light_offset_mm = {0, 30, 0};
   moved.exposure = 1.25;
-  RoomLight room;
-  room.radiance_rgb = {{0.1, 0.1, 0.1}, {0, 0, 0}, {0, 0, 0}, {0.05, 0.05, 0.05}};
+  EnvironmentLighting environment;
+  environment.radiance_rgb = {{0.1, 0.1, 0.1}, {0, 0, 0}, {0, 0, 0}, {0.05, 0.05, 0.05}};
   const auto make = [&](const Json& data, const Json& correction) {
     OptionSet options;
     Stage stage(work() / "refine", {"refine", 1}, options, CommonOptions(),
@@ -256,10 +256,10 @@ TEST_F(ReportTest, ShowsWhatWasCorrectedAndTheRoom) {
 
   const Json still = Json::array({JsonOf("view_000", ViewCorrection())});
   const std::string lit =
-      make({{"views", views}, {"corrections", still}, {"room_light", JsonOf(room)}},
+      make({{"views", views}, {"corrections", still}, {"room_light", JsonOf(environment)}},
            {{"taken", true}, {"ambient_of_flash", 0.0375}});
   EXPECT_THAT(lit, HasSubstr("metrics.correction.ambient_of_flash\">0.0375<"));
-  EXPECT_THAT(lit, HasSubstr("the room as the sample sees it"));
+  EXPECT_THAT(lit, HasSubstr("the surroundings as the sample sees them"));
   EXPECT_THAT(lit, Not(HasSubstr("light turned")));
 
   const Json corrections =
@@ -268,7 +268,7 @@ TEST_F(ReportTest, ShowsWhatWasCorrectedAndTheRoom) {
       make({{"views", views}, {"corrections", corrections}}, {{"taken", true}});
   EXPECT_THAT(turned, HasSubstr("light turned"));
   EXPECT_THAT(turned, HasSubstr("data.corrections[1].exposure\">1.25<"));
-  EXPECT_THAT(turned, Not(HasSubstr("the room as the sample sees it")));
+  EXPECT_THAT(turned, Not(HasSubstr("the surroundings as the sample sees them")));
 }
 
 TEST_F(ReportTest, ADamagedResultIsRefused) {

@@ -1,4 +1,4 @@
-#include "fitting/reflectance/room_light.h"
+#include "fitting/reflectance/environment_lighting.h"
 
 #include <gtest/gtest.h>
 
@@ -21,9 +21,9 @@ TexelSvbrdf<double> Gloss(double roughness, double slope_x = 0, double slope_y =
 }
 
 // The terms' values toward a direction: what a mirror shows.
-RoomHarmonics Toward(double x, double y, double z) {
+EnvironmentHarmonics Toward(double x, double y, double z) {
   const double camera[3] = {-x, -y, z};
-  RoomHarmonics terms = RoomReflection(Gloss(0)).Specular(camera);
+  EnvironmentHarmonics terms = EnvironmentReflection(Gloss(0)).Specular(camera);
   for (double& term : terms) term /= std::numbers::pi;
   return terms;
 }
@@ -43,73 +43,73 @@ void ForEachCell(double polar0, double polar1,
   }
 }
 
-TEST(RoomLight, TermsAreOrthogonalAndOfMeanSquareOne) {
-  std::array<std::array<double, kRoomTerms>, kRoomTerms> products{};
+TEST(EnvironmentLighting, TermsAreOrthogonalAndOfMeanSquareOne) {
+  std::array<std::array<double, kEnvironmentTerms>, kEnvironmentTerms> products{};
   ForEachCell(0, std::numbers::pi, [&](const double d[3], double solid_angle) {
-    const RoomHarmonics terms = Toward(d[0], d[1], d[2]);
-    for (size_t i = 0; i < kRoomTerms; ++i) {
-      for (size_t j = 0; j < kRoomTerms; ++j) {
+    const EnvironmentHarmonics terms = Toward(d[0], d[1], d[2]);
+    for (size_t i = 0; i < kEnvironmentTerms; ++i) {
+      for (size_t j = 0; j < kEnvironmentTerms; ++j) {
         products[i][j] += terms[i] * terms[j] * solid_angle / (4 * std::numbers::pi);
       }
     }
   });
-  for (size_t i = 0; i < kRoomTerms; ++i) {
-    for (size_t j = 0; j < kRoomTerms; ++j) {
+  for (size_t i = 0; i < kEnvironmentTerms; ++i) {
+    for (size_t j = 0; j < kEnvironmentTerms; ++j) {
       EXPECT_NEAR(products[i][j], i == j ? 1 : 0, 2e-3) << i << ", " << j;
     }
   }
 }
 
-TEST(RoomLight, TermsStandInTheUsualOrder) {
+TEST(EnvironmentLighting, TermsStandInTheUsualOrder) {
   const double third = 1 / std::sqrt(3.0);
-  const RoomHarmonics terms = Toward(0.6, 0.48, 0.64);
+  const EnvironmentHarmonics terms = Toward(0.6, 0.48, 0.64);
   EXPECT_NEAR(terms[0], 1, 1e-6);
   EXPECT_NEAR(terms[1] * third, 0.48, 1e-6);  // y, z, x
   EXPECT_NEAR(terms[2] * third, 0.64, 1e-6);
   EXPECT_NEAR(terms[3] * third, 0.6, 1e-6);
 }
 
-TEST(RoomLight, DiffuseIsTheIrradianceOfTheTexelsPlane) {
+TEST(EnvironmentLighting, DiffuseIsTheIrradianceOfTheTexelsPlane) {
   const TexelSvbrdf<double> texel = Gloss(0.5, 0.3, -0.5);
-  RoomHarmonics irradiance{};
+  EnvironmentHarmonics irradiance{};
   ForEachCell(0, std::numbers::pi, [&](const double d[3], double solid_angle) {
     const double cosine = Dot(texel.normal, d);
     if (cosine <= 0) return;
-    const RoomHarmonics terms = Toward(d[0], d[1], d[2]);
-    for (size_t j = 0; j < kRoomTerms; ++j) irradiance[j] += terms[j] * cosine * solid_angle;
+    const EnvironmentHarmonics terms = Toward(d[0], d[1], d[2]);
+    for (size_t j = 0; j < kEnvironmentTerms; ++j) irradiance[j] += terms[j] * cosine * solid_angle;
   });
-  const RoomHarmonics diffuse = RoomReflection(texel).diffuse();
-  for (size_t j = 0; j < kRoomTerms; ++j) {
+  const EnvironmentHarmonics diffuse = EnvironmentReflection(texel).diffuse();
+  for (size_t j = 0; j < kEnvironmentTerms; ++j) {
     // Degrees above 2 are left out: the fourth has 1/24 of the first's weight.
     EXPECT_NEAR(diffuse[j], irradiance[j], j < 9 ? 2e-3 : 0.45) << j;
   }
 }
 
 // π times the radiance that a perfect reflector of this roughness sends toward the camera.
-RoomHarmonics Reflected(const TexelSvbrdf<double>& texel, const double camera[3]) {
+EnvironmentHarmonics Reflected(const TexelSvbrdf<double>& texel, const double camera[3]) {
   const double none[3] = {0, 0, 0};
-  RoomHarmonics sums{};
+  EnvironmentHarmonics sums{};
   ForEachCell(0, std::numbers::pi / 2, [&](const double d[3], double solid_angle) {
     const TexelGeometry<double> geometry = MakeTexelGeometry(d, camera, none, none);
     double brdf[3];
     EvaluateBrdf(texel, geometry, DiffuseWeight::kOne, brdf);
     const double weight = std::numbers::pi * brdf[0] * d[2] * solid_angle;
-    const RoomHarmonics terms = Toward(d[0], d[1], d[2]);
-    for (size_t j = 0; j < kRoomTerms; ++j) sums[j] += weight * terms[j];
+    const EnvironmentHarmonics terms = Toward(d[0], d[1], d[2]);
+    for (size_t j = 0; j < kEnvironmentTerms; ++j) sums[j] += weight * terms[j];
   });
   return sums;
 }
 
-TEST(RoomLight, SpecularIsWhatTheLobeReflects) {
+TEST(EnvironmentLighting, SpecularIsWhatTheLobeReflects) {
   const double front[3] = {0, 0, 1};
   const double tilted[3] = {std::sin(0.5), 0, std::cos(0.5)};
   for (const double roughness : {0.25, 0.4, 0.7}) {
     const TexelSvbrdf<double> texel = Gloss(roughness);
-    const RoomReflection reflection(texel);
-    const RoomHarmonics seen = reflection.Specular(front), real = Reflected(texel, front);
-    const RoomHarmonics seen_tilted = reflection.Specular(tilted);
-    const RoomHarmonics real_tilted = Reflected(texel, tilted);
-    for (size_t j = 0; j < kRoomTerms; ++j) {
+    const EnvironmentReflection reflection(texel);
+    const EnvironmentHarmonics seen = reflection.Specular(front), real = Reflected(texel, front);
+    const EnvironmentHarmonics seen_tilted = reflection.Specular(tilted);
+    const EnvironmentHarmonics real_tilted = Reflected(texel, tilted);
+    for (size_t j = 0; j < kEnvironmentTerms; ++j) {
       EXPECT_NEAR(seen[j], real[j], 0.04) << roughness << ", " << j;
       // The mirrored lobe is no longer round.
       EXPECT_NEAR(seen_tilted[j], real_tilted[j], 0.8) << roughness << ", " << j;
@@ -117,40 +117,40 @@ TEST(RoomLight, SpecularIsWhatTheLobeReflects) {
   }
 }
 
-TEST(RoomLight, AnEvenRoomLightsLikeAnAmbientLight) {
-  const RoomLight room{{{0.1, 0.2, 0.3}}};
+TEST(EnvironmentLighting, AnEvenEnvironmentLightsLikeAnAmbientLight) {
+  const EnvironmentLighting environment{{{0.1, 0.2, 0.3}}};
   View view;
   view.camera_in_sample_mm = view.light_in_sample_mm = {20, 10, 200};
   view.exposure = 2;
   View lit = view;
   lit.ambient_rgb = {0.1 * std::numbers::pi, 0.2 * std::numbers::pi, 0.3 * std::numbers::pi};
-  TexelGeometry<double> by_room = TexelGeometryInView(view, LightFalloff::kNone, 5.0, 5.0);
+  TexelGeometry<double> by_environment = TexelGeometryInView(view, LightFalloff::kNone, 5.0, 5.0);
   const TexelGeometry<double> by_ambient = TexelGeometryInView(lit, LightFalloff::kNone, 5.0, 5.0);
-  RoomReflection(Gloss(0.1, 0.4)).AddTo(room, view.exposure, &by_room);
+  EnvironmentReflection(Gloss(0.1, 0.4)).AddTo(environment, view.exposure, &by_environment);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(by_room.ambient[c], by_ambient.ambient[c], 1e-12);
-    EXPECT_NEAR(by_room.ambient_specular[c], by_ambient.ambient_specular[c], 1e-3);
-    EXPECT_NEAR(room.PlaneIrradiance()[static_cast<size_t>(c)],
+    EXPECT_NEAR(by_environment.ambient[c], by_ambient.ambient[c], 1e-12);
+    EXPECT_NEAR(by_environment.ambient_specular[c], by_ambient.ambient_specular[c], 1e-3);
+    EXPECT_NEAR(environment.PlaneIrradiance()[static_cast<size_t>(c)],
                 lit.ambient_rgb[static_cast<size_t>(c)], 1e-12);
   }
 }
 
-TEST(RoomLight, RadianceComesFromWhereTheTermsSay) {
-  const RoomLight room{{{0.2, 0.2, 0.2}, {0, 0, 0}, {0, 0, 0}, {0.1, 0, 0}}};
-  EXPECT_NEAR(room.RadianceFrom({1, 0, 0})[0], 0.2 + 0.1 * std::sqrt(3), 1e-12);
-  EXPECT_NEAR(room.RadianceFrom({-1, 0, 0})[0], 0.2 - 0.1 * std::sqrt(3), 1e-12);
-  EXPECT_NEAR(room.RadianceFrom({0, 0.6, 0.8})[0], 0.2, 1e-12);
-  EXPECT_NEAR(room.RadianceFrom({1, 0, 0})[1], 0.2, 1e-12);
+TEST(EnvironmentLighting, RadianceComesFromWhereTheTermsSay) {
+  const EnvironmentLighting environment{{{0.2, 0.2, 0.2}, {0, 0, 0}, {0, 0, 0}, {0.1, 0, 0}}};
+  EXPECT_NEAR(environment.RadianceFrom({1, 0, 0})[0], 0.2 + 0.1 * std::sqrt(3), 1e-12);
+  EXPECT_NEAR(environment.RadianceFrom({-1, 0, 0})[0], 0.2 - 0.1 * std::sqrt(3), 1e-12);
+  EXPECT_NEAR(environment.RadianceFrom({0, 0.6, 0.8})[0], 0.2, 1e-12);
+  EXPECT_NEAR(environment.RadianceFrom({1, 0, 0})[1], 0.2, 1e-12);
 }
 
-TEST(RoomLight, SumsHaveAllTermsOfBoth) {
-  RoomLight sum{{{1, 2, 3}}};
+TEST(EnvironmentLighting, SumsHaveAllTermsOfBoth) {
+  EnvironmentLighting sum{{{1, 2, 3}}};
   sum.Add({{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}});
   EXPECT_EQ(sum.radiance_rgb, (std::vector<Vec3d>{{2, 2, 3}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}));
   EXPECT_EQ(sum.degree(), 1);
   sum.Add({});
   EXPECT_EQ(sum.terms(), 4);
-  EXPECT_FALSE(RoomLight{}.any());
+  EXPECT_FALSE(EnvironmentLighting{}.any());
 }
 
 }  // namespace

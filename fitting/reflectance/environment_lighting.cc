@@ -1,4 +1,4 @@
-#include "fitting/reflectance/room_light.h"
+#include "fitting/reflectance/environment_lighting.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-using ByDegree = std::array<double, kRoomDegree + 1>;
+using ByDegree = std::array<double, kEnvironmentDegree + 1>;
 
 constexpr size_t TermOf(int degree, int m) {
   return static_cast<size_t>(degree * (degree + 1) + m);
@@ -20,9 +20,9 @@ double RatioOfFactorials(int degree, int m) {
   return ratio;
 }
 
-std::array<double, kRoomTerms> Scales() {
-  std::array<double, kRoomTerms> scales{};
-  for (int l = 0; l <= kRoomDegree; ++l) {
+std::array<double, kEnvironmentTerms> Scales() {
+  std::array<double, kEnvironmentTerms> scales{};
+  for (int l = 0; l <= kEnvironmentDegree; ++l) {
     scales[TermOf(l, 0)] = std::sqrt(2 * l + 1);
     for (int m = 1; m <= l; ++m) {
       const double scale = std::sqrt(2 * (2 * l + 1) * RatioOfFactorials(l, m));
@@ -34,9 +34,9 @@ std::array<double, kRoomTerms> Scales() {
 
 // (x, y, z): unit. By P_l^m(z) / sin^m, with sin^m·cos(m·azimuth) and sin^m·sin(m·azimuth) as
 // polynomials of x and y: nothing divides where the azimuth is undefined.
-RoomHarmonics HarmonicsAt(double x, double y, double z, int degree) {
-  static const std::array<double, kRoomTerms> kScales = Scales();
-  RoomHarmonics terms{};
+EnvironmentHarmonics HarmonicsAt(double x, double y, double z, int degree) {
+  static const std::array<double, kEnvironmentTerms> kScales = Scales();
+  EnvironmentHarmonics terms{};
   double cosine = 1, sine = 0, diagonal = 1;  // of m; diagonal: P_m^m / sin^m
   for (int m = 0; m <= degree; ++m) {
     double below = 0, at = diagonal;  // degrees l − 1 and l
@@ -56,7 +56,7 @@ RoomHarmonics HarmonicsAt(double x, double y, double z, int degree) {
   return terms;
 }
 
-RoomHarmonics Filtered(RoomHarmonics terms, const ByDegree& filter, int degree) {
+EnvironmentHarmonics Filtered(EnvironmentHarmonics terms, const ByDegree& filter, int degree) {
   for (int l = 0; l <= degree; ++l) {
     for (int m = -l; m <= l; ++m) terms[TermOf(l, m)] *= filter[static_cast<size_t>(l)];
   }
@@ -65,7 +65,7 @@ RoomHarmonics Filtered(RoomHarmonics terms, const ByDegree& filter, int degree) 
 
 // Irradiance of a plane by radiance; degrees above 2 reach less than a twentieth of a diffuse
 // surface.
-RoomHarmonics DiffuseHarmonics(const double n[3]) {
+EnvironmentHarmonics DiffuseHarmonics(const double n[3]) {
   ByDegree filter{};
   filter[0] = std::numbers::pi;
   filter[1] = 2 * std::numbers::pi / 3;
@@ -129,40 +129,41 @@ ByDegree SpecularFilter(double roughness) {
 
 }  // namespace
 
-bool AreRoomTerms(size_t terms) {
+bool AreEnvironmentTerms(size_t terms) {
   const auto degrees = static_cast<size_t>(std::lround(std::sqrt(static_cast<double>(terms))));
-  return terms <= kRoomTerms && degrees * degrees == terms;
+  return terms <= kEnvironmentTerms && degrees * degrees == terms;
 }
 
-int RoomLight::degree() const {
+int EnvironmentLighting::degree() const {
   return static_cast<int>(std::lround(std::sqrt(static_cast<double>(terms())))) - 1;
 }
 
-void RoomLight::Add(const RoomLight& more) {
+void EnvironmentLighting::Add(const EnvironmentLighting& more) {
   if (more.terms() > terms()) radiance_rgb.resize(more.radiance_rgb.size(), {0, 0, 0});
   for (size_t j = 0; j < more.radiance_rgb.size(); ++j) {
     for (size_t c = 0; c < 3; ++c) radiance_rgb[j][c] += more.radiance_rgb[j][c];
   }
 }
 
-Vec3d RoomLight::PlaneIrradiance() const {
+Vec3d EnvironmentLighting::PlaneIrradiance() const {
   constexpr double kUp[3] = {0, 0, 1};
-  return RoomIrradiance(*this, DiffuseHarmonics(kUp));
+  return EnvironmentIrradiance(*this, DiffuseHarmonics(kUp));
 }
 
-Vec3d RoomLight::RadianceFrom(const Vec3d& direction) const {
-  return RoomIrradiance(*this, HarmonicsAt(direction[0], direction[1], direction[2], kRoomDegree));
+Vec3d EnvironmentLighting::RadianceFrom(const Vec3d& direction) const {
+  return EnvironmentIrradiance(
+      *this, HarmonicsAt(direction[0], direction[1], direction[2], kEnvironmentDegree));
 }
 
-Vec3d RoomIrradiance(const RoomLight& room, std::span<const double> terms) {
+Vec3d EnvironmentIrradiance(const EnvironmentLighting& environment, std::span<const double> terms) {
   Vec3d sum{0, 0, 0};
-  for (size_t j = 0; j < room.radiance_rgb.size(); ++j) {
-    for (size_t c = 0; c < 3; ++c) sum[c] += terms[j] * room.radiance_rgb[j][c];
+  for (size_t j = 0; j < environment.radiance_rgb.size(); ++j) {
+    for (size_t c = 0; c < 3; ++c) sum[c] += terms[j] * environment.radiance_rgb[j][c];
   }
   return sum;
 }
 
-RoomReflection::RoomReflection(const TexelSvbrdf<double>& texel)
+EnvironmentReflection::EnvironmentReflection(const TexelSvbrdf<double>& texel)
     : normal_{texel.normal[0], texel.normal[1], texel.normal[2]},
       diffuse_(DiffuseHarmonics(texel.normal)),
       filter_(SpecularFilter(texel.roughness)) {
@@ -173,7 +174,7 @@ RoomReflection::RoomReflection(const TexelSvbrdf<double>& texel)
   }
 }
 
-RoomHarmonics RoomReflection::Specular(const double camera[3], int degree) const {
+EnvironmentHarmonics EnvironmentReflection::Specular(const double camera[3], int degree) const {
   const int least = std::min(degree, specular_degree_);
   const double twice = 2 * Dot(normal_, camera);
   return Filtered(HarmonicsAt(twice * normal_[0] - camera[0], twice * normal_[1] - camera[1],
@@ -181,11 +182,12 @@ RoomHarmonics RoomReflection::Specular(const double camera[3], int degree) const
                   filter_, least);
 }
 
-void RoomReflection::AddTo(const RoomLight& room, double exposure,
-                           TexelGeometry<double>* geometry) const {
-  if (!room.any()) return;
-  const Vec3d diffuse = RoomIrradiance(room, diffuse_);
-  const Vec3d specular = RoomIrradiance(room, Specular(geometry->camera, room.degree()));
+void EnvironmentReflection::AddTo(const EnvironmentLighting& environment, double exposure,
+                                  TexelGeometry<double>* geometry) const {
+  if (!environment.any()) return;
+  const Vec3d diffuse = EnvironmentIrradiance(environment, diffuse_);
+  const Vec3d specular =
+      EnvironmentIrradiance(environment, Specular(geometry->camera, environment.degree()));
   for (size_t c = 0; c < 3; ++c) {
     geometry->ambient[c] += exposure * diffuse[c];
     geometry->ambient_specular[c] += exposure * specular[c];

@@ -1,4 +1,4 @@
-#include "fitting/render/render_room.h"
+#include "fitting/render/render_environment.h"
 
 #include <cstddef>
 
@@ -8,11 +8,12 @@
 
 namespace glint {
 
-void AddRoomLight(const RoomLight& room, const SvbrdfMaps& maps, const SamplePlane& plane,
-                  const View& view, const ReflectanceConvention& convention, float* rgb_planar,
-                  int threads) {
+void AddEnvironmentLighting(const EnvironmentLighting& environment, const SvbrdfMaps& maps,
+                            const SamplePlane& plane, const View& view,
+                            const ReflectanceConvention& convention, float* rgb_planar,
+                            int threads) {
   kernel::CheckSizes(maps, plane);
-  if (!room.any()) return;
+  if (!environment.any()) return;
   View unlit = view;
   unlit.light_rgb = unlit.ambient_rgb = {0, 0, 0};
   ForEachPiece(plane.height, threads, [&](int row) {
@@ -21,7 +22,7 @@ void AddRoomLight(const RoomLight& room, const SvbrdfMaps& maps, const SamplePla
       const TexelSvbrdf<double> svbrdf = TexelAt(maps, texel);
       TexelGeometry<double> geometry = TexelGeometryInView<double>(
           unlit, convention.falloff, plane.x_mm(column), plane.y_mm(row));
-      RoomReflection(svbrdf).AddTo(room, view.exposure, &geometry);
+      EnvironmentReflection(svbrdf).AddTo(environment, view.exposure, &geometry);
       for (int c = 0; c < 3; ++c) {
         rgb_planar[static_cast<size_t>(c) * maps.texels() + texel] +=
             static_cast<float>(AmbientRadiance(svbrdf, geometry, convention.diffuse_weight, c));

@@ -1,5 +1,5 @@
-// Light that reaches the sample from the room and not from the flash, and what a texel reflects of
-// it.
+// Environment lighting: light that reaches the sample from elsewhere than the flash, and what a
+// texel reflects of it.
 //
 // Radiance over directions in real spherical harmonics about the sample's frame, in the usual order
 // (by degree l, then m from -l to l), scaled so that the mean of each term's square over all
@@ -22,51 +22,51 @@
 
 namespace glint {
 
-inline constexpr int kRoomDegree = 8;  // the highest
-inline constexpr int kRoomTerms = (kRoomDegree + 1) * (kRoomDegree + 1);
+inline constexpr int kEnvironmentDegree = 8;  // the highest
+inline constexpr int kEnvironmentTerms = (kEnvironmentDegree + 1) * (kEnvironmentDegree + 1);
 
 // Whether so many terms are all of some degrees, or none.
-bool AreRoomTerms(size_t terms);
+bool AreEnvironmentTerms(size_t terms);
 
-struct RoomLight {
-  std::vector<Vec3d> radiance_rgb;  // (degree + 1)² terms, at most kRoomTerms; empty: dark
+struct EnvironmentLighting {
+  std::vector<Vec3d> radiance_rgb;  // (degree + 1)² terms, at most kEnvironmentTerms; empty: dark
 
   int terms() const { return static_cast<int>(radiance_rgb.size()); }
   int degree() const;
   bool any() const { return !radiance_rgb.empty(); }
-  void Add(const RoomLight& more);
+  void Add(const EnvironmentLighting& more);
   // Of the sample's plane.
   Vec3d PlaneIrradiance() const;
   // From where the unit `direction` points.
   Vec3d RadianceFrom(const Vec3d& direction) const;
 };
 
-using RoomHarmonics = std::array<double, kRoomTerms>;
+using EnvironmentHarmonics = std::array<double, kEnvironmentTerms>;
 
 // What one texel reflects of each term, as irradiance.
-class RoomReflection {
+class EnvironmentReflection {
  public:
   // Normal and roughness are taken from `texel`.
-  explicit RoomReflection(const TexelSvbrdf<double>& texel);
+  explicit EnvironmentReflection(const TexelSvbrdf<double>& texel);
 
   // What its diffuse lobe receives (TexelGeometry::ambient), whatever the view …
-  const RoomHarmonics& diffuse() const { return diffuse_; }
+  const EnvironmentHarmonics& diffuse() const { return diffuse_; }
   // … and π times what its highlight sees (ambient_specular), seen from `camera`: unit, texel to
   // camera. Terms above `degree` are 0.
-  RoomHarmonics Specular(const double camera[3], int degree = kRoomDegree) const;
+  EnvironmentHarmonics Specular(const double camera[3], int degree = kEnvironmentDegree) const;
 
-  // Adds the room's light to what the texel receives in a view of `exposure`.
-  void AddTo(const RoomLight& room, double exposure, TexelGeometry<double>* geometry) const;
+  // Adds `environment` to what the texel receives in a view of `exposure`.
+  void AddTo(const EnvironmentLighting& environment, double exposure,
+             TexelGeometry<double>* geometry) const;
 
  private:
   double normal_[3];
-  RoomHarmonics diffuse_;
-  std::array<double, kRoomDegree + 1> filter_;
-  int specular_degree_ = kRoomDegree;  // above it the highlight is too wide to see any
+  EnvironmentHarmonics diffuse_;
+  std::array<double, kEnvironmentDegree + 1> filter_;
+  int specular_degree_ = kEnvironmentDegree;  // above it the highlight is too wide to see any
 };
 
-// What a room gives: Σ terms·radiance_rgb, of the terms that the room has; `terms` has as many at
-// least.
-Vec3d RoomIrradiance(const RoomLight& room, std::span<const double> terms);
+// Σ terms·radiance_rgb over the terms of `environment`; `terms` has as many at least.
+Vec3d EnvironmentIrradiance(const EnvironmentLighting& environment, std::span<const double> terms);
 
 }  // namespace glint

@@ -1,0 +1,19 @@
+// What maps reflect of environment lighting.
+#pragma once
+
+#include "fitting/reflectance/convention.h"
+#include "fitting/reflectance/environment_lighting.h"
+#include "fitting/reflectance/svbrdf_maps.h"
+#include "fitting/reflectance/view.h"
+
+namespace glint {
+
+// Adds what every texel reflects of `environment` toward the view's camera, times its exposure, to
+// `rgb_planar` (3·height·width values, as RenderView() gives). Any number of threads gives the same
+// bits. Throws std::invalid_argument unless the maps' size is the plane's.
+void AddEnvironmentLighting(const EnvironmentLighting& environment, const SvbrdfMaps& maps,
+                            const SamplePlane& plane, const View& view,
+                            const ReflectanceConvention& convention, float* rgb_planar,
+                            int threads = 1);
+
+}  // namespace glint
