@@ -25,7 +25,7 @@ struct CorrectionOptions {
   // Lights, exposures and registration are put right only where that explains so much more than a
   // environment lighting alone does: what remains of it is a little like lights that are off.
   double least_views_gain = 0.05;
-  // Corrections and refinements in turn, at most: texels in wrong minima hold the views back, and
+  // Corrections and refinements in turn, at most: texels in wrong minima keep the views back, and
   // refined with views that are nearly right they leave them.
   int rounds = 3;
   int working_size = 256;  // texels along the longer side; larger sets are averaged down

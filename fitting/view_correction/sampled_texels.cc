@@ -191,7 +191,7 @@ SampledTexels::Values SampledTexels::Starts() const {
 }
 
 TexelPrior SampledTexels::PriorOf(const Texel& texel) const {
-  return TexelPrior(TexelGaussian(texel.start, ErrorsOfStart()), hold_);
+  return TexelPrior(TexelGaussian(texel.start, ErrorsOfStart()), residual_sigma_);
 }
 
 void SampledTexels::AddEnvironment(const TexelSvbrdf<double>& svbrdf,

@@ -26,12 +26,12 @@ class SampledTexels {
   std::vector<bool> UsableViews() const;
 
   // What the start is worth: as one more observation with residuals of `residual_sigma`.
-  void SetHold(double residual_sigma) { hold_ = residual_sigma; }
+  void SetResidualSigma(double residual_sigma) { residual_sigma_ = residual_sigma; }
 
   using Values = std::vector<TexelValues>;
   Values Starts() const;
   // Fits every texel to the views at `x`, from `*values` and, unless null, from `others`: the
-  // better of both. Returns half the sum of squared residuals, the holds' included.
+  // better of both. Returns half the sum of squared residuals, the priors' included.
   double Fit(const Eigen::VectorXd& x, const Values* others, Values* values);
 
   // The normal equations of the views alone, the texels following: their Schur complement
@@ -87,7 +87,7 @@ class SampledTexels {
   const PhotographSet& set_;
   const ViewUnknowns& unknowns_;
   const int threads_;
-  double hold_ = 0.02;
+  double residual_sigma_ = 0.02;
   double residuals_ = 0;
   std::vector<Texel> texels_;
   std::vector<TexelFollowing> following_;

@@ -10,7 +10,7 @@
 #include "base/parallel/parallel.h"
 #include "fitting/view_correction/bounded_step.h"
 #include "fitting/view_correction/sampled_texels.h"
-#include "fitting/view_correction/view_holds.h"
+#include "fitting/view_correction/view_priors.h"
 #include "fitting/view_correction/view_unknowns.h"
 
 namespace glint {
@@ -52,8 +52,8 @@ class Adjustment {
   Adjustment(const Adjustment&) = delete;  // its parts refer to each other
   Adjustment& operator=(const Adjustment&) = delete;
 
-  // Residuals expected, and as how many a view's count.
-  void Weigh(double sigma, double evidence);
+  // Residuals expected, and the effective sample size of a view's.
+  void Weigh(double sigma, double effective_residuals);
   // From where it stands, until a step gains less than `tolerance` of the cost.
   void Descend(double tolerance);
   // Expects offsets like those found.
@@ -76,8 +76,8 @@ class Adjustment {
   SystematicDeviations PropagatedDeviations();
 
  private:
-  ViewHolds Holds() const { return ViewHolds(unknowns_, expected_, sampled_.UsableViews()); }
-  double HoldCost(const VectorXd& x, const SampledTexels::Values& values) const;
+  ViewPriors Priors() const { return ViewPriors(unknowns_, expected_, sampled_.UsableViews()); }
+  double PriorCost(const VectorXd& x, const SampledTexels::Values& values) const;
   NormalEquations Equations();
   std::vector<bool> Free() const;
   // Views that no texel is seen in stay as they are.
@@ -94,10 +94,10 @@ class Adjustment {
   double weight_ = 1;  // of that, against the expectations
 };
 
-void Adjustment::Weigh(double sigma, double evidence) {
-  sampled_.SetHold(sigma);
+void Adjustment::Weigh(double sigma, double effective_residuals) {
+  sampled_.SetResidualSigma(sigma);
   const double of_a_view = 3.0 * sampled_.size();
-  weight_ = std::min(1.0, evidence / of_a_view) / (sigma * sigma);
+  weight_ = std::min(1.0, effective_residuals / of_a_view) / (sigma * sigma);
   MoveTo(x_);
 }
 
@@ -113,18 +113,18 @@ double Adjustment::CostUncorrected() {
   return sampled_.Fit(none, &values_, &values);
 }
 
-void Adjustment::Learn() { expected_ = Holds().Learned(x_, options_.expected); }
+void Adjustment::Learn() { expected_ = Priors().Learned(x_, options_.expected); }
 
-double Adjustment::HoldCost(const VectorXd& x, const SampledTexels::Values& values) const {
+double Adjustment::PriorCost(const VectorXd& x, const SampledTexels::Values& values) const {
   const double level = sampled_.MeanSlope(values).norm() / expected_.level;
-  return Holds().Add(x, nullptr) + 0.5 * level * level;
+  return Priors().Add(x, nullptr) + 0.5 * level * level;
 }
 
 NormalEquations Adjustment::Equations() {
   NormalEquations equations = sampled_.Reduce(x_, values_);
   equations.hessian *= weight_;
   equations.gradient *= weight_;
-  Holds().Add(x_, &equations);
+  Priors().Add(x_, &equations);
   const MatrixXd by = sampled_.MeanSlopeByViews() / expected_.level;
   equations.hessian.noalias() += by.transpose() * by;
   equations.gradient.noalias() += by.transpose() * (sampled_.MeanSlope(values_) / expected_.level);
@@ -133,14 +133,14 @@ NormalEquations Adjustment::Equations() {
 
 std::vector<bool> Adjustment::Free() const {
   std::vector<bool> free(static_cast<size_t>(unknowns_.size()), true);
-  const auto hold = [&](int first, int count) { std::fill_n(free.begin() + first, count, false); };
+  const auto fix = [&](int first, int count) { std::fill_n(free.begin() + first, count, false); };
   const UnknownKinds& kinds = unknowns_.kinds();
   const std::vector<bool> usable = sampled_.UsableViews();
   for (int v = 0; v < unknowns_.views(); ++v) {
     if (usable[static_cast<size_t>(v)]) continue;
-    if (kinds.light) hold(unknowns_.light(v), 3);
-    if (kinds.exposure) hold(unknowns_.exposure(v), 1);
-    if (kinds.registration) hold(unknowns_.shift(v), 8);
+    if (kinds.light) fix(unknowns_.light(v), 3);
+    if (kinds.exposure) fix(unknowns_.exposure(v), 1);
+    if (kinds.registration) fix(unknowns_.shift(v), 8);
   }
   return free;
 }
@@ -176,7 +176,7 @@ VectorXd Adjustment::Step(NormalEquations equations, double damping) const {
 }
 
 void Adjustment::Descend(double tolerance) {
-  double total = weight_ * cost_ + HoldCost(x_, values_);
+  double total = weight_ * cost_ + PriorCost(x_, values_);
   double damping = 1e-3;
   std::unique_ptr<NormalEquations> equations;
   for (int i = 0; i < options_.iterations && damping < kMostDamping; ++i) {
@@ -185,7 +185,7 @@ void Adjustment::Descend(double tolerance) {
     if (!step.allFinite()) break;
     SampledTexels::Values values = sampled_.Follow(step, values_);
     const double cost = sampled_.Fit(x_ + step, &values_, &values);
-    const double after = weight_ * cost + HoldCost(x_ + step, values);
+    const double after = weight_ * cost + PriorCost(x_ + step, values);
     if (!(after < total)) {
       damping *= 8;
       continue;
@@ -217,7 +217,7 @@ ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
   const int texels = SampledCount(options.last_texels, set.photographs.size());
   const auto make = [&](bool registration) {
     auto made = std::make_unique<Adjustment>(set, maps, options, registration, texels, threads);
-    made->Weigh(sigma, options.evidence);
+    made->Weigh(sigma, options.effective_residuals);
     return made;
   };
   std::unique_ptr<Adjustment> fine = make(options.registration);
@@ -231,7 +231,7 @@ ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
   fine->Learn();
   const bool noise = fine->SharedNoise() < kLooksLikeNoise;
   fine->Weigh(std::max(kLeastSigma, fine->residual_rms()),
-              noise ? options.noise_evidence : options.evidence);
+              noise ? options.independent_residuals : options.effective_residuals);
   fine->Descend(kLastTolerance);
   ViewCorrectionResult result;
   result.cost_before = fine->CostUncorrected();
@@ -278,7 +278,9 @@ std::string ViewCorrectionOptions::Check() const {
   if (!above_zero(expected.registration_texel)) {
     return "the expected displacement must be above 0";
   }
-  if (!above_zero(evidence) || !above_zero(noise_evidence)) return "the evidence must be above 0";
+  if (!above_zero(effective_residuals) || !above_zero(independent_residuals)) {
+    return "effective sample sizes must be above 0";
+  }
   if (!(registration_gain >= 0 && registration_gain < 1)) {
     return "the gain required of displacements must be from 0 to 1";
   }
@@ -305,14 +307,14 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
   ViewCorrectionResult result;
   result.corrections.views.resize(set.photographs.size());
   if (coarse.empty()) return result;
-  coarse.Weigh(kFirstSigma, options.evidence);
+  coarse.Weigh(kFirstSigma, options.effective_residuals);
   if (known.views.empty()) {
     coarse.Descend(kFirstTolerance);
   } else {
     coarse.BeginWith(known);
   }
   coarse.Learn();
-  coarse.Weigh(std::max(kLeastSigma, coarse.residual_rms()), options.evidence);
+  coarse.Weigh(std::max(kLeastSigma, coarse.residual_rms()), options.effective_residuals);
   coarse.Descend(kSecondTolerance);
   result = Finish(set, maps, options, coarse, threads);
   if (options.registration) CentreShifts(&result.corrections.views);

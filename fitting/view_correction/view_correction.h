@@ -10,7 +10,7 @@
 // Pereyra, "The differentiation of pseudo-inverses and nonlinear least squares problems whose
 // variables separate", SIAM J. Numer. Anal. 1973), each by the search that refinement uses. Texels
 // solved for together with the views, as points are in a bundle adjustment, stay behind in minima
-// of the wrong views and hold these back: lights came back to a degree, not to a tenth.
+// of the wrong views and keep these back: lights came back to a degree, not to a tenth.
 //
 // Lights that are wrong alike (a flash elsewhere beside the lens) and normals that are tilted alike
 // explain matte photographs equally well. So what all lights share is expected apart, and the
@@ -67,11 +67,10 @@ struct ViewCorrectionOptions {
   bool exposure = false;
   bool registration = true;
   ViewExpectations expected;
-  // A view's residuals count together as so many against the expectations: they share the errors of
-  // model and maps, and many small ones would otherwise buy any correction …
-  double evidence = 20;
-  // … but as so many where what is left looks like noise, in which the channels have no share.
-  double noise_evidence = 200;
+  // Effective sample size of a view's residuals: they share the errors of model and maps …
+  double effective_residuals = 20;
+  // … where not even the channels have anything in common.
+  double independent_residuals = 200;
   int texels = 1024;          // sampled, about …
   int last_texels = 2304;     // … and for the last descent
   int iterations = 25;        // Levenberg–Marquardt steps of one descent, at most
@@ -100,7 +99,8 @@ struct ViewCorrectionResult {
   }
 };
 
-// `maps`: what the texels start from and are held to, as weakly as one more observation; of the
+// `maps`: what the texels start from, and the mean of their prior, which is worth one more
+// observation; of the
 // set's size. Displacements are relative to their mean over the views: what all share is the maps'
 // own place. The result does not depend on the number of threads.
 // `known`: corrections to begin with, of an earlier call with other maps; empty: none.

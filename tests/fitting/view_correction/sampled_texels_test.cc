@@ -7,7 +7,7 @@
 #include <cmath>
 #include <memory>
 
-#include "fitting/view_correction/view_holds.h"
+#include "fitting/view_correction/view_priors.h"
 #include "tests/fitting/view_correction/disturbed_set.h"
 
 namespace glint {
@@ -31,7 +31,7 @@ VectorXd SomeCorrections(const ViewUnknowns& unknowns) {
 
 // Sampled texels that follow the views closely.
 struct Case {
-  explicit Case(bool inverse_square, bool registration = true, double hold = 0.02)
+  explicit Case(bool inverse_square, bool registration = true, double residual_sigma = 0.02)
       : disturbed(test::Disturb(kViews, 0.05, 0.3, true)) {
     if (inverse_square) {
       disturbed.set.convention = {DiffuseWeight::kOneMinusSpecular, LightFalloff::kInverseSquare,
@@ -43,7 +43,7 @@ struct Case {
     unknowns = std::make_unique<ViewUnknowns>(disturbed.set,
                                               UnknownKinds{true, true, registration, kTerms});
     sampled = std::make_unique<SampledTexels>(disturbed.set, disturbed.maps, *unknowns, 36, 0.1, 1);
-    sampled->SetHold(hold);
+    sampled->SetResidualSigma(residual_sigma);
     x = SomeCorrections(*unknowns);
     values = sampled->Starts();
     for (int i = 0; i < 4; ++i) cost = sampled->Fit(x, nullptr, &values);
@@ -85,7 +85,7 @@ TEST(SampledTexels, AStepOfTheReducedEquationsLowersTheCost) {
   NormalEquations equations = c.sampled->Reduce(c.x, c.values);
   ViewExpectations wide;
   wide.light = wide.distance = wide.ambient = wide.exposure = 1;
-  ViewHolds(*c.unknowns, wide, c.sampled->UsableViews()).Add(c.x, &equations);
+  ViewPriors(*c.unknowns, wide, c.sampled->UsableViews()).Add(c.x, &equations);
   const VectorXd step = -equations.hessian.ldlt().solve(equations.gradient);
   SampledTexels::Values followed = c.sampled->Follow(step, c.values);
   EXPECT_LT(c.sampled->Fit(c.x + step, nullptr, &followed), 0.5 * c.cost);
@@ -128,25 +128,25 @@ TEST(SampledTexels, TexelsAndTheirMeanSlopeFollowAsPredicted) {
   EXPECT_NEAR(predicted[0], actual[0], 0.1 * std::abs(actual[0]));
 }
 
-TEST(ViewHolds, TheGradientIsThatOfTheCost) {
+TEST(ViewPriors, TheGradientIsThatOfTheCost) {
   Case c(false);
-  const ViewHolds holds(*c.unknowns, {}, c.sampled->UsableViews());
+  const ViewPriors priors(*c.unknowns, {}, c.sampled->UsableViews());
   NormalEquations equations(c.unknowns->size());
-  const double cost = holds.Add(c.x, &equations);
-  EXPECT_DOUBLE_EQ(cost, holds.Add(c.x, nullptr));
+  const double cost = priors.Add(c.x, &equations);
+  EXPECT_DOUBLE_EQ(cost, priors.Add(c.x, nullptr));
   for (int i = 0; i < c.unknowns->size(); ++i) {
     VectorXd above = c.x, below = c.x;
     above[i] += 1e-5;
     below[i] -= 1e-5;
-    const double difference = (holds.Add(above, nullptr) - holds.Add(below, nullptr)) / 2e-5;
+    const double difference = (priors.Add(above, nullptr) - priors.Add(below, nullptr)) / 2e-5;
     EXPECT_NEAR(equations.gradient[i], difference, 1e-5 * equations.gradient.norm()) << i;
   }
 }
 
 // Lights that are off together cost their common offset alone, whatever their directions.
-TEST(ViewHolds, ASharedOffsetIsNotHeldByEveryLight) {
+TEST(ViewPriors, ASharedOffsetCostsOnce) {
   Case c(false, false);
-  const ViewHolds holds(*c.unknowns, {}, c.sampled->UsableViews());
+  const ViewPriors priors(*c.unknowns, {}, c.sampled->UsableViews());
   VectorXd shared = VectorXd::Zero(c.unknowns->size());
   shared[c.unknowns->shared_light()] = 0.1;
   for (int v = 0; v < kViews; ++v) {
@@ -156,11 +156,11 @@ TEST(ViewHolds, ASharedOffsetIsNotHeldByEveryLight) {
         Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction) *
         Eigen::Vector3d(0.1, 0, 0);
   }
-  EXPECT_NEAR(holds.Add(shared, nullptr), 0.5 * (0.1 / 0.3) * (0.1 / 0.3), 1e-9);
-  EXPECT_EQ(holds.Learned(shared, {}).light, ViewExpectations{}.light);
+  EXPECT_NEAR(priors.Add(shared, nullptr), 0.5 * (0.1 / 0.3) * (0.1 / 0.3), 1e-9);
+  EXPECT_EQ(priors.Learned(shared, {}).light, ViewExpectations{}.light);
   VectorXd own = VectorXd::Zero(c.unknowns->size());
   for (int v = 0; v < kViews; ++v) own[c.unknowns->light(v) + 1] = v % 2 == 0 ? 0.2 : -0.2;
-  EXPECT_GT(holds.Learned(own, {}).light, 0.08);
+  EXPECT_GT(priors.Learned(own, {}).light, 0.08);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What is expected of the views' errors beforehand, as residuals.
+// The Gaussian priors of the views' errors, as residuals.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace glint {
 
-class ViewHolds {
+class ViewPriors {
  public:
   // `usable`: per view, whether it shows anything; the others are not expected anything of.
-  ViewHolds(const ViewUnknowns& unknowns, const ViewExpectations& expected,
-            const std::vector<bool>& usable);
+  ViewPriors(const ViewUnknowns& unknowns, const ViewExpectations& expected,
+             const std::vector<bool>& usable);
 
   // Half the sum of squares; added to `equations` unless they are null.
   double Add(const Eigen::VectorXd& x, NormalEquations* equations) const;

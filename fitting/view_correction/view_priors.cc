@@ -1,4 +1,4 @@
-#include "fitting/view_correction/view_holds.h"
+#include "fitting/view_correction/view_priors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,12 +28,12 @@ Eigen::Vector3d OwnOffset(const ViewUnknowns& unknowns, int view, const Eigen::V
 
 }  // namespace
 
-ViewHolds::ViewHolds(const ViewUnknowns& unknowns, const ViewExpectations& expected,
-                     const std::vector<bool>& usable)
+ViewPriors::ViewPriors(const ViewUnknowns& unknowns, const ViewExpectations& expected,
+                       const std::vector<bool>& usable)
     : unknowns_(unknowns), expected_(expected), usable_(usable) {}
 
 // Across the light's direction and along it.
-double ViewHolds::AddLight(int view, const Eigen::VectorXd& x, NormalEquations* equations) const {
+double ViewPriors::AddLight(int view, const Eigen::VectorXd& x, NormalEquations* equations) const {
   const Vec3d d = unknowns_.LightDirection(view);
   const Eigen::Vector3d direction(d[0], d[1], d[2]);
   const Eigen::Matrix3d along = direction * direction.transpose();
@@ -53,7 +53,7 @@ double ViewHolds::AddLight(int view, const Eigen::VectorXd& x, NormalEquations* 
   return cost;
 }
 
-double ViewHolds::Add(const Eigen::VectorXd& x, NormalEquations* equations) const {
+double ViewPriors::Add(const Eigen::VectorXd& x, NormalEquations* equations) const {
   double cost = 0;
   const int views = unknowns_.views();
   const UnknownKinds& kinds = unknowns_.kinds();
@@ -89,7 +89,8 @@ double ViewHolds::Add(const Eigen::VectorXd& x, NormalEquations* equations) cons
   return cost;
 }
 
-ViewExpectations ViewHolds::Learned(const Eigen::VectorXd& x, const ViewExpectations& least) const {
+ViewExpectations ViewPriors::Learned(const Eigen::VectorXd& x,
+                                     const ViewExpectations& least) const {
   if (!unknowns_.kinds().light) return least;
   double across = 0, along = 0, count = 0;
   for (int v = 0; v < unknowns_.views(); ++v) {
