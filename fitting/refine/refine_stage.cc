@@ -44,6 +44,23 @@ std::vector<RectifiedView> ChooseViews(const RectifiedSet& set, const RefineStar
 
 Json KnownOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+// What was estimated of the sample as a whole.
+Json EstimateJson(const RefineSummary& summary) {
+  return {{"residual_sigma", summary.residual_sigma},
+          {"residual_deviation", summary.residual_deviation},
+          {"model_discrepancy", summary.discrepancy},
+          {"effective_views", summary.effective_views},
+          {"substances", summary.substances},
+          {"roughness_spread", KnownOrNull(summary.roughness_spread)},
+          {"specular_spread", KnownOrNull(summary.specular_spread)},
+          {"diffuse_spread", KnownOrNull(summary.diffuse_spread)},
+          {"initialisation_error", summary.initialisation_error},
+          {"neighbour_spread", summary.neighbour_spread},
+          {"normal_spread", KnownOrNull(summary.normal_spread)},
+          {"exposure_spread", summary.exposure_spread},
+          {"light_spread", summary.light_spread}};
+}
+
 Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& views) {
   Json losses = Json::array();
   double sum = 0.0;
@@ -60,26 +77,15 @@ Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& vie
     }
     losses.push_back(entry);
   }
-  return {{"cost_before", summary.start_cost},
-          {"cost_after", summary.final_cost},
-          {"converged", summary.converged},
-          {"from_other_start", summary.other_start},
-          {"from_neighbour", summary.neighbour},
-          {"residual_sigma", summary.residual_sigma},
-          {"residual_deviation", summary.residual_deviation},
-          {"model_discrepancy", summary.discrepancy},
-          {"effective_views", summary.effective_views},
-          {"substances", summary.substances},
-          {"roughness_spread", KnownOrNull(summary.roughness_spread)},
-          {"specular_spread", KnownOrNull(summary.specular_spread)},
-          {"diffuse_spread", KnownOrNull(summary.diffuse_spread)},
-          {"initialisation_error", summary.initialisation_error},
-          {"neighbour_spread", summary.neighbour_spread},
-          {"normal_spread", KnownOrNull(summary.normal_spread)},
-          {"exposure_spread", summary.exposure_spread},
-          {"light_spread", summary.light_spread},
-          {"log_l1", usable > 0 ? sum / usable : 0.0},
-          {"views", losses}};
+  Json metrics = {{"cost_before", summary.start_cost},
+                  {"cost_after", summary.final_cost},
+                  {"converged", summary.converged},
+                  {"from_other_start", summary.other_start},
+                  {"from_neighbour", summary.neighbour}};
+  metrics.update(EstimateJson(summary));
+  metrics["log_l1"] = usable > 0 ? sum / usable : 0.0;
+  metrics["views"] = losses;
+  return metrics;
 }
 
 // What each view is to be corrected by: what was found before refinement and, beside it, the views'
@@ -276,19 +282,10 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
 // between processors with different vector units.
 std::string EstimateHash(const Sample& sample) {
   const RefineSummary& summary = sample.estimate.summary;
-  Json json = {{"residual_sigma", summary.residual_sigma},
-               {"residual_deviation", summary.residual_deviation},
-               {"roughness_spread", KnownOrNull(summary.roughness_spread)},
-               {"specular_spread", KnownOrNull(summary.specular_spread)},
-               {"diffuse_spread", KnownOrNull(summary.diffuse_spread)},
-               {"initialisation_error", summary.initialisation_error},
-               {"neighbour_spread", summary.neighbour_spread},
-               {"normal_spread", KnownOrNull(summary.normal_spread)},
-               {"exposure_spread", summary.exposure_spread},
-               {"light_spread", summary.light_spread},
-               {"shared_light", JsonOf(summary.shared_light)},
-               {"room_light", JsonOf(sample.correction.corrections.environment)},
-               {"systematic_sd", JsonOf(sample.correction.corrections.systematic_sd)}};
+  Json json = EstimateJson(summary);
+  json.update({{"shared_light", JsonOf(summary.shared_light)},
+               {"environment", JsonOf(sample.correction.corrections.environment)},
+               {"systematic_sd", JsonOf(sample.correction.corrections.systematic_sd)}});
   AddCorrections(Corrections(sample.correction, summary), sample.views, &json);
   return HashBytes(json.dump());
 }
