@@ -86,7 +86,7 @@ int Measure(const std::filesystem::path& folder, int texels) {
       "decoding             {:8.2f}\nlight: paper sampled {:8.2f}\nlight: solved        {:8.2f}  "
       "({} spots, {})\nrectify: linearised  {:8.2f}\nrectify: resampled   {:8.2f}\n(board found    "
       " "
-      "    {:8.2f}, not counted)\nlight and rectification / decoding: {:.2f} (wanted: less than "
+      "    {:8.2f}, not counted)\nlight and rectification / decoding: {:.2f} (target: less than "
       "6)\n",
       problem.photos.size(), pixels / 1e6 / static_cast<double>(problem.photos.size()), texels,
       texels, times.decode, times.sample, times.solve, light.inliers,

@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-// What is to be put right, and what was found of it.
+// What is corrected, and what was found of it.
 struct Finding {
   ViewCorrectionOptions options;
   ViewCorrectionResult result;

@@ -22,11 +22,11 @@ struct CorrectionOptions {
   double least_gain = 0.02;
   // Terms of environment lighting where that is all that is corrected: polished samples mirror it.
   int environment_terms = kEnvironmentTerms;
-  // Lights, exposures and registration are put right only where that explains so much more than a
+  // Lights, exposures and registration are corrected only where that explains so much more than
   // environment lighting alone does: what remains of it is a little like lights that are off.
   double least_views_gain = 0.05;
-  // Corrections and refinements in turn, at most: texels in wrong minima keep the views back, and
-  // refined with views that are nearly right they leave them.
+  // Corrections and refinements in turn, at most: texels in wrong minima keep views from their
+  // correct values, and leave these minima once they are refined with views that are nearly right.
   int rounds = 3;
   int working_size = 256;  // texels along the longer side; larger sets are averaged down
   ViewCorrectionOptions view;

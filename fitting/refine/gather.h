@@ -13,9 +13,9 @@
 
 namespace glint {
 
-// Replaces what `observations` holds by those of at most a batch of texels, each in its lane. The
-// environment lighting reaches them as if they were as `maps` say (it changes slowly with the
-// normal, and is faint). `views`: those to take, by their place in `problem`.
+// Replaces what `observations` holds by those of at most a batch of texels, each in its lane.
+// Environment lighting is reflected with the normals and roughness of `maps` (it changes slowly
+// with the normal, and is faint). `views`: those to take, by their place in `problem`.
 void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps,
                         std::span<const size_t> texels, std::span<const int> views,
                         BatchObservations* observations);

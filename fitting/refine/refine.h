@@ -9,7 +9,7 @@
 //      rough with too little specular is a minimum of its own (Gao et al. 2019, Fig. 16) that more
 //      photographs do not cure.
 //   3. Every texel tries the solutions of its neighbours, in checkerboard order, its prior now
-//      holding what they know.
+//      including what these tell of it.
 //   4. Standard deviations from the final normal equations.
 // Texels are independent within a step, so the result depends neither on the number of threads nor
 // on where the sample is cut into rows (refine_rows.h).

@@ -459,7 +459,7 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   Fit(&sampling);
   learns_normals_ = false;
   if (all_views_.size() < kLeastValidatedViews) return;
-  HoldViews(kExpectedDiffuseSpread, sampling);
+  FreezeViews(kExpectedDiffuseSpread, sampling);
   ChooseSpreads(Sample(kSampled, solver, threads));
   ChooseNeighbourSpread(kSampled, solver, threads);
   if (deviations_.any()) {
@@ -468,12 +468,12 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
     const double chosen = std::exchange(means_.diffuse_spread, kUnknownSpread);
     finds_views_ = true;
     Fit(&sampling);
-    HoldViews(chosen, sampling);
+    FreezeViews(chosen, sampling);
   }
   Fit(&sampling);
 }
 
-void SampleModel::HoldViews(double diffuse_spread, const Sampling& sampling) {
+void SampleModel::FreezeViews(double diffuse_spread, const Sampling& sampling) {
   finds_views_ = false;
   UpdateResiduals(sampling);
   MeanBySubstance mean(InitialMeans(*part_));

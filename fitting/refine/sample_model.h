@@ -123,7 +123,7 @@ class SampleModel {
   void UpdateDeviations(const Sampling& sampling);
   // From now on views stay as they are, the residuals' variance is measured rather than believed,
   // and diffuse albedo is shared too, from what was found of it without.
-  void HoldViews(double diffuse_spread, const Sampling& sampling);
+  void FreezeViews(double diffuse_spread, const Sampling& sampling);
   SampleWorth WorthOf(const Sampling& sampling) const;
   // By cross-validation, sample_spreads.cc.
   // visit(model, sampling, fitted, held_out) with what is found of the sampled texels without the

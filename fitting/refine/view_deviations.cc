@@ -11,9 +11,9 @@ namespace {
 constexpr double kExpectedViews = 2;
 constexpr double kMostDeviationStep = 0.2;  // of a deviation, in one step
 // What all views share is no deviation of theirs: exposures' mean is the albedos', and the lights'
-// is the flash's offset (shared_light.h). The mean is held to 0 by so many times a view's own
-// precision.
-constexpr double kHeldMean = 1e3;
+// is the flash's offset (shared_light.h). The mean has a prior at 0, of so many times a
+// view's own precision.
+constexpr double kMeanPrecision = 1e3;
 
 using TexelMatrix = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
@@ -156,7 +156,7 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
       hessian(at(v, i), at(v, i)) += precision;
       if (shading) continue;
       gradient[at(v, i)] -= precision * values_[static_cast<size_t>(v)][static_cast<size_t>(i)];
-      for (int w = 0; w < views; ++w) hessian(at(w, i), at(v, i)) += kHeldMean * precision;
+      for (int w = 0; w < views; ++w) hessian(at(w, i), at(v, i)) += kMeanPrecision * precision;
     }
   }
   const Eigen::LDLT<Eigen::MatrixXd> solver(hessian);

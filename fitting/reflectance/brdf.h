@@ -47,7 +47,7 @@ struct TexelGeometry {
   T fresnel;              // the power of two in F: depends on the directions only
   T irradiance[3];        // exposure·E
   T ambient[3];           // exposure·ambient, as the diffuse lobe receives it …
-  T ambient_specular[3];  // … and as the specular one does: the same but under a
+  T ambient_specular[3];  // … and as the specular one does: the same except under
                           // EnvironmentLighting
 };
 

@@ -286,15 +286,15 @@ void BatchSearch::FitAlbedosOf(LaneBits lanes, Candidates* candidates) {
     // What the prior says of normal and roughness; of albedos, it is in the fit.
     TexelValues rest = candidate.values;
     std::copy_n(prior.mean().begin() + kAlbedos, static_cast<int>(kRough), rest.begin() + kAlbedos);
-    const double held = prior.SquaredNorm(rest);
-    double holds[kRough];
-    for (int i = 0; i < kRough; ++i) holds[i] = prior.weight(i);
+    const double prior_squares = prior.SquaredNorm(rest);
+    double prior_weights[kRough];
+    for (int i = 0; i < kRough; ++i) prior_weights[i] = prior.weight(i);
     AlbedoSums of_lane[3];
     for (int c = 0; c < 3; ++c) of_lane[c] = sums.Of(c, lane);
-    const AlbedoFit fit = FitAlbedos(of_lane, evaluator_.options().diffuse_weight, holds,
+    const AlbedoFit fit = FitAlbedos(of_lane, evaluator_.options().diffuse_weight, prior_weights,
                                      prior.mean(), &candidate.values);
-    candidate.before = fit.before + held;
-    candidate.after = fit.after + held;
+    candidate.before = fit.before + prior_squares;
+    candidate.after = fit.after + prior_squares;
   });
 }
 

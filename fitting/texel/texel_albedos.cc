@@ -39,8 +39,8 @@ double SolveInUnitSquare(const AlbedoSums& q, double* a, double* b) {
 
 }  // namespace
 
-AlbedoFit FitAlbedos(const AlbedoSums sums[3], DiffuseWeight diffuse_weight, const double holds[6],
-                     const TexelValues& toward, TexelValues* texel) {
+AlbedoFit FitAlbedos(const AlbedoSums sums[3], DiffuseWeight diffuse_weight,
+                     const double prior_weights[6], const TexelValues& toward, TexelValues* texel) {
   AlbedoFit fit;
   for (int c = 0; c < 3; ++c) {
     double& diffuse = (*texel)[DiffuseParameter(c)];
@@ -51,15 +51,15 @@ AlbedoFit FitAlbedos(const AlbedoSums sums[3], DiffuseWeight diffuse_weight, con
     const double specular_start = toward[SpecularParameter(c)];
     const double lobe_start =
         toward[DiffuseParameter(c)] * (one_minus ? 1.0 - specular_start : 1.0);
-    const double diffuse_hold = holds[DiffuseParameter(c)];
-    const double specular_hold = holds[SpecularParameter(c)];
+    const double diffuse_prior = prior_weights[DiffuseParameter(c)];
+    const double specular_prior = prior_weights[SpecularParameter(c)];
     AlbedoSums q = sums[c];
-    q.aa += diffuse_hold;
-    q.ay += diffuse_hold * lobe_start;
-    q.bb += specular_hold;
-    q.by += specular_hold * specular_start;
+    q.aa += diffuse_prior;
+    q.ay += diffuse_prior * lobe_start;
+    q.bb += specular_prior;
+    q.by += specular_prior * specular_start;
     q.yy +=
-        diffuse_hold * lobe_start * lobe_start + specular_hold * specular_start * specular_start;
+        diffuse_prior * lobe_start * lobe_start + specular_prior * specular_start * specular_start;
     fit.before += Squares(q, lobe, specular);
     fit.after += SolveInUnitSquare(q, &lobe, &specular);
     diffuse = lobe;

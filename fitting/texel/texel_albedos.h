@@ -13,14 +13,14 @@ struct AlbedoSums {
 };
 
 // Albedos that fit the texel best with its normal and roughness as they are: per channel a 2×2
-// least squares of I + 0.01 relative to itself (the logarithm to first order), held toward the
-// albedos of `toward` by `holds` (weights of squared differences, in the parameters' order), and
-// kept in [0, 1]. Clipped observations do not take part.
+// least squares of I + 0.01 relative to itself (the logarithm to first order), with a prior
+// toward the albedos of `toward` (`prior_weights`: of squared differences, in the parameters'
+// order), and kept in [0, 1]. Clipped observations do not take part.
 struct AlbedoFit {
   double before = 0;  // sum of squared (relative) residuals with the albedos given …
   double after = 0;   // … and with those found
 };
-AlbedoFit FitAlbedos(const AlbedoSums sums[3], DiffuseWeight diffuse_weight, const double holds[6],
-                     const TexelValues& toward, TexelValues* texel);
+AlbedoFit FitAlbedos(const AlbedoSums sums[3], DiffuseWeight diffuse_weight,
+                     const double prior_weights[6], const TexelValues& toward, TexelValues* texel);
 
 }  // namespace glint

@@ -216,7 +216,7 @@ void Run(const AutoencoderTrainOptions& options, int turns) {
     theirs.Add("plain", kSteps * options.batch, plain.Turn());
     ours.Add("ours", kOurSteps * options.batch, OurTurn(options));
   }
-  std::printf("ratio of medians: %.1f by processor time, %.1f on the wall (wanted: 5 or more)\n",
+  std::printf("ratio of medians: %.1f by processor time, %.1f on the wall (target: 5 or more)\n",
               Median(ours.processor) / Median(theirs.processor),
               Median(ours.wall) / Median(theirs.wall));
 }

@@ -1,5 +1,5 @@
 // What was corrected, in a manifest: data.corrections, data.shared_light
-// and data.room_light (docs/manifest.md).
+// and data.room_light, environment lighting (docs/manifest.md; the key is older than the name).
 #pragma once
 
 #include <filesystem>

@@ -25,7 +25,8 @@ class SampledTexels {
   // Per view, whether any texel sees it.
   std::vector<bool> UsableViews() const;
 
-  // What the start is worth: as one more observation with residuals of `residual_sigma`.
+  // Standard deviation of a residual. The prior toward the initial maps weighs as one more
+  // observation with it.
   void SetResidualSigma(double residual_sigma) { residual_sigma_ = residual_sigma; }
 
   using Values = std::vector<TexelValues>;

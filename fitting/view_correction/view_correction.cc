@@ -133,14 +133,16 @@ NormalEquations Adjustment::Equations() {
 
 std::vector<bool> Adjustment::Free() const {
   std::vector<bool> free(static_cast<size_t>(unknowns_.size()), true);
-  const auto fix = [&](int first, int count) { std::fill_n(free.begin() + first, count, false); };
+  const auto freeze = [&](int first, int count) {
+    std::fill_n(free.begin() + first, count, false);
+  };
   const UnknownKinds& kinds = unknowns_.kinds();
   const std::vector<bool> usable = sampled_.UsableViews();
   for (int v = 0; v < unknowns_.views(); ++v) {
     if (usable[static_cast<size_t>(v)]) continue;
-    if (kinds.light) fix(unknowns_.light(v), 3);
-    if (kinds.exposure) fix(unknowns_.exposure(v), 1);
-    if (kinds.registration) fix(unknowns_.shift(v), 8);
+    if (kinds.light) freeze(unknowns_.light(v), 3);
+    if (kinds.exposure) freeze(unknowns_.exposure(v), 1);
+    if (kinds.registration) freeze(unknowns_.shift(v), 8);
   }
   return free;
 }

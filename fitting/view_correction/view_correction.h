@@ -1,6 +1,6 @@
 // What calibration and rectification left wrong in the views, found from the photographs alone:
 // where each flash was, what environment lighting adds, and by how much each picture is displaced
-// on the // sample:
+// on the sample:
 //
 //   min over views  Σ_texels min over texel Σ_views ρ( log(R(texel; view) + 0.01) − log(I + 0.01) )
 //       + expectations of the views' errors
@@ -10,7 +10,8 @@
 // Pereyra, "The differentiation of pseudo-inverses and nonlinear least squares problems whose
 // variables separate", SIAM J. Numer. Anal. 1973), each by the search that refinement uses. Texels
 // solved for together with the views, as points are in a bundle adjustment, stay behind in minima
-// of the wrong views and keep these back: lights came back to a degree, not to a tenth.
+// of the wrong views and keep these from their correct values: lights came back to a degree, not to
+// a tenth.
 //
 // Lights that are wrong alike (a flash elsewhere beside the lens) and normals that are tilted alike
 // explain matte photographs equally well. So what all lights share is expected apart, and the
@@ -61,15 +62,16 @@ struct ViewExpectations {
 
 struct ViewCorrectionOptions {
   bool light = true;
-  // Of the environment lighting (environment_lighting.h); 0: none, 1: an even one. Lights that are
-  // off and an environment that is not even explain some of the same.
+  // Terms of environment lighting by channel (environment_lighting.h); 0: none, 1: uniform. Lights
+  // that are off and environment lighting that is not uniform explain some of the same.
   int environment_terms = 1;
   bool exposure = false;
   bool registration = true;
   ViewExpectations expected;
-  // Effective sample size of a view's residuals: they share the errors of model and maps …
+  // Effective sample size of a view's residuals. Errors of model and maps are common to many of
+  // them; at their full number they would outweigh any prior.
   double effective_residuals = 20;
-  // … where not even the channels have anything in common.
+  // The same where what remains looks like noise: without inter-channel correlation.
   double independent_residuals = 200;
   int texels = 1024;          // sampled, about …
   int last_texels = 2304;     // … and for the last descent
@@ -100,11 +102,10 @@ struct ViewCorrectionResult {
 };
 
 // `maps`: what the texels start from, and the mean of their prior, which is worth one more
-// observation; of the
-// set's size. Displacements are relative to their mean over the views: what all share is the maps'
-// own place. The result does not depend on the number of threads.
-// `known`: corrections to begin with, of an earlier call with other maps; empty: none.
-// Throws std::invalid_argument when sizes or options are wrong.
+// observation; of the set's size. Displacements are relative to their mean over the views: what all
+// share is the maps' own place. The result does not depend on the number of threads. `known`:
+// corrections to begin with, of an earlier call with other maps; empty: none. Throws
+// std::invalid_argument when sizes or options are wrong.
 ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& maps,
                                   const ViewCorrectionOptions& options, int threads,
                                   const ViewCorrections& known = {});

@@ -10,7 +10,7 @@ namespace glint {
 
 class ViewPriors {
  public:
-  // `usable`: per view, whether it shows anything; the others are not expected anything of.
+  // `usable`: per view, whether it shows anything; the others have no prior of their own.
   ViewPriors(const ViewUnknowns& unknowns, const ViewExpectations& expected,
              const std::vector<bool>& usable);
 

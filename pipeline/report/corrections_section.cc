@@ -42,8 +42,7 @@ Image EnvironmentPicture(const EnvironmentLighting& environment) {
 std::string EnvironmentFigure(const EnvironmentLighting& environment) {
   const std::string caption =
       "the surroundings as the sample sees them: straight up in the middle, the horizon at the "
-      "edge, "
-      "x right, y up; brightest as white, gamma 2.2";
+      "edge, x right, y up; brightest as white, gamma 2.2";
   return "<div class=\"pictures\"><figure>" +
          ImageHtml(PngUri(EnvironmentPicture(environment)), caption) + "<figcaption>" +
          HtmlText(caption) + "</figcaption></figure></div>\n";

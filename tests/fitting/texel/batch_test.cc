@@ -433,14 +433,14 @@ TEST(BatchKernel, AlbedoSumsLeadToTheAlbedosThatWerePhotographed) {
     seen.lanes.Observe();
     BatchAlbedoSums sums;
     kernel::BatchKernelFor(set).albedo_sums(seen.lanes.Views(), seen.lanes.values, &sums);
-    const double holds[kRough] = {};
+    const double prior_weights[kRough] = {};
     for (int lane = 0; lane < kBatch; ++lane) {
       const size_t k = static_cast<size_t>(lane);
       AlbedoSums of_lane[3];
       for (int c = 0; c < 3; ++c) of_lane[c] = sums.Of(c, lane);
       TexelValues texel = seen.lanes.texels[k];
       const AlbedoFit fit =
-          FitAlbedos(of_lane, seen.lanes.options.diffuse_weight, holds, texel, &texel);
+          FitAlbedos(of_lane, seen.lanes.options.diffuse_weight, prior_weights, texel, &texel);
       EXPECT_LT(fit.after, 1e-3 * fit.before);
       for (int p = 0; p < kRough; ++p) EXPECT_NEAR(texel[p], seen.truth[k][p], 5e-3);
     }

@@ -224,7 +224,7 @@ TEST(CorrectViews, LessNoiseIsNoReasonToMovePictures) {
   EXPECT_LT(found.GainOver(found.cost_before), 0.02);
 }
 
-TEST(CorrectViews, HoldsWhatItIsToldToHold) {
+TEST(CorrectViews, LeavesAloneWhatIsNotToBeCorrected) {
   const DisturbedSet disturbed = Disturb(6, 0.1, 0.5, true);
   ViewCorrectionOptions options = Few();
   options.light = false;
