@@ -283,8 +283,12 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
 std::string EstimateHash(const Sample& sample) {
   const RefineSummary& summary = sample.estimate.summary;
   Json json = EstimateJson(summary);
+  // Not part of it: parts that builds of this stage version made must go on fitting together.
+  for (const char* field : {"model_discrepancy", "effective_views", "substances"}) {
+    json.erase(field);
+  }
   json.update({{"shared_light", JsonOf(summary.shared_light)},
-               {"environment", JsonOf(sample.correction.corrections.environment)},
+               {"room_light", JsonOf(sample.correction.corrections.environment)},
                {"systematic_sd", JsonOf(sample.correction.corrections.systematic_sd)}});
   AddCorrections(Corrections(sample.correction, summary), sample.views, &json);
   return HashBytes(json.dump());

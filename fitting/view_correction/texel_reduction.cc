@@ -54,8 +54,9 @@ void TexelReduction::Add(const BatchResiduals& residuals, int view, int channel,
         by * by_environment.transpose();
   }
   equations.Add(at(BatchResiduals::kResidual), by_views);
-  if (environment_terms_ > 0)
+  if (environment_terms_ > 0) {
     AddEnvironment(channel, at(BatchResiduals::kResidual), by_views, by_environment);
+  }
 }
 
 // The terms of environment lighting are many and dense.

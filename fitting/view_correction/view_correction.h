@@ -103,9 +103,9 @@ struct ViewCorrectionResult {
 
 // `maps`: what the texels start from, and the mean of their prior, which is worth one more
 // observation; of the set's size. Displacements are relative to their mean over the views: what all
-// share is the maps' own place. The result does not depend on the number of threads. `known`:
-// corrections to begin with, of an earlier call with other maps; empty: none. Throws
-// std::invalid_argument when sizes or options are wrong.
+// share is the maps' own place. The result does not depend on the number of threads.
+// `known`: corrections to begin with, of an earlier call with other maps; empty: none.
+// Throws std::invalid_argument when sizes or options are wrong.
 ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& maps,
                                   const ViewCorrectionOptions& options, int threads,
                                   const ViewCorrections& known = {});
@@ -114,8 +114,8 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
 View CorrectedView(View view, const ViewCorrection& correction);
 
 // The photographs as the corrections say: lights moved, environment lighting added, pictures
-// resampled. Of rows of a sample, the outermost RowsReached() at a cut are wrong. Throws
-// std::invalid_argument unless there is a correction for every photograph.
+// resampled. Of rows of a sample, the outermost RowsReached() at a cut are wrong.
+// Throws std::invalid_argument unless there is a correction for every photograph.
 PhotographSet Corrected(PhotographSet set, const ViewCorrections& corrections, int threads);
 int RowsReached(const ViewCorrections& corrections);
 
