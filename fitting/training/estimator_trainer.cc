@@ -58,7 +58,7 @@ class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOpt
             [&](MapBatches*) {
               return options.from.empty()
                          ? EstimatorNetwork::Random(ChannelsOf(options), options.seed)
-                         : LoadEstimator(options.from).network;
+                         : LoadEstimator(options.from);
             }) {}
 
   size_t learned() const override { return EstimatorNetwork(network_).State().size(); }

@@ -28,7 +28,7 @@ class EstimatorFile : public testing::Test {
   }
   SvbrdfMaps Estimate(const PhotographSet& set, int threads = 1) const {
     return Estimator::Load(path_)
-        .Estimate(set.photographs, set.plane, set.convention, {}, threads)
+        .Estimate(set, {}, threads)
         .maps;
   }
   const test::TemporaryFolder folder_;
@@ -98,14 +98,6 @@ TEST_F(EstimatorFile, DamagedFilesAreRefusedWithTheirName) {
       EXPECT_THAT(error.what(), testing::HasSubstr("e.safetensors"));
     }
   }
-}
-
-TEST(StartingPhotograph, IsTheOneFromTheTop) {
-  PhotographSet set = PhotographMaps(UniformMaps(16, 0.3f, 0.04f, 0.5f), 4);
-  std::swap(set.photographs[0], set.photographs[2]);  // synthetic sets begin with the top view
-  EXPECT_EQ(BestStartingPhotograph(set), 2u);
-  for (float& m : set.photographs[2].mask) m = 0;
-  EXPECT_NE(BestStartingPhotograph(set), 2u);
 }
 
 }  // namespace
