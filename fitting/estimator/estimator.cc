@@ -4,6 +4,7 @@
 
 #include "base/parallel/parallel.h"
 #include "base/resampling/resampling.h"
+#include "fitting/encoding/decoded_deviations.h"
 #include "fitting/encoding/encoding_torch.h"
 #include "fitting/estimator/estimator_file.h"
 #include "fitting/estimator/photograph_features.h"
@@ -84,8 +85,10 @@ SvbrdfEstimate Estimator::Estimate(const PhotographSet& set, const EstimatorCond
     return network.ForwardWithGlobal(ShownOf(set, threads).features, global, torch::kFloat32);
   };
   const EstimatorOutput out = forward();
-  return {DecodeMaps(CroppedMaps(out.maps.contiguous(), plane.width, plane.height)),
-          CroppedMaps(out.log_scale.exp().contiguous(), plane.width, plane.height)};
+  const EncodedMaps maps = CroppedMaps(out.maps.contiguous(), plane.width, plane.height);
+  const EncodedMaps error =
+      CroppedMaps(out.log_scale.exp().contiguous(), plane.width, plane.height);
+  return {DecodeMaps(maps), DecodedDeviations(maps, error)};
 }
 
 }  // namespace glint

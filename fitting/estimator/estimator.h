@@ -9,17 +9,16 @@
 #include <memory>
 #include <vector>
 
-#include "fitting/encoding/encoding.h"
 #include "fitting/estimator/estimator_conditions.h"
 #include "fitting/photographs/photographs.h"
+#include "fitting/reflectance/svbrdf_deviations.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
 
 struct SvbrdfEstimate {
   SvbrdfMaps maps;
-  // Mean absolute error expected of the encoded maps (encoding.h), by plane and texel.
-  EncodedMaps error;
+  SvbrdfDeviations deviations;  // of the maps, as the network expects them
 };
 
 class Estimator {

@@ -14,6 +14,7 @@
 #include "fitting/latent/levels.h"
 #include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/weights/find_model.h"
+#include "pipeline/contract/deviation_rows.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_file.h"
@@ -120,27 +121,30 @@ fs::path EstimatorWeights(const FitStageOptions& options) {
   return AsUserError([&] { return FindModel(kEstimatorModel, options.estimator); });
 }
 
-SvbrdfMaps EstimatedStart(const FitStageOptions& options, const PhotographSet& photographs,
-                          const EstimatorConditions& conditions, int threads) {
+SvbrdfEstimate Estimated(const FitStageOptions& options, const PhotographSet& photographs,
+                         const EstimatorConditions& conditions, int threads) {
   const fs::path weights = EstimatorWeights(options);
   const Estimator estimator = AsUserError([&] { return Estimator::Load(weights); });
-  SvbrdfMaps maps = estimator.Estimate(photographs, conditions, threads).maps;
-  if (photographs.convention.diffuse_weight == DiffuseWeight::kOne) return maps;
+  SvbrdfEstimate estimate = estimator.Estimate(photographs, conditions, threads);
+  if (photographs.convention.diffuse_weight == DiffuseWeight::kOne) return estimate;
   for (int c = 0; c < 3; ++c) {  // the same look with diffuse weight 1 − k_s
-    for (size_t i = 0; i < maps.texels(); ++i) {
-      float& diffuse = maps.plane(kDiffuseR + c)[i];
-      diffuse = std::min(1.0f, diffuse / std::max(0.05f, 1 - maps.plane(kSpecularR + c)[i]));
+    for (size_t i = 0; i < estimate.maps.texels(); ++i) {
+      const float weight = std::max(0.05f, 1 - estimate.maps.plane(kSpecularR + c)[i]);
+      float& diffuse = estimate.maps.plane(kDiffuseR + c)[i];
+      diffuse = std::min(1.0f, diffuse / weight);
+      estimate.deviations.plane(kSigmaDiffuseR + c)[i] /= weight;
     }
   }
-  return maps;
+  return estimate;
 }
 
-// Where fitting begins: of the photographs' size, unless they come from a file.
-SvbrdfMaps InitialMaps(const FitStageOptions& options, const PhotographSet& photographs,
-                       const EstimatorConditions& conditions, int threads) {
-  if (!options.start.empty()) return ReadSvbrdf(options.start);
-  if (Estimates(options)) return EstimatedStart(options, photographs, conditions, threads);
-  return EstimateMaps(photographs, threads);
+// Where fitting begins: of the photographs' size, unless they come from a file. Without deviations
+// where none are known.
+SvbrdfEstimate InitialMaps(const FitStageOptions& options, const PhotographSet& photographs,
+                           const EstimatorConditions& conditions, int threads) {
+  if (!options.start.empty()) return {ReadSvbrdf(options.start), {}};
+  if (Estimates(options)) return Estimated(options, photographs, conditions, threads);
+  return {EstimateMaps(photographs, threads), {}};
 }
 
 Json Metrics(const FitResult& fit, const std::vector<RectifiedView>& views) {
@@ -261,8 +265,7 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
 
   const auto began = std::chrono::steady_clock::now();
   const EstimatorConditions conditions{options.metals == "rare", set.light_power_known};
-  const SvbrdfMaps start =
-      InitialMaps(options, Downsampled(photographs, shown.first, shown.second, threads),
+  const auto [start, deviations] = InitialMaps(options, Downsampled(photographs, shown.first, shown.second, threads),
                   conditions, threads);
   photographs = Downsampled(photographs, fitted.first, fitted.second, threads);
   FitStageResult result;
@@ -288,6 +291,10 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
   result.data = Data(result.fit, set, options, views);
   result.metrics = Metrics(result.fit, views);
   WriteAtSize(stage->Output("svbrdf.exr"), result.fit.maps, set);
+  if (!deviations.empty()) {
+    WriteDeviations(stage->Output("confidence.exr"), deviations, set.plane.width, set.plane.height,
+                    set.convention);
+  }
   stage->Commit(result.data, result.metrics);
   return result;
 }
