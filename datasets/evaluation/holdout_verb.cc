@@ -55,7 +55,8 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
   options.Add("shown", &fitted,
               "views to fit; all others are held out; numbers, names and groups as in --pairs");
   options.Add("methods", &experiment.methods,
-              "any of: start (the initialisation), classic, latent, refined");
+              "any of: start (the initial maps), classic, latent, refined, direct (the initial maps, "
+              "refined)");
   options.Add("programs", &programs,
               "other builds to compare with, as NAME=FOLDER,…; FOLDER holds the build's programs");
   options.Add("import-args", &experiment.import_arguments,
