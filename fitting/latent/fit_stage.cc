@@ -1,7 +1,9 @@
 #include "fitting/latent/fit_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -175,6 +177,25 @@ SvbrdfMaps WithDetail(const SvbrdfMaps& fitted, const SvbrdfMaps& initial) {
   return DecodeMaps(maps);
 }
 
+// Deviations of what was fitted from initial maps. Two estimates of one thing, from the same
+// photographs, are known no better than they agree: their difference counts beside what the
+// estimator expects of its own.
+SvbrdfDeviations DeviationsOfFit(SvbrdfDeviations deviations, const SvbrdfMaps& initial,
+                                 const SvbrdfMaps& fitted) {
+  if (deviations.empty()) return deviations;
+  const SvbrdfMaps maps = ResampleSvbrdf(fitted, initial.width, initial.height);
+  constexpr std::array<SvbrdfPlane, kDeviationPlanes> kPlanes{
+      kNormalX,   kNormalY,   kDiffuseR,  kDiffuseG, kDiffuseB,
+      kSpecularR, kSpecularG, kSpecularB, kRoughness};
+  for (int p = 0; p < kDeviationPlanes; ++p) {
+    const auto a = initial.plane(kPlanes[static_cast<size_t>(p)]);
+    const auto b = maps.plane(kPlanes[static_cast<size_t>(p)]);
+    const auto sd = deviations.plane(p);
+    for (size_t i = 0; i < sd.size(); ++i) sd[i] = std::hypot(sd[i], a[i] - b[i]);
+  }
+  return deviations;
+}
+
 Json Metrics(const FitResult& fit, const std::vector<RectifiedView>& views) {
   Json levels = Json::array();
   for (const FitLevel& level : fit.levels) {
@@ -324,8 +345,9 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
   result.metrics = Metrics(result.fit, views);
   WriteAtSize(stage->Output("svbrdf.exr"), result.fit.maps, set);
   if (!deviations.empty()) {
-    WriteDeviations(stage->Output("confidence.exr"), deviations, set.plane.width, set.plane.height,
-                    set.convention);
+    WriteDeviations(stage->Output("confidence.exr"),
+                    DeviationsOfFit(deviations, start, result.fit.maps), set.plane.width,
+                    set.plane.height, set.convention);
   }
   stage->Commit(result.data, result.metrics);
   return result;
