@@ -6,6 +6,7 @@
 #include "fitting/estimator/estimator_conditions.h"
 #include "fitting/estimator/photograph_features.h"
 #include "fitting/layers/layers.h"
+#include "fitting/layers/staging.h"
 
 namespace glint {
 namespace {
@@ -13,8 +14,8 @@ namespace {
 using torch::Tensor;
 
 // Means and spreads that bring the features near the range −1 … 1.
-constexpr float kFeatureMean[kFeaturePlanes] = {0.5f, 0.5f, 0.5f, 0, 1, 0, 0, 0, 0, 0.35f, 0};
-constexpr float kFeatureScale[kFeaturePlanes] = {2, 2, 2, 1, 1, 1.5f, 1.5f, 1.5f, 1.5f, 2.5f, 0.7f};
+constexpr double kFeatureMean[kFeaturePlanes] = {0.5, 0.5, 0.5, 0, 1, 0, 0, 0, 0, 0.35, 0};
+constexpr double kFeatureScale[kFeaturePlanes] = {2, 2, 2, 1, 1, 1.5, 1.5, 1.5, 1.5, 2.5, 0.7};
 constexpr int kMaskPlane = 4, kPlanesOfMask = 5;  // planes 0–4 are 0 where the mask is
 constexpr double kProfileScale = 0.4;
 constexpr double kFirstRoughness = 0.1;  // of the tanh's argument: r about 0.55
@@ -27,10 +28,8 @@ constexpr int kOutputs = 2 * kEncodedChannels;
 constexpr int kPooledInputs = 3 * kFeaturePlanes;  // mean, maximum, minimum over photographs
 
 Tensor Normalised(const Tensor& features) {
-  const auto row = [&](const float* values) {
-    return torch::from_blob(const_cast<float*>(values), {1, kFeaturePlanes, 1, 1})
-        .clone()
-        .to(features.device());
+  const auto row = [&](const double* values) {
+    return Staged({values, kFeaturePlanes}, {1, kFeaturePlanes, 1, 1}, features.options());
   };
   return (features - row(kFeatureMean)) * row(kFeatureScale);
 }
