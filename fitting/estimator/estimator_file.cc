@@ -33,11 +33,11 @@ std::map<std::string, std::string> EstimatorMetadata(const EstimatorNetwork& net
 }
 
 void SaveEstimator(const std::filesystem::path& path, EstimatorNetwork* network,
-                   std::map<std::string, std::string> metadata) {
+                   std::map<std::string, std::string> metadata, bool bf16) {
   TensorFile file;
   file.metadata = std::move(metadata);
   file.metadata.merge(EstimatorMetadata(*network));
-  for (auto& [name, t] : network->State()) file.tensors.push_back(ToRecord(name, *t, true));
+  for (auto& [name, t] : network->State()) file.tensors.push_back(ToRecord(name, *t, bf16));
   WriteTensorFile(path, std::move(file));
 }
 

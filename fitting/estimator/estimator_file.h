@@ -17,9 +17,9 @@ inline constexpr char kSinglePhotographArchitecture[] = "glint-estimator v1";
 // global).
 std::map<std::string, std::string> EstimatorMetadata(const EstimatorNetwork& network);
 
-// Weights for users, in bf16.
+// Weights for users, in bf16 or float32.
 void SaveEstimator(const std::filesystem::path& path, EstimatorNetwork* network,
-                   std::map<std::string, std::string> metadata);
+                   std::map<std::string, std::string> metadata, bool bf16 = true);
 
 struct LoadedEstimator {
   EstimatorNetwork network;

@@ -65,9 +65,9 @@ class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOpt
   std::map<std::string, std::string> Description() const override {
     return EstimatorMetadata(network_);
   }
-  void SaveWeights(const std::filesystem::path& path,
-                   std::map<std::string, std::string> metadata) override {
-    SaveEstimator(path, &average_, std::move(metadata));
+  void SaveWeights(const std::filesystem::path& path, std::map<std::string, std::string> metadata,
+                   bool bf16) override {
+    SaveEstimator(path, &average_, std::move(metadata), bf16);
   }
 
   double samples_per_batch() const override {
@@ -110,7 +110,7 @@ TrainProgress TrainEstimator(const EstimatorTrainOptions& options, const TrainFi
                              const TrainReport& report) {
   CheckTrainOptions(options);
   UseThreads(options.threads);
-  EstimatorTraining training(options, FirstStep(files) * options.accumulate, materials, validation);
+  EstimatorTraining training(options, FirstBatch(options, files), materials, validation);
   return RunTraining(options, files, &training, report);
 }
 
