@@ -11,6 +11,7 @@
 #include "datasets/procedural/material.h"
 #include "fitting/training/autoencoder_trainer.h"
 #include "fitting/training/estimator_trainer.h"
+#include "fitting/training/pnm_materials.h"
 #include "fitting/training/training_materials.h"
 
 namespace {
@@ -233,6 +234,46 @@ int Say(const TrainFiles& files, const TrainProgress& last) {
   return 0;
 }
 
+// Folders of pictures to a pack, where glint-synth is not: it needs libraries that read pictures.
+struct PackOptions {
+  std::vector<std::filesystem::path> folders;
+  std::filesystem::path out;
+  int size = 512;
+
+  void AddTo(CLI::App* app) {
+    app->add_option("folders", folders,
+                    "folders of maps as PNM pictures, or folders of such folders")
+        ->required()
+        ->check(CLI::ExistingDirectory);
+    app->add_option("--out", out, "pack to write, ….safetensors")->required();
+    app->add_option("--size", size, "texels per side")
+        ->check(CLI::Range(8, 8192))
+        ->capture_default_str();
+  }
+};
+
+int Pack(const PackOptions& options) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> materials;
+  for (const fs::path& folder : options.folders) {
+    std::vector<fs::path> inside;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      if (entry.is_directory()) inside.push_back(entry.path());
+    }
+    std::sort(inside.begin(), inside.end());
+    if (inside.empty()) inside.push_back(folder);
+    materials.insert(materials.end(), inside.begin(), inside.end());
+  }
+  glint::MaterialPack pack;
+  for (const fs::path& material : materials) {
+    pack.push_back(glint::ReadPnmMaterial(material, options.size));
+  }
+  glint::WriteMaterialPack(options.out, pack);
+  std::printf("%s: %zu materials of %d x %d\n", options.out.c_str(), pack.size(), options.size,
+              options.size);
+  return 0;
+}
+
 // `train` is TrainAutoencoder or TrainEstimator.
 template <class Options, class Train>
 int Run(Options options, const TrainFiles& files, const MaterialOptions& materials, Train train) {
@@ -263,12 +304,17 @@ int main(int argc, char** argv) {
   AddCommonOptions(bootstrap, &estimator_options, &files);
   AddEstimatorOptions(bootstrap, &estimator_options);
   materials.AddTo(bootstrap);
+  PackOptions pack_options;
+  CLI::App* pack = app.add_subcommand(
+      "pack", "pack folders of PNM pictures for --materials; glint-synth pack reads other formats");
+  pack_options.AddTo(pack);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
+    if (pack->parsed()) return Pack(pack_options);
     if (autoencoder->parsed()) {
       return Run(autoencoder_options, files, materials, glint::TrainAutoencoder);
     }
