@@ -132,6 +132,12 @@ void AddEstimatorOptions(CLI::App* app, EstimatorTrainOptions* o) {
                   "branch of global features")
       ->delimiter(',')
       ->capture_default_str();
+  app->add_option("--network", o->network,
+                  "pooled: mean and maximum over the photographs; attended: attention over them; "
+                  "descent: also improved by the gradient of the photographs' likelihood. --from "
+                  "takes the file's")
+      ->check(CLI::IsMember({"pooled", "attended", "descent"}))
+      ->capture_default_str();
   app->add_option(
          "--spread-weight", o->spread_weight,
          "weight of the negative log-likelihood of the errors under the predicted variances")

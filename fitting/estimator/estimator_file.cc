@@ -24,10 +24,26 @@ EstimatorChannels FromList(const std::vector<int>& list) {
   return channels;
 }
 
+std::string ArchitectureOf(EstimatorKind kind) {
+  const std::string architecture = kEstimatorArchitecture;
+  return kind == EstimatorKind::kPooled ? architecture
+                                        : architecture + " " + EstimatorKindName(kind);
+}
+
+// The network that a file names; other names are refused.
+EstimatorKind KindOf(const std::filesystem::path& path, const TensorFile& file) {
+  const std::string found = RequireMetadata(path, file, "architecture");
+  for (const EstimatorKind kind : {EstimatorKind::kAttended, EstimatorKind::kDescent}) {
+    if (found == ArchitectureOf(kind)) return kind;
+  }
+  CheckMetadata(path, file, "architecture", kEstimatorArchitecture);
+  return EstimatorKind::kPooled;
+}
+
 }  // namespace
 
 std::map<std::string, std::string> EstimatorMetadata(const EstimatorNetwork& network) {
-  return {{"architecture", kEstimatorArchitecture},
+  return {{"architecture", ArchitectureOf(network.kind)},
           {"encoding", kEncodingName},
           {"channels", ChannelText(ChannelList(network.channels))}};
 }
@@ -68,11 +84,11 @@ void ReadSinglePhotograph(const std::filesystem::path& path, const TensorFile& f
 LoadedEstimator LoadEstimator(const std::filesystem::path& path) {
   const TensorFile file = ReadTensorFile(path);
   const bool single = RequireMetadata(path, file, "architecture") == kSinglePhotographArchitecture;
-  if (!single) CheckMetadata(path, file, "architecture", kEstimatorArchitecture);
+  const EstimatorKind kind = single ? EstimatorKind::kPooled : KindOf(path, file);
   CheckMetadata(path, file, "encoding", kEncodingName);
   const std::vector<int> list =
       ParseChannels(path, RequireMetadata(path, file, "channels"), kChannelNumbers);
-  LoadedEstimator loaded{EstimatorNetwork::Random(FromList(list), 0), single};
+  LoadedEstimator loaded{EstimatorNetwork::Random(FromList(list), 0, kind), single};
   if (single) {
     ReadSinglePhotograph(path, file, &loaded.network);
     return loaded;

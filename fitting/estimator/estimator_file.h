@@ -9,6 +9,7 @@
 
 namespace glint {
 
+// Followed by the name of a network that is not the pooled one: "glint-estimator v3 descent".
 inline constexpr char kEstimatorArchitecture[] = "glint-estimator v3";
 // One photograph's estimator; its files are still read.
 inline constexpr char kSinglePhotographArchitecture[] = "glint-estimator v1";

@@ -1,6 +1,8 @@
 #include "fitting/estimator/estimator_network.h"
 
 #include <cmath>
+#include <numeric>
+#include <stdexcept>
 
 #include "fitting/encoding/encoding.h"
 #include "fitting/estimator/estimator_conditions.h"
@@ -48,6 +50,14 @@ int FullInput(const EstimatorChannels& c, int k) {
   return c.full + kPooledInputs + (k == 0 ? 2 * c.full : 0);
 }
 
+// What photographs are pooled of: the levels, full resolution, the global track.
+std::vector<int> AttendedChannels(const EstimatorChannels& c) {
+  std::vector<int> list(c.levels.begin(), c.levels.end());
+  list.push_back(c.full);
+  list.push_back(c.global);
+  return list;
+}
+
 Tensor Spread(const Tensor& global, const Tensor& weight) {
   return torch::matmul(global, weight.t()).unsqueeze(2).unsqueeze(3);
 }
@@ -66,6 +76,30 @@ Tensor Pooled(const Tensor& x, int64_t photographs) {
   shape.insert(shape.begin(), x.size(0) / photographs);
   const Tensor y = x.contiguous().view(shape);
   return torch::cat({y.mean(1), y.amax(1)}, 1);
+}
+
+// Heads of attention, each of as many channels.
+constexpr int64_t kHeads = 4;
+int64_t HeadsOf(int64_t channels) { return std::gcd(kHeads, channels); }
+
+// [B·N, C, …] → two averages over N, side by side: [B, 2·C, …]. Each head of an average has weights
+// of its own, softmax over N of its scores.
+Tensor Attended(const Tensor& x, int64_t photographs, const Tensor& weight) {
+  if (photographs == 1) return torch::cat({x, x}, 1);
+  const bool picture = x.dim() == 4;
+  const Tensor all = picture ? x : x.unsqueeze(2).unsqueeze(3);
+  const int64_t b = all.size(0) / photographs, c = all.size(1), h = all.size(2), w = all.size(3);
+  const int64_t heads = HeadsOf(c);
+  const Tensor scores =
+      at::conv2d(all, AsType(weight.view({2 * heads, c, 1, 1}), all.scalar_type()))
+          .to(torch::kFloat32)
+          .contiguous()
+          .view({b, photographs, 2, heads, 1, h, w})
+          .softmax(1)
+          .to(all.scalar_type());
+  const Tensor values = all.contiguous().view({b, photographs, 1, heads, c / heads, h, w});
+  const Tensor mean = (scores * values).sum(1).view({b, 2 * c, h, w});
+  return picture ? mean : mean.view({b, 2 * c});
 }
 
 // Mean, maximum and minimum over the photographs in which the texel is usable; elsewhere those of
@@ -89,13 +123,35 @@ Tensor PooledInputs(const Tensor& features) {
 
 }  // namespace
 
-EstimatorNetwork EstimatorNetwork::Random(const EstimatorChannels& channels, std::uint64_t seed) {
+std::string EstimatorKindName(EstimatorKind kind) {
+  switch (kind) {
+    case EstimatorKind::kPooled:
+      return "pooled";
+    case EstimatorKind::kAttended:
+      return "attended";
+    case EstimatorKind::kDescent:
+      return "descent";
+  }
+  return "";
+}
+
+EstimatorKind ParseEstimatorKind(const std::string& name) {
+  for (const EstimatorKind kind :
+       {EstimatorKind::kPooled, EstimatorKind::kAttended, EstimatorKind::kDescent}) {
+    if (name == EstimatorKindName(kind)) return kind;
+  }
+  throw std::invalid_argument("network: found \"" + name + "\"; give pooled, attended or descent");
+}
+
+EstimatorNetwork EstimatorNetwork::Random(const EstimatorChannels& channels, std::uint64_t seed,
+                                          EstimatorKind kind) {
   torch::Generator generator = torch::make_generator<torch::CPUGeneratorImpl>(seed);
   const auto draw = [&](std::vector<int64_t> shape, double fan_in, double gain) {
     return torch::randn(shape, generator) * (gain * std::sqrt(2.0 / fan_in));
   };
   EstimatorNetwork net;
   net.channels = channels;
+  net.kind = kind;
   for (int i = 0; i < kEstimatorLevels; ++i) {
     const int in = i == 0 ? kFeaturePlanes : channels.levels[i - 1], out = channels.levels[i];
     net.down_weights.push_back(draw({out, in, 4, 4}, in * 16.0, 1));
@@ -128,6 +184,12 @@ EstimatorNetwork EstimatorNetwork::Random(const EstimatorChannels& channels, std
     net.full_weights[1].select(0, kEncodedDiffuse + c).select(0, channels.full + c)[1][1] += 1.0;
   }
   net.final_feed = torch::zeros({kOutputs, 2 * channels.global});
+  if (kind == EstimatorKind::kAttended) {
+    for (const int c : AttendedChannels(channels)) {
+      net.attention_weights.push_back(draw({2 * HeadsOf(c), c}, c, 1));
+    }
+  }
+  if (kind == EstimatorKind::kDescent) net.descent = DescentNetwork::Random(seed + 1);
   return net;
 }
 
@@ -176,12 +238,22 @@ NamedTensors EstimatorNetwork::State() {
   list.emplace_back("photograph.weight", &photograph_weight);
   list.emplace_back("photograph.bias", &photograph_bias);
   list.emplace_back("final.feed", &final_feed);
+  if (kind == EstimatorKind::kAttended) {
+    add("attention.weight", &attention_weights, AttendedChannels(channels).size());
+  }
+  if (kind == EstimatorKind::kDescent) {
+    for (const auto& tensor : descent.State()) list.push_back(tensor);
+  }
   return list;
 }
 
 EstimatorOutput EstimatorNetwork::Forward(const Tensor& features, const Tensor& profiles,
                                           const Tensor& conditions, torch::Dtype compute) const {
   const int64_t photographs = features.size(1);
+  const auto pool = [&](const Tensor& x, size_t part) {
+    return kind == EstimatorKind::kAttended ? Attended(x, photographs, attention_weights[part])
+                                            : Pooled(x, photographs);
+  };
   const Tensor input = AsType(Normalised(features.flatten(0, 1)), compute);
   const Tensor known = conditions.unsqueeze(1).expand({-1, photographs, -1}).flatten(0, 1);
   Tensor global = torch::cat({profiles.flatten(0, 1) * kProfileScale, known}, 1), x = input;
@@ -192,7 +264,7 @@ EstimatorOutput EstimatorNetwork::Forward(const Tensor& features, const Tensor& 
     global = at::leaky_relu(torch::addmm(global_biases[i], seen, global_weights[i].t()), kLeak);
     x = at::leaky_relu(x + Spread(global, feed_weights[i]).to(compute), kLeak);
     if (residual) x = WithResidual(x, down_residual_weights[i], down_residual_biases[i], compute);
-    skips.push_back(Pooled(x, photographs));
+    skips.push_back(pool(x, static_cast<size_t>(i)));
   }
   const auto channels_last = [](const Tensor& t) {
     return t.contiguous(torch::MemoryFormat::ChannelsLast);
@@ -208,21 +280,24 @@ EstimatorOutput EstimatorNetwork::Forward(const Tensor& features, const Tensor& 
     return at::conv2d(channels_last(y), AsType(weight, compute), bias.to(compute), 1, 1);
   };
   const Tensor pooled = AsType(PooledInputs(features), compute);
-  const Tensor detail = Pooled(
-      at::leaky_relu(convolve(input, photograph_weight, photograph_bias), kLeak), photographs);
+  const Tensor detail = pool(
+      at::leaky_relu(convolve(input, photograph_weight, photograph_bias), kLeak), kEstimatorLevels);
   x = at::leaky_relu(convolve(torch::cat({x, pooled, detail}, 1), full_weights[0], full_biases[0]),
                      kLeak);
   const Tensor out =
       (convolve(torch::cat({x, pooled}, 1), full_weights[1], full_biases[1]).to(torch::kFloat32) +
-       Spread(Pooled(global, photographs), final_feed))
+       Spread(pool(global, kEstimatorLevels + 1), final_feed))
           .contiguous();
-  return {at::tanh(out.slice(1, 0, kEncodedChannels).contiguous()),
-          out.slice(1, kEncodedChannels).clamp(kLeastLogScale, kMostLogScale)};
+  Tensor maps = at::tanh(out.slice(1, 0, kEncodedChannels).contiguous());
+  Tensor log_scale = out.slice(1, kEncodedChannels);
+  if (kind == EstimatorKind::kDescent) descent.Improve(features, compute, &maps, &log_scale);
+  return {maps, log_scale.clamp(kLeastLogScale, kMostLogScale)};
 }
 
 EstimatorNetwork Clone(EstimatorNetwork* network) {
   EstimatorNetwork copy;
   copy.channels = network->channels;
+  copy.kind = network->kind;
   CopyTensors(network->State(), copy.State());
   return copy;
 }

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "fitting/estimator/estimator_descent.h"
 #include "fitting/weights/tensor_records.h"
 
 namespace glint {
@@ -31,6 +32,16 @@ struct EstimatorChannels {
   int global = 192;  // of the global track
 };
 
+// Networks that can be trained; docs/experiments/training.md compares them.
+enum class EstimatorKind {
+  kPooled,    // mean and maximum over the photographs
+  kAttended,  // two averages over the photographs, weighted by attention, instead
+  kDescent    // kPooled, whose estimate is improved by a learned descent (estimator_descent.h)
+};
+// "pooled", "attended", "descent". Throws std::invalid_argument for another name.
+std::string EstimatorKindName(EstimatorKind kind);
+EstimatorKind ParseEstimatorKind(const std::string& name);
+
 struct EstimatorOutput {
   torch::Tensor maps;       // [B, 9, H, W] encoded, in [−1, 1], float32
   torch::Tensor log_scale;  // [B, 9, H, W]: ln b, b the mean absolute error expected of `maps`
@@ -38,6 +49,7 @@ struct EstimatorOutput {
 
 struct EstimatorNetwork {
   EstimatorChannels channels;
+  EstimatorKind kind = EstimatorKind::kPooled;
   std::vector<torch::Tensor> down_weights, down_biases;  // [out, in, 4, 4]
   std::vector<torch::Tensor> up_weights, up_biases;      // [4·out, in, 2, 2]
   // 3×3 residual convolutions: [c, c, 3, 3].
@@ -50,11 +62,16 @@ struct EstimatorNetwork {
   torch::Tensor photograph_weight, photograph_bias;
   std::vector<torch::Tensor> full_weights, full_biases;
   torch::Tensor final_feed;  // [18, 2·global]
+  // kAttended: scores of a photograph's features, [2·heads, channels]: of the levels, at full
+  // resolution, and of the global track.
+  std::vector<torch::Tensor> attention_weights;
+  DescentNetwork descent;  // kDescent
   // Whether the residual convolutions do anything: those of an adopted v1 file are 0.
   bool residual = true;
 
   // Weights drawn for `seed`; diffuse starts as what a matte, flat texel's would be.
-  static EstimatorNetwork Random(const EstimatorChannels& channels, std::uint64_t seed);
+  static EstimatorNetwork Random(const EstimatorChannels& channels, std::uint64_t seed,
+                                 EstimatorKind kind = EstimatorKind::kPooled);
 
   // The network that a file of one photograph's estimator ("glint-estimator v1") describes: for one
   // photograph the same function, for several the decoder of their mean features. `v1` holds that

@@ -57,7 +57,8 @@ class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOpt
             [options](std::int64_t step) { return ShapeOf(options, step); },
             [&](MapBatches*) {
               return options.from.empty()
-                         ? EstimatorNetwork::Random(ChannelsOf(options), options.seed)
+                         ? EstimatorNetwork::Random(ChannelsOf(options), options.seed,
+                                                    ParseEstimatorKind(options.network))
                          : LoadEstimator(options.from).network;
             }) {}
 
