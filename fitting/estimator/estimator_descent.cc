@@ -21,7 +21,6 @@ constexpr int kLookedAt = 3 * kEncodedChannels + 6;  // maps, gradient, errors, 
 constexpr int kChanges = 2 * kEncodedChannels;
 constexpr int kDescentLayers = 3;
 constexpr int kDilation[kDescentLayers] = {1, 2, 1};
-constexpr double kFirstChange = 0.1;    // gain of the drawn last layer: the first change is small
 constexpr double kLeastRoot = 1e-3;     // under a root, against its slope at 0
 constexpr double kResidualScale = 0.1;  // from where on a residual counts linearly
 constexpr double kGradientScale = 5;    // brings gradients near the range −1 … 1
@@ -84,7 +83,7 @@ DescentNetwork DescentNetwork::Random(std::uint64_t seed) {
   for (int i = 0; i < kDescentLayers; ++i) {
     const int in = i == 0 ? kLookedAt : kDescentWidth,
               out = i == kDescentLayers - 1 ? kChanges : kDescentWidth;
-    const double gain = i == kDescentLayers - 1 ? kFirstChange : 1.0;
+    const double gain = i == kDescentLayers - 1 ? 0.0 : 1.0;  // the first changes are none
     net.weights.push_back(torch::randn({out, in, 3, 3}, generator) *
                           (gain * std::sqrt(2.0 / (in * 9.0))));
     net.biases.push_back(torch::zeros({out}));

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "fitting/encoding/encoding.h"
+#include "fitting/estimator/estimator_descent.h"
 #include "fitting/estimator/photograph_features.h"
 #include "fitting/training/capture_draw.h"
 #include "fitting/training/light_power.h"
@@ -90,6 +91,20 @@ TEST(TrainingPhotographs, GuessTheLightsPowerAsProgramsDo) {
         GuessedPower(seen, TensorsOf(batch, torch::kFloat32), plane, falloff).item<double>();
     EXPECT_NEAR(power, guess.Power(views), 1e-4 * power);
   }
+}
+
+// What a learned descent sees of the true maps, of clean captures: next to nothing unexplained; and
+// of others, a way down.
+TEST(TrainingPhotographs, LeaveNothingUnexplainedByTheirOwnMaps) {
+  const Tensor maps = EncodedToys(4);
+  Stream random(7);
+  const Tensor features = PhotographMaps(maps, 3, CaptureQuality::kClean, &random).features;
+  EXPECT_LT(UnexplainedBy(maps, features).size.mean().item<double>(), 0.01);
+  const Tensor other = (maps + 0.2).clamp(-0.99, 0.99);
+  const Unexplained before = UnexplainedBy(other, features);
+  const Unexplained after = UnexplainedBy(other - 0.05 * before.gradient.sign(), features);
+  EXPECT_GT(before.size.mean().item<double>(), 0.05);
+  EXPECT_LT(after.size.mean().item<double>(), 0.9 * before.size.mean().item<double>());
 }
 
 }  // namespace
