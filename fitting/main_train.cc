@@ -134,8 +134,8 @@ void AddEstimatorOptions(CLI::App* app, EstimatorTrainOptions* o) {
       ->capture_default_str();
   app->add_option("--network", o->network,
                   "pooled: mean and maximum over the photographs; attended: attention over them; "
-                  "descent: also improved by the gradient of the photographs' likelihood. --from "
-                  "takes the file's")
+                  "descent: also improved by the gradient of the photographs' likelihood, from "
+                  "pooled weights too")
       ->check(CLI::IsMember({"pooled", "attended", "descent"}))
       ->capture_default_str();
   app->add_option(

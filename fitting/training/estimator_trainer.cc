@@ -27,6 +27,27 @@ EstimatorChannels ChannelsOf(const EstimatorTrainOptions& options) {
   return channels;
 }
 
+// Drawn weights, or the file's. A pooled network's file begins a descent too, whose first changes
+// are none: the same function.
+EstimatorNetwork FirstNetwork(const EstimatorTrainOptions& options) {
+  const EstimatorKind wanted = ParseEstimatorKind(options.network);
+  if (options.from.empty()) {
+    return EstimatorNetwork::Random(ChannelsOf(options), options.seed, wanted);
+  }
+  EstimatorNetwork network = LoadEstimator(options.from).network;
+  if (network.kind == EstimatorKind::kPooled && wanted == EstimatorKind::kDescent) {
+    network.kind = wanted;
+    network.descent = DescentNetwork::Random(options.seed);
+  }
+  if (network.kind != wanted) {
+    throw std::runtime_error(options.from.string() + ": network: found " +
+                             EstimatorKindName(network.kind) + " where " + options.network +
+                             " is to be trained; give --network " +
+                             EstimatorKindName(network.kind) + ", or no --from");
+  }
+  return network;
+}
+
 Stream ShotStream(const EstimatorTrainOptions& options, std::int64_t step) {
   return Stream(StreamSeed(options.seed ^ kShotStream, static_cast<std::uint64_t>(step)));
 }
@@ -55,12 +76,7 @@ class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOpt
       : MapTraining(
             options, first_batch, materials, validation,
             [options](std::int64_t step) { return ShapeOf(options, step); },
-            [&](MapBatches*) {
-              return options.from.empty()
-                         ? EstimatorNetwork::Random(ChannelsOf(options), options.seed,
-                                                    ParseEstimatorKind(options.network))
-                         : LoadEstimator(options.from).network;
-            }) {}
+            [&](MapBatches*) { return FirstNetwork(options); }) {}
 
   size_t learned() const override { return EstimatorNetwork(network_).State().size(); }
   std::map<std::string, std::string> Description() const override {

@@ -92,6 +92,26 @@ TEST(EstimatorTrainer, ASupervisedTrainingReturnsFromAJumpOfItsLossWithHalfTheRa
   EXPECT_LT(*last.validation_map_loss, 0.8 * first);
 }
 
+TEST(EstimatorTrainer, ADescentBeginsWherePooledWeightsWereAndNoOtherNetworkDoes) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "e.safetensors";
+  const TrainProgress trained =
+      TrainEstimator(TinyEstimator(60), {path, {}, {}, false}, Toy, Unseen, {});
+  EstimatorTrainOptions options = TinyEstimator(2);
+  options.from = path;
+  options.network = "descent";
+  double first = 0;
+  TrainEstimator(options, {folder.path() / "on.safetensors", {}, {}, false}, Toy, Unseen,
+                 [&](const TrainProgress& p) {
+                   if (p.step == 0) first = *p.validation_map_loss;
+                 });
+  EXPECT_NEAR(first, *trained.validation_map_loss, 0.01 * first);
+  options.network = "attended";
+  EXPECT_THROW(
+      TrainEstimator(options, {folder.path() / "no.safetensors", {}, {}, false}, Toy, Unseen, {}),
+      std::runtime_error);
+}
+
 TEST(EstimatorTrainer, ACheckpointOfOtherChannelsIsRefused) {
   const test::TemporaryFolder folder;
   const TrainFiles files{folder.path() / "e.safetensors", {}, {}, true};
