@@ -25,6 +25,7 @@ Environment (defaults in parentheses):
   PACK (OUT/materials.safetensors)   the pack; if it exists, MATERIALS is not read
   DEVICE (cuda)          or cpu, for small trials
   BATCH (128), PHOTOGRAPHS (256), CROPS (128,128,256)   samples and photographs a step; crop sizes in texels
+  NETWORK (pooled)       the network: pooled, attended or descent (glint-train bootstrap --network)
   CHANNELS ()            the network's channels (glint-train bootstrap --channels)
   LR (3e-4)              peak learning rate
   POOL_THREADS (cores − 3)   threads that make materials
@@ -147,6 +148,10 @@ supervise() {
       echo "failed: glint-train ended with an error $failures times; see $out/log" >"$out/status"
       exit 1
     fi
+    # From the second failure on from the checkpoint before, if there is one: the last may be why.
+    if [ $failures -gt 1 ] && [ -f "$weights.checkpoint.previous" ]; then
+      mv "$weights.checkpoint.previous" "$weights.checkpoint"
+    fi
     echo "glint-train ended with an error; started again from its checkpoint"
     sleep 2
   done
@@ -170,7 +175,7 @@ train() {
   pack_materials
   local threads=$(($(nproc) > 4 ? $(nproc) - 3 : 1))
   local options=(bootstrap --out "$weights" --float32 "$float32" --resume --supervise --minutes "$minutes"
-    --device "${DEVICE:-cuda}" --batch "${BATCH:-128}" --batch-photographs "${PHOTOGRAPHS:-256}"
+    --device "${DEVICE:-cuda}" --network "${NETWORK:-pooled}" --batch "${BATCH:-128}" --batch-photographs "${PHOTOGRAPHS:-256}"
     --crop "${CROPS:-128,128,256}" --lr "${LR:-3e-4}" --warmup 500 --average-decay 0.9995 --normal-weight 1.5
     --glossy-dielectric-share 0.2 --one-substance-share 0.25 --metal-share 0.1 --varnish-share 0.5
     --pool-threads "${POOL_THREADS:-$threads}" --pool-first 600 --pool-window 6000 --pool-per-step 2

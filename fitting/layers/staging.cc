@@ -1,5 +1,7 @@
 #include "fitting/layers/staging.h"
 
+#include <ATen/Dispatch.h>
+
 #include <algorithm>
 
 namespace glint {

@@ -15,7 +15,7 @@ using torch::Tensor;
 namespace F = torch::nn::functional;
 
 constexpr int64_t kBlock = 8;
-constexpr double kLevels = 255;
+constexpr double kMostCode = 255;
 
 // `pictures` [M, C, H, W] at texels (x, y) [M or 1, H, W], counted from the first one's centre.
 Tensor LookedUp(const Tensor& pictures, const Tensor& x, const Tensor& y) {
@@ -80,12 +80,15 @@ Tensor Quantised(const Tensor& planes, const Tensor& table) {
 Tensor ScaledTable(std::span<const double> base, const Tensor& quality) {
   const Tensor table = Staged(base, {1, 1, 1, 1, kBlock, kBlock}, quality.options());
   const Tensor percent = (200 - 2 * quality).view({-1, 1, 1, 1, 1, 1});
-  return ((table * percent + 50) / 100).floor().clamp(1, kLevels);
+  return ((table * percent + 50) / 100).floor().clamp(1, kMostCode);
 }
 
 }  // namespace
 
 Tensor HeightsOf(const Tensor& encoded) {
+  TORCH_CHECK(encoded.size(3) % 2 == 0,
+              "heights: found an odd width, of which a transform of real "
+              "values does not give back the size");
   const Tensor t = encoded.slice(1, kEncodedNormal, kEncodedChannels);
   const Tensor slopes = t + 3 * t * t * t;  // encoding.h; n_x / n_z = −∂z/∂x, rows run to −y
   const Tensor p = torch::fft::rfft2(-slopes.select(1, 0));
@@ -99,8 +102,7 @@ Tensor HeightsOf(const Tensor& encoded) {
       (torch::view_as_real(p) * u.unsqueeze(-1) + torch::view_as_real(q) * v.unsqueeze(-1)) *
       scale.unsqueeze(-1);
   const Tensor turned = torch::stack({sum.select(-1, 1), -sum.select(-1, 0)}, -1);
-  const Tensor heights =
-      torch::fft::irfft2(torch::view_as_complex(turned.contiguous()), std::vector<int64_t>{h, w});
+  const Tensor heights = torch::fft::irfft2(torch::view_as_complex(turned.contiguous()));
   return heights.unsqueeze(1).clamp(-kMostHeight, kMostHeight);
 }
 
@@ -149,14 +151,14 @@ Tensor Crushed(const Tensor& pictures, const Tensor& toe) {
 }
 
 Tensor EncodedIn8Bits(const Tensor& pictures, const Tensor& gamma) {
-  return (pictures.clamp(0, 1).pow(1 / gamma) * kLevels).round() / kLevels;
+  return (pictures.clamp(0, 1).pow(1 / gamma) * kMostCode).round() / kMostCode;
 }
 
 Tensor AfterJpeg(const Tensor& pictures, const Tensor& quality) {
   TORCH_CHECK(pictures.size(3) % 16 == 0 && pictures.size(4) % 16 == 0,
               "JPEG: found a size that is no multiple of 16");
-  const Tensor r = pictures.select(2, 0) * kLevels, g = pictures.select(2, 1) * kLevels,
-               b = pictures.select(2, 2) * kLevels;
+  const Tensor r = pictures.select(2, 0) * kMostCode, g = pictures.select(2, 1) * kMostCode,
+               b = pictures.select(2, 2) * kMostCode;
   const Tensor y = 0.299 * r + 0.587 * g + 0.114 * b - 128;
   const auto chroma = [&](const Tensor& difference) {
     const Tensor coarse = torch::avg_pool2d(difference, 2);
@@ -167,7 +169,7 @@ Tensor AfterJpeg(const Tensor& pictures, const Tensor& quality) {
   const Tensor cb = chroma((b - y - 128) * 0.564), cr = chroma((r - y - 128) * 0.713);
   const Tensor rgb =
       torch::stack({luma + 1.402 * cr, luma - 0.344 * cb - 0.714 * cr, luma + 1.772 * cb}, 2);
-  return rgb.round().clamp(0, kLevels) / kLevels;
+  return rgb.round().clamp(0, kMostCode) / kMostCode;
 }
 
 }  // namespace glint

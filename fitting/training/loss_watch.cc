@@ -50,14 +50,15 @@ LossVerdict LossWatch::Judge(double loss) {
     std::vector<double> away;
     for (const double x : logs_) away.push_back(std::abs(x - level));
     const double deviation = kNormalPerMad * Median(away), above = log_loss - level;
-    if (above > std::log(options_.sure_factor) && above > options_.deviations * deviation) {
+    const bool far = above > options_.deviations * deviation;
+    const bool up = above > std::log(options_.sure_factor);
+    up_ = up ? up_ + 1 : 0;
+    suspicious_ = far && above > std::log(options_.least_factor) ? suspicious_ + 1 : 0;
+    if ((up && far) || up_ >= options_.scatter_patience || suspicious_ >= options_.patience) {
       return LossVerdict::kJumped;
     }
-    if (above > std::log(options_.least_factor) && above > options_.deviations * deviation) {
-      return ++suspicious_ >= options_.patience ? LossVerdict::kJumped : LossVerdict::kSuspicious;
-    }
+    if (up || suspicious_ > 0) return LossVerdict::kSuspicious;
   }
-  suspicious_ = 0;
   Keep(log_loss);
   return LossVerdict::kCalm;
 }

@@ -20,6 +20,9 @@ struct LossWatchOptions {
   // ends of their ranges have five to seven times a trained network's loss.
   double sure_factor = 2;
   int patience = 2;
+  // Where losses scatter so much that this factor is within the deviations: so many beyond it in a
+  // row, since scatter does not stay up.
+  int scatter_patience = 4;
 };
 
 enum class LossVerdict { kCalm, kSuspicious, kJumped };
@@ -36,14 +39,14 @@ class LossWatch {
   void Remember(const std::filesystem::path& log_csv);
 
   // Forgets the suspicious losses, not the level.
-  void Calm() { suspicious_ = 0; }
+  void Calm() { suspicious_ = up_ = 0; }
 
  private:
   void Keep(double log_loss);
 
   LossWatchOptions options_;
   std::deque<double> logs_;
-  int suspicious_ = 0;
+  int suspicious_ = 0, up_ = 0;  // in a row: beyond the deviations; beyond the sure factor
 };
 
 }  // namespace glint

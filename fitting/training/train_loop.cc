@@ -113,6 +113,15 @@ class Window {
   int batches_ = 0;
 };
 
+// A copy of the last checkpoint beside it, for when a training does not get on from the next one.
+void KeepPrevious(const std::filesystem::path& checkpoint) {
+  if (!std::filesystem::exists(checkpoint)) return;
+  const std::filesystem::path copy = checkpoint.string() + ".previous";
+  const std::filesystem::path beside = copy.string() + ".tmp";
+  std::filesystem::copy_file(checkpoint, beside, std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::rename(beside, copy);
+}
+
 // The weights and Adam's state as they stand, or as the checkpoint has them.
 TrainState BeginningOf(const TrainOptions& options, const TrainFiles& files, Trainable* trainable) {
   TrainState state =
@@ -276,6 +285,7 @@ class Loop {
   }
 
   void Save(double validation) {
+    if (options_.supervise) KeepPrevious(files_.CheckpointPath());
     SaveCheckpoint(files_.CheckpointPath(), state_, trainable_->Description());
     std::map<std::string, std::string> metadata{
         {"data", options_.data_name},

@@ -40,6 +40,19 @@ TEST(LossWatch, KnowsAJumpAtOnceAndAClimbAtItsSecondLoss) {
   }
 }
 
+// Of few steps each, losses scatter by a third; they stay up after a jump alone.
+TEST(LossWatch, KnowsAJumpThatIsWithinTheScatter) {
+  Stream random(3);
+  LossWatch watch;
+  const auto loss = [&](double level) { return level * std::exp(0.35 * random.Normal()); };
+  int jumps = 0;
+  for (int i = 0; i < 400; ++i) jumps += watch.Judge(loss(0.4)) == LossVerdict::kJumped;
+  EXPECT_EQ(jumps, 0);
+  int until = 1;
+  while (watch.Judge(loss(1.4)) != LossVerdict::kJumped && until < 100) ++until;
+  EXPECT_LE(until, 8);
+}
+
 TEST(LossWatch, TakesWhatIsNotFiniteForAJump) {
   LossWatch watch;
   EXPECT_EQ(watch.Judge(std::numeric_limits<double>::quiet_NaN()), LossVerdict::kJumped);
