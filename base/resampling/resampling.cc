@@ -77,6 +77,10 @@ std::vector<Taps> TentTaps(int input, int output) {
   return all;
 }
 
+std::vector<Taps> TapsBetween(int input, int output) {
+  return input > output ? AreaTaps(input, output) : TentTaps(input, output);
+}
+
 std::vector<TapGroup> GroupTaps(std::span<const Taps> taps, int most_inputs) {
   std::vector<TapGroup> groups;
   for (size_t i = 0; i < taps.size(); ++i) {

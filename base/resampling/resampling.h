@@ -30,6 +30,9 @@ std::vector<Taps> AreaTaps(int input, int output);
 // Triangle filter as wide as two samples of the coarser grid: bilinear up, tent-averaged down.
 std::vector<Taps> TentTaps(int input, int output);
 
+// AreaTaps() to fewer samples, TentTaps() to as many or more.
+std::vector<Taps> TapsBetween(int input, int output);
+
 // Consecutive output samples and the input samples that make them, as few at a time as fit into
 // memory.
 struct TapGroup {

@@ -74,9 +74,10 @@ Scene MakeScene(int size, int photographs, int threads) {
     scene.set.photographs.push_back(
         {planned.views[static_cast<size_t>(i)], true, std::move(image.rgb), std::move(image.mask)});
   }
-  const Estimator estimator = Estimator::Load(FindModel("estimator.safetensors"));
-  const auto given = std::span(scene.set.photographs).first(1);
-  scene.start = estimator.Estimate(given, scene.set.plane, scene.set.convention, {}, threads).maps;
+  const Estimator estimator = Estimator::Load(FindModel(kEstimatorModel));
+  PhotographSet first = scene.set;
+  first.photographs.resize(1);
+  scene.start = estimator.Estimate(first, {}, threads).maps;
   return scene;
 }
 

@@ -7,24 +7,26 @@
 
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <vector>
 
-#include "fitting/encoding/encoding.h"
 #include "fitting/estimator/estimator_conditions.h"
 #include "fitting/photographs/photographs.h"
+#include "fitting/reflectance/svbrdf_deviations.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
 
 struct SvbrdfEstimate {
   SvbrdfMaps maps;
-  // Mean absolute error expected of the encoded maps (encoding.h), by plane and texel.
-  EncodedMaps error;
+  SvbrdfDeviations deviations;  // of the maps, as the network expects them
 };
 
 class Estimator {
  public:
+  // Texels along the longer side up to which training showed whole pictures. Of larger ones what is
+  // global (a highlight's profile, means of features) is taken from the photographs at this size.
+  static constexpr int kGlobalSize = 256;
+
   // Reads weights written by glint-train. Throws std::runtime_error "FILE: PART: found …; …".
   static Estimator Load(const std::filesystem::path& weights);
 
@@ -35,12 +37,8 @@ class Estimator {
   // Maps of the photographs' size, from 1×1; sizes that are not multiples of 32 are continued by
   // their last texel. Maps for diffuse weight 1. float32; the same bits for any `threads`, and for
   // any order of the photographs up to the rounding of their mean.
-  SvbrdfEstimate Estimate(std::span<const Photograph> photographs, const SamplePlane& plane,
-                          const ReflectanceConvention& convention,
-                          const EstimatorConditions& conditions, int threads) const;
-
-  // Whether the weights were trained on one photograph per sample; give it one.
-  bool single_photograph() const;
+  SvbrdfEstimate Estimate(const PhotographSet& set, const EstimatorConditions& conditions,
+                          int threads) const;
 
  private:
   struct Impl;
@@ -48,12 +46,6 @@ class Estimator {
   std::unique_ptr<Impl> impl_;
 };
 
-// The photograph that an estimate should start from: the one seen from nearest the top whose mask
-// covers almost as much as the best one's, and that is neither dark nor clipped.
-size_t BestStartingPhotograph(const PhotographSet& set);
-
 inline constexpr char kEstimatorModel[] = "estimator.safetensors";
-// Trained on fewer metals: what is dark and glossy is taken for glass, lacquer or print.
-inline constexpr char kRareMetalsEstimatorModel[] = "estimator_metals_rare.safetensors";
 
 }  // namespace glint

@@ -57,46 +57,17 @@ void SaveEstimator(const std::filesystem::path& path, EstimatorNetwork* network,
   WriteTensorFile(path, std::move(file));
 }
 
-namespace {
-
-void ReadSinglePhotograph(const std::filesystem::path& path, const TensorFile& file,
-                          EstimatorNetwork* network) {
-  std::map<std::string, torch::Tensor> tensors;
-  for (const TensorRecord& record : file.tensors) {
-    tensors[record.name] = ReadTensor(path, file, record.name, record.shape);
-  }
-  // The network's own tensors have at least v1's sizes, in every dimension.
-  for (const auto& [name, tensor] : network->State()) {
-    if (name.starts_with("photograph.") || name.find("residual") != std::string::npos) continue;
-    const auto found = tensors.find(name);
-    bool fits = found != tensors.end() && found->second.dim() == tensor->dim();
-    for (int64_t d = 0; fits && d < tensor->dim(); ++d) {
-      fits = d < 2 ? found->second.size(d) <= tensor->size(d)
-                   : found->second.size(d) == tensor->size(d);
-    }
-    if (!fits) FailWeights(path, name, "no such tensor, or another shape", "take another file");
-  }
-  network->AdoptSinglePhotograph(tensors);
-}
-
-}  // namespace
-
-LoadedEstimator LoadEstimator(const std::filesystem::path& path) {
+EstimatorNetwork LoadEstimator(const std::filesystem::path& path) {
   const TensorFile file = ReadTensorFile(path);
-  const bool single = RequireMetadata(path, file, "architecture") == kSinglePhotographArchitecture;
-  const EstimatorKind kind = single ? EstimatorKind::kPooled : KindOf(path, file);
+  const EstimatorKind kind = KindOf(path, file);
   CheckMetadata(path, file, "encoding", kEncodingName);
   const std::vector<int> list =
       ParseChannels(path, RequireMetadata(path, file, "channels"), kChannelNumbers);
-  LoadedEstimator loaded{EstimatorNetwork::Random(FromList(list), 0, kind), single};
-  if (single) {
-    ReadSinglePhotograph(path, file, &loaded.network);
-    return loaded;
-  }
-  for (auto& [name, tensor] : loaded.network.State()) {
+  EstimatorNetwork network = EstimatorNetwork::Random(FromList(list), 0, kind);
+  for (auto& [name, tensor] : network.State()) {
     *tensor = ReadTensor(path, file, name, tensor->sizes().vec());
   }
-  return loaded;
+  return network;
 }
 
 }  // namespace glint

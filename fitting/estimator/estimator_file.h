@@ -11,8 +11,6 @@ namespace glint {
 
 // Followed by the name of a network that is not the pooled one: "glint-estimator v3 descent".
 inline constexpr char kEstimatorArchitecture[] = "glint-estimator v3";
-// One photograph's estimator; its files are still read.
-inline constexpr char kSinglePhotographArchitecture[] = "glint-estimator v1";
 
 // What a file of this network says of itself: architecture, encoding, channels (levels, full,
 // global).
@@ -22,12 +20,7 @@ std::map<std::string, std::string> EstimatorMetadata(const EstimatorNetwork& net
 void SaveEstimator(const std::filesystem::path& path, EstimatorNetwork* network,
                    std::map<std::string, std::string> metadata, bool bf16 = true);
 
-struct LoadedEstimator {
-  EstimatorNetwork network;
-  bool single_photograph = false;  // trained on one photograph a sample
-};
-
 // Throws std::runtime_error "FILE: PART: found …; what to do".
-LoadedEstimator LoadEstimator(const std::filesystem::path& path);
+EstimatorNetwork LoadEstimator(const std::filesystem::path& path);
 
 }  // namespace glint

@@ -1,5 +1,6 @@
 #include "fitting/estimator/estimator_network.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -121,6 +122,18 @@ Tensor PooledInputs(const Tensor& features) {
   return Normalised(all.view({b * 3, kFeaturePlanes, h, w})).view({b, kPooledInputs, h, w});
 }
 
+// What the global track starts from, of B·N photographs.
+Tensor FirstGlobal(const Tensor& profiles, const Tensor& conditions) {
+  const Tensor known = conditions.unsqueeze(1).expand({-1, profiles.size(1), -1}).flatten(0, 1);
+  return torch::cat({profiles.flatten(0, 1) * kProfileScale, known}, 1);
+}
+
+Tensor ChannelsLast(const Tensor& t) { return t.contiguous(torch::MemoryFormat::ChannelsLast); }
+
+// Rows that the last convolutions do at a time, where memory counts, and those about a row that
+// they depend on: three 3×3 convolutions.
+constexpr int64_t kBandRows = 128, kRowsAbout = 3;
+
 }  // namespace
 
 std::string EstimatorKindName(EstimatorKind kind) {
@@ -193,27 +206,6 @@ EstimatorNetwork EstimatorNetwork::Random(const EstimatorChannels& channels, std
   return net;
 }
 
-void EstimatorNetwork::AdoptSinglePhotograph(const std::map<std::string, Tensor>& v1) {
-  torch::NoGradGuard no_gradient;
-  // A v1 tensor becomes this network's weights of the first inputs (the mean features) for the
-  // first outputs (the maps). The weights of new inputs begin at 0.
-  for (auto& [name, to] : State()) {
-    const auto from = v1.find(name);
-    if (from == v1.end()) {
-      // Per photograph at full resolution: as drawn. Residual convolutions: nothing yet.
-      if (name.find("residual") != std::string::npos) to->zero_();
-      continue;
-    }
-    Tensor outputs = to->slice(0, 0, from->second.size(0));
-    if (to->dim() == 1) {
-      outputs.copy_(from->second);
-    } else {
-      to->zero_();
-      outputs.slice(1, 0, from->second.size(1)).copy_(from->second);
-    }
-  }
-}
-
 NamedTensors EstimatorNetwork::State() {
   NamedTensors list;
   const auto add = [&](const std::string& part, std::vector<Tensor>* tensors, size_t count) {
@@ -247,51 +239,94 @@ NamedTensors EstimatorNetwork::State() {
   return list;
 }
 
-EstimatorOutput EstimatorNetwork::Forward(const Tensor& features, const Tensor& profiles,
-                                          const Tensor& conditions, torch::Dtype compute) const {
-  const int64_t photographs = features.size(1);
-  const auto pool = [&](const Tensor& x, size_t part) {
-    return kind == EstimatorKind::kAttended ? Attended(x, photographs, attention_weights[part])
-                                            : Pooled(x, photographs);
-  };
-  const Tensor input = AsType(Normalised(features.flatten(0, 1)), compute);
-  const Tensor known = conditions.unsqueeze(1).expand({-1, photographs, -1}).flatten(0, 1);
-  Tensor global = torch::cat({profiles.flatten(0, 1) * kProfileScale, known}, 1), x = input;
-  std::vector<Tensor> skips;
+Tensor EstimatorNetwork::Pool(const Tensor& x, int64_t photographs, size_t part) const {
+  return kind == EstimatorKind::kAttended ? Attended(x, photographs, attention_weights[part])
+                                          : Pooled(x, photographs);
+}
+
+EstimatorNetwork::Codes EstimatorNetwork::Encode(const Tensor& features, const Tensor& first_global,
+                                                 const std::vector<Tensor>* global,
+                                                 torch::Dtype compute) const {
+  Codes codes;
+  Tensor x = AsType(Normalised(features.flatten(0, 1)), compute), track = first_global;
   for (int i = 0; i < kEstimatorLevels; ++i) {
     x = DownConvolve(x, down_weights[i], down_biases[i], compute);
-    const Tensor seen = torch::cat({x.to(torch::kFloat32).mean({2, 3}), global}, 1);
-    global = at::leaky_relu(torch::addmm(global_biases[i], seen, global_weights[i].t()), kLeak);
-    x = at::leaky_relu(x + Spread(global, feed_weights[i]).to(compute), kLeak);
-    if (residual) x = WithResidual(x, down_residual_weights[i], down_residual_biases[i], compute);
-    skips.push_back(pool(x, static_cast<size_t>(i)));
+    if (global != nullptr) {
+      track = (*global)[static_cast<size_t>(i)];
+    } else {
+      const Tensor seen = torch::cat({x.to(torch::kFloat32).mean({2, 3}), track}, 1);
+      track = at::leaky_relu(torch::addmm(global_biases[i], seen, global_weights[i].t()), kLeak);
+    }
+    x = at::leaky_relu(x + Spread(track, feed_weights[i]).to(compute), kLeak);
+    x = WithResidual(x, down_residual_weights[i], down_residual_biases[i], compute);
+    codes.levels.push_back(Pool(x, features.size(1), static_cast<size_t>(i)));
+    codes.global.push_back(track);
   }
-  const auto channels_last = [](const Tensor& t) {
-    return t.contiguous(torch::MemoryFormat::ChannelsLast);
-  };
-  x = skips.back();
+  return codes;
+}
+
+Tensor EstimatorNetwork::Decode(const Codes& codes, torch::Dtype compute) const {
+  Tensor x = codes.levels.back();
   for (int i = kEstimatorLevels - 1; i >= 0; --i) {
-    if (i < kEstimatorLevels - 1) x = torch::cat({x, skips[i]}, 1);
-    x = at::leaky_relu(UpConvolve(channels_last(x), up_weights[i], up_biases[i], compute), kLeak);
-    if (residual && i > 0)
-      x = WithResidual(x, up_residual_weights[i - 1], up_residual_biases[i - 1], compute);
+    if (i < kEstimatorLevels - 1) x = torch::cat({x, codes.levels[static_cast<size_t>(i)]}, 1);
+    x = at::leaky_relu(UpConvolve(ChannelsLast(x), up_weights[i], up_biases[i], compute), kLeak);
+    if (i > 0) x = WithResidual(x, up_residual_weights[i - 1], up_residual_biases[i - 1], compute);
   }
+  return x;
+}
+
+Tensor EstimatorNetwork::FullResolution(const Tensor& features, const Tensor& decoded,
+                                        torch::Dtype compute) const {
   const auto convolve = [&](const Tensor& y, const Tensor& weight, const Tensor& bias) {
-    return at::conv2d(channels_last(y), AsType(weight, compute), bias.to(compute), 1, 1);
+    return at::conv2d(ChannelsLast(y), AsType(weight, compute), bias.to(compute), 1, 1);
   };
+  const Tensor input = AsType(Normalised(features.flatten(0, 1)), compute);
   const Tensor pooled = AsType(PooledInputs(features), compute);
-  const Tensor detail = pool(
-      at::leaky_relu(convolve(input, photograph_weight, photograph_bias), kLeak), kEstimatorLevels);
-  x = at::leaky_relu(convolve(torch::cat({x, pooled, detail}, 1), full_weights[0], full_biases[0]),
-                     kLeak);
-  const Tensor out =
-      (convolve(torch::cat({x, pooled}, 1), full_weights[1], full_biases[1]).to(torch::kFloat32) +
-       Spread(pool(global, kEstimatorLevels + 1), final_feed))
-          .contiguous();
+  const Tensor detail =
+      Pool(at::leaky_relu(convolve(input, photograph_weight, photograph_bias), kLeak),
+           features.size(1), kEstimatorLevels);
+  const Tensor x = at::leaky_relu(
+      convolve(torch::cat({decoded, pooled, detail}, 1), full_weights[0], full_biases[0]), kLeak);
+  return convolve(torch::cat({x, pooled}, 1), full_weights[1], full_biases[1]).to(torch::kFloat32);
+}
+
+EstimatorOutput EstimatorNetwork::Output(const Tensor& features, const Tensor& full,
+                                         const Tensor& global, torch::Dtype compute) const {
+  const Tensor track = Pool(global, features.size(1), kEstimatorLevels + 1);
+  const Tensor out = (full + Spread(track, final_feed)).contiguous();
   Tensor maps = at::tanh(out.slice(1, 0, kEncodedChannels).contiguous());
   Tensor log_scale = out.slice(1, kEncodedChannels);
   if (kind == EstimatorKind::kDescent) descent.Improve(features, compute, &maps, &log_scale);
   return {maps, log_scale.clamp(kLeastLogScale, kMostLogScale)};
+}
+
+std::vector<Tensor> EstimatorNetwork::Global(const Tensor& features, const Tensor& profiles,
+                                             const Tensor& conditions, torch::Dtype compute) const {
+  return Encode(features, FirstGlobal(profiles, conditions), nullptr, compute).global;
+}
+
+EstimatorOutput EstimatorNetwork::Forward(const Tensor& features, const Tensor& profiles,
+                                          const Tensor& conditions, torch::Dtype compute) const {
+  const Codes codes = Encode(features, FirstGlobal(profiles, conditions), nullptr, compute);
+  const Tensor full = FullResolution(features, Decode(codes, compute), compute);
+  return Output(features, full, codes.global.back(), compute);
+}
+
+EstimatorOutput EstimatorNetwork::ForwardWithGlobal(const Tensor& features,
+                                                    const std::vector<Tensor>& global,
+                                                    torch::Dtype compute) const {
+  const Tensor decoded = Decode(Encode(features, {}, &global, compute), compute);
+  const int64_t height = features.size(3);
+  std::vector<Tensor> bands;
+  for (int64_t begin = 0; begin < height; begin += kBandRows) {
+    const int64_t end = std::min(begin + kBandRows, height);
+    const int64_t first = std::max<int64_t>(0, begin - kRowsAbout);
+    const int64_t last = std::min(height, end + kRowsAbout);
+    const Tensor band =
+        FullResolution(features.slice(3, first, last), decoded.slice(2, first, last), compute);
+    bands.push_back(band.slice(2, begin - first, end - first).contiguous());
+  }
+  return Output(features, torch::cat(bands, 2), global.back(), compute);
 }
 
 EstimatorNetwork Clone(EstimatorNetwork* network) {

@@ -13,7 +13,6 @@
 #include <torch/torch.h>
 
 #include <array>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -66,17 +65,10 @@ struct EstimatorNetwork {
   // resolution, and of the global track.
   std::vector<torch::Tensor> attention_weights;
   DescentNetwork descent;  // kDescent
-  // Whether the residual convolutions do anything: those of an adopted v1 file are 0.
-  bool residual = true;
 
   // Weights drawn for `seed`; diffuse starts as what a matte, flat texel's would be.
   static EstimatorNetwork Random(const EstimatorChannels& channels, std::uint64_t seed,
                                  EstimatorKind kind = EstimatorKind::kPooled);
-
-  // The network that a file of one photograph's estimator ("glint-estimator v1") describes: for one
-  // photograph the same function, for several the decoder of their mean features. `v1` holds that
-  // file's tensors by name.
-  void AdoptSinglePhotograph(const std::map<std::string, torch::Tensor>& v1);
 
   NamedTensors State();  // all learned
 
@@ -84,6 +76,35 @@ struct EstimatorNetwork {
   // is known of each capture, [B, 2] (estimator_conditions.h).
   EstimatorOutput Forward(const torch::Tensor& features, const torch::Tensor& profiles,
                           const torch::Tensor& conditions, torch::Dtype compute) const;
+
+  // The global features alone, after each level: [B·N, global]. Arguments as Forward()'s.
+  std::vector<torch::Tensor> Global(const torch::Tensor& features, const torch::Tensor& profiles,
+                                    const torch::Tensor& conditions, torch::Dtype compute) const;
+  // Forward() with global features that are given, such as those of the same photographs at the
+  // size that training showed: means over a picture are then what the network knows, and only what
+  // is local depends on the resolution. `features` of any size, without gradient; works band by
+  // band at full resolution.
+  EstimatorOutput ForwardWithGlobal(const torch::Tensor& features,
+                                    const std::vector<torch::Tensor>& global,
+                                    torch::Dtype compute) const;
+
+ private:
+  // Of B·N photographs: what each level gives to the decoder, and the global features after it.
+  struct Codes {
+    std::vector<torch::Tensor> levels, global;
+  };
+  Codes Encode(const torch::Tensor& features, const torch::Tensor& first_global,
+               const std::vector<torch::Tensor>* global, torch::Dtype compute) const;
+  // Up to the photographs' resolution: [B, full, H, W].
+  torch::Tensor Decode(const Codes& codes, torch::Dtype compute) const;
+  // The last convolutions, of some rows: [B, 18, h, W] before the output's nonlinearity.
+  torch::Tensor FullResolution(const torch::Tensor& features, const torch::Tensor& decoded,
+                               torch::Dtype compute) const;
+  EstimatorOutput Output(const torch::Tensor& features, const torch::Tensor& full,
+                         const torch::Tensor& global, torch::Dtype compute) const;
+  // Over the photographs, as the network's kind does it; `part` counts the levels, then full
+  // resolution, then the global track. [B·N, C, …] → [B, 2·C, …]
+  torch::Tensor Pool(const torch::Tensor& x, int64_t photographs, size_t part) const;
 };
 
 EstimatorNetwork Clone(EstimatorNetwork* network);

@@ -12,8 +12,6 @@ namespace {
 
 using namespace features;
 
-constexpr float kMaskedBright = 0.25f;  // radiance of a texel of which any pixel may have clipped
-
 struct Ring {
   double sum[3] = {0, 0, 0}, square = 0, clipped = 0, count = 0;
 };
@@ -23,16 +21,6 @@ size_t RingOf(double angle) {
   const auto end = std::lower_bound(kBinEndDegrees.begin(), kBinEndDegrees.end(), degrees);
   return static_cast<size_t>(
       std::min<std::ptrdiff_t>(end - kBinEndDegrees.begin(), kProfileBins - 1));
-}
-
-// A rectified photograph masks texels of which any pixel clipped. To the estimator they are part of
-// the highlight, and not unknown: training shows it no holes.
-bool MaskedByClipping(const Photograph& photograph, size_t texel) {
-  if (!photograph.ldr || photograph.mask[texel] >= 0.5f) return false;
-  const size_t texels = photograph.mask.size();
-  float most = 0;
-  for (size_t c = 0; c < 3; ++c) most = std::max(most, photograph.rgb[c * texels + texel]);
-  return most >= kMaskedBright;
 }
 
 std::vector<float> Profile(const std::array<Ring, kProfileBins>& rings) {
@@ -74,12 +62,13 @@ PhotographFeatures FeaturesOf(const Photograph& photograph, const SamplePlane& p
     put(10, i,
         std::clamp(std::log(std::max(kLeastIrradiance, mean_e * cosine / std::numbers::pi)),
                    -kLogIrradianceRange, kLogIrradianceRange));
-    bool clipped = MaskedByClipping(photograph, i);
+    // To the estimator masked texels of a highlight are part of it, and not unknown: training shows
+    // it no holes.
+    const bool clipped = ReachesLimit(photograph, i);
     if (photograph.mask[i] < 0.5f && !clipped) continue;
     Ring& ring = rings[RingOf(angle)];
     for (int c = 0; c < 3; ++c) {
       const double radiance = std::max(0.0f, photograph.rgb[c * texels + i]);
-      clipped |= photograph.ldr && radiance >= kClipped;
       const double albedo =
           std::min(kBrightest, std::numbers::pi * radiance /
                                    std::max(kLeastIrradiance, g.irradiance[c] * cosine));

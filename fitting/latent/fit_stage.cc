@@ -4,16 +4,17 @@
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include "base/errors/errors.h"
+#include "base/resampling/resampling.h"
 #include "fitting/bootstrap/bootstrap.h"
 #include "fitting/estimator/estimator.h"
 #include "fitting/latent/levels.h"
 #include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/weights/find_model.h"
+#include "pipeline/contract/deviation_rows.h"
 #include "pipeline/contract/progress.h"
 #include "pipeline/contract/rectified_set.h"
 #include "pipeline/contract/svbrdf_file.h"
@@ -27,6 +28,11 @@ namespace fs = std::filesystem;
 // From one photograph roughness and specular drift along ambiguities while the loss falls: stopping
 // early halves the damage (docs/experiments/pictures.md, "How long to fit one photograph").
 constexpr int kSinglePhotoIterations = 8;
+
+// Of few photographs the estimator sees all detail up to this size, of more refinement finds it
+// itself: docs/experiments/pictures.md.
+constexpr size_t kFewPhotographs = 2;
+constexpr int kMostEstimatorSize = 1024;
 
 constexpr int kFullSize = 1 << 20;  // more than any maps have along a side
 
@@ -57,15 +63,36 @@ auto AsUserError(const Action& action) {
   }
 }
 
-// What fitting looks at: the size of its last level; finer detail is left to refinement.
+bool Estimates(const FitStageOptions& options) {
+  return options.start.empty() && options.bootstrap == "estimator";
+}
+
+using Size = std::pair<int, int>;  // width, height
+
+// Of what is fitted, or of initial maps that are kept; finer detail is left to refinement.
+Size FittedSize(const SamplePlane& plane, const FitStageOptions& options, const FitOptions& fit) {
+  if (options.method == "start") {
+    return SizeAtMost(plane.width, plane.height,
+                      Estimates(options) ? options.estimator_size : kFullSize);
+  }
+  return LevelSizes(plane.width, plane.height, fit.coarse_size, fit.finest_size).back();
+}
+
+// Of the photographs that initial maps are estimated from. Of a first level's detail nothing more is
+// kept than it can hold.
+Size ShownSize(const SamplePlane& plane, const FitStageOptions& options, const FitOptions& fit) {
+  if (Estimates(options)) return SizeAtMost(plane.width, plane.height, options.estimator_size);
+  if (options.method == "start" || !options.start.empty()) return {plane.width, plane.height};
+  return LevelSizes(plane.width, plane.height, fit.coarse_size, fit.finest_size).front();
+}
+
+// At a size that both of these can be averaged from.
 PhotographSet Load(const RectifiedSet& set, const std::vector<RectifiedView>& views,
-                   const FitStageOptions& options, const FitOptions& fit, int threads) {
+                   const Size& fitted, const Size& shown, int threads) {
   RectifiedPhotographs source(set, views);
-  const auto [width, height] =
-      options.method == "start"
-          ? std::pair(set.plane.width, set.plane.height)
-          : LevelSizes(set.plane.width, set.plane.height, fit.coarse_size, fit.finest_size).back();
-  PhotographSet photographs = source.Downsampled(width, height, threads);
+  PhotographSet photographs =
+      source.Downsampled(std::max(fitted.first, shown.first),
+                         std::max(fitted.second, shown.second), threads);
   if (const std::string wrong = photographs.Check(); !wrong.empty()) {
     throw UserError(set.manifest_file, "data.views", wrong,
                     "check the photographs and run rectify again");
@@ -91,49 +118,33 @@ void WriteAtSize(const fs::path& file, const SvbrdfMaps& maps, const RectifiedSe
 }
 
 fs::path EstimatorWeights(const FitStageOptions& options) {
-  const char* model = options.metals == "rare" ? kRareMetalsEstimatorModel : kEstimatorModel;
-  return AsUserError([&] { return FindModel(model, options.estimator); });
+  return AsUserError([&] { return FindModel(kEstimatorModel, options.estimator); });
 }
 
-SvbrdfMaps EstimatedStart(const FitStageOptions& options, const PhotographSet& photographs,
-                          const EstimatorConditions& conditions, int threads) {
+SvbrdfEstimate Estimated(const FitStageOptions& options, const PhotographSet& photographs,
+                         const EstimatorConditions& conditions, int threads) {
   const fs::path weights = EstimatorWeights(options);
   const Estimator estimator = AsUserError([&] { return Estimator::Load(weights); });
-  std::span<const Photograph> seen = photographs.photographs;
-  if (estimator.single_photograph()) seen = seen.subspan(BestStartingPhotograph(photographs), 1);
-  SvbrdfMaps maps =
-      estimator.Estimate(seen, photographs.plane, photographs.convention, conditions, threads).maps;
-  if (photographs.convention.diffuse_weight == DiffuseWeight::kOne) return maps;
+  SvbrdfEstimate estimate = estimator.Estimate(photographs, conditions, threads);
+  if (photographs.convention.diffuse_weight == DiffuseWeight::kOne) return estimate;
   for (int c = 0; c < 3; ++c) {  // the same look with diffuse weight 1 − k_s
-    for (size_t i = 0; i < maps.texels(); ++i) {
-      float& diffuse = maps.plane(kDiffuseR + c)[i];
-      diffuse = std::min(1.0f, diffuse / std::max(0.05f, 1 - maps.plane(kSpecularR + c)[i]));
+    for (size_t i = 0; i < estimate.maps.texels(); ++i) {
+      const float weight = std::max(0.05f, 1 - estimate.maps.plane(kSpecularR + c)[i]);
+      float& diffuse = estimate.maps.plane(kDiffuseR + c)[i];
+      diffuse = std::min(1.0f, diffuse / weight);
+      estimate.deviations.plane(kSigmaDiffuseR + c)[i] /= weight;
     }
   }
-  return maps;
+  return estimate;
 }
 
-SvbrdfMaps Start(const FitStageOptions& options, const PhotographSet& photographs,
-                 const EstimatorConditions& conditions, int threads) {
-  if (!options.start.empty()) return ReadSvbrdf(options.start);
-  if (options.bootstrap == "estimator") {
-    return EstimatedStart(options, photographs, conditions, threads);
-  }
-  return EstimateMaps(photographs, threads);
-}
-
-// Where fitting begins, at the size of its first level: finer detail of the initial maps would be
-// averaged away. With the method `start` they are the result, and have all detail.
-SvbrdfMaps InitialMaps(const FitStageOptions& options, const FitOptions& fit,
-                       const PhotographSet& photographs, const EstimatorConditions& conditions,
-                       int threads) {
-  const SamplePlane& plane = photographs.plane;
-  const auto [width, height] =
-      LevelSizes(plane.width, plane.height, fit.coarse_size, fit.finest_size).front();
-  const bool whole = options.method == "start" || !options.start.empty() ||
-                     (width == plane.width && height == plane.height);
-  if (whole) return Start(options, photographs, conditions, threads);
-  return Start(options, Downsampled(photographs, width, height, threads), conditions, threads);
+// Where fitting begins: of the photographs' size, unless they come from a file. Without deviations
+// where none are known.
+SvbrdfEstimate InitialMaps(const FitStageOptions& options, const PhotographSet& photographs,
+                           const EstimatorConditions& conditions, int threads) {
+  if (!options.start.empty()) return {ReadSvbrdf(options.start), {}};
+  if (Estimates(options)) return Estimated(options, photographs, conditions, threads);
+  return {EstimateMaps(photographs, threads), {}};
 }
 
 Json Metrics(const FitResult& fit, const std::vector<RectifiedView>& views) {
@@ -175,12 +186,14 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
                  "by texel; start: the initial maps, unfitted");
   set->AddChoice(
       "bootstrap", &options->bootstrap, {"estimator", "heuristic"},
-      "how the initial maps are estimated; estimator: a trained network, from the photograph "
-      "nearest to vertical; heuristic: lobes fitted to the whole sample");
-  set->AddChoice("metals", &options->metals, {"auto", "possible", "rare"},
-                 "how the estimator interprets dark, glossy areas; possible: perhaps metal; rare: "
-                 "glass, lacquer, print and the like; auto: possible if the light's power was "
-                 "calibrated, otherwise rare, since brightness then cannot tell them apart");
+      "how the initial maps are estimated; estimator: a trained network; heuristic: lobes fitted "
+      "to the whole sample");
+  set->AddChoice("metals", &options->metals, {"rare", "possible"},
+                 "how the estimator interprets dark, glossy areas; rare: glass, lacquer, print and "
+                 "the like; possible: perhaps metal");
+  set->AddRange("estimator-size", &options->estimator_size, 0, kFullSize,
+                "texels along the longer side at which the estimator is shown the photographs, at "
+                "most; 0: by their number, which is then recorded in the manifest");
   set->AddRange(
       "iterations", &options->iterations, 0, 1e6,
       "maximum number of steps at the first, coarse level; 0: the method's default, which "
@@ -211,9 +224,12 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
 
 void ResolveFitOptions(const fs::path& rectify_manifest, FitStageOptions* options) {
   const RectifiedSet set = ReadRectifiedSet(rectify_manifest);
-  if (options->metals == "auto") options->metals = set.light_power_known ? "possible" : "rare";
-  if (options->method == "start") return;  // without iterations
   const size_t photographs = SelectViews(set, options->views, options->exclude).size();
+  if (options->estimator_size == 0) {
+    options->estimator_size =
+        photographs <= kFewPhotographs ? kMostEstimatorSize : Estimator::kGlobalSize;
+  }
+  if (options->method == "start") return;  // without iterations
   const FitOptions own = IsLatent(*options) ? FitOptions::Latent() : FitOptions::Classic();
   const bool single = IsLatent(*options) && photographs == 1;
   const auto resolve = [&](int own_iterations, int* iterations) {
@@ -230,7 +246,7 @@ std::vector<fs::path> FitInputs(const FitStageOptions& options) {
   }
   if (!options.start.empty()) {
     inputs.push_back(options.start);
-  } else if (options.bootstrap == "estimator") {
+  } else if (Estimates(options)) {
     inputs.push_back(EstimatorWeights(options));
   }
   return inputs;
@@ -243,11 +259,15 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
   const FitOptions fit_options = FitOptionsOf(options, threads);
   if (const std::string wrong = fit_options.Check(); !wrong.empty())
     throw UserError("fit: " + wrong);
-  const PhotographSet photographs = Load(set, views, options, fit_options, threads);
+  const Size fitted = FittedSize(set.plane, options, fit_options);
+  const Size shown = ShownSize(set.plane, options, fit_options);
+  PhotographSet photographs = Load(set, views, fitted, shown, threads);
 
   const auto began = std::chrono::steady_clock::now();
   const EstimatorConditions conditions{options.metals == "rare", set.light_power_known};
-  const SvbrdfMaps start = InitialMaps(options, fit_options, photographs, conditions, threads);
+  const auto [start, deviations] = InitialMaps(options, Downsampled(photographs, shown.first, shown.second, threads),
+                  conditions, threads);
+  photographs = Downsampled(photographs, fitted.first, fitted.second, threads);
   FitStageResult result;
   {
     std::unique_ptr<Progress> bar;
@@ -271,6 +291,10 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
   result.data = Data(result.fit, set, options, views);
   result.metrics = Metrics(result.fit, views);
   WriteAtSize(stage->Output("svbrdf.exr"), result.fit.maps, set);
+  if (!deviations.empty()) {
+    WriteDeviations(stage->Output("confidence.exr"), deviations, set.plane.width, set.plane.height,
+                    set.convention);
+  }
   stage->Commit(result.data, result.metrics);
   return result;
 }

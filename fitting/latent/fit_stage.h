@@ -17,10 +17,12 @@ struct FitStageOptions {
   // latent: in the learned space; classic: texel by texel; start: no fitting, the start as it is
   std::string method = "latent";
   std::string bootstrap = "estimator";  // estimator: the trained network; heuristic: bootstrap.h
-  // possible or rare: which of the shipped estimators; auto: rare where the light's power is not
-  // known, so that no highlight's brightness tells metal from glass and what people photograph
-  // decides. Without effect where `estimator` or `start` is given, and on heuristics.
-  std::string metals = "auto";
+  // rare or possible: what the estimator is told of dark, glossy texels (estimator_conditions.h).
+  // Without effect where `start` is given, and on heuristics.
+  std::string metals = "rare";
+  // Texels along the longer side of what the estimator is shown, at most; 0: by the number of
+  // photographs.
+  int estimator_size = 0;
   int iterations = 0;       // at the first level; 0: the method's own (few from one photo)
   int fine_iterations = 0;  // at each later level; 0: the method's own
   int finest_size = 256;    // latent: of the last level, texels, or the photographs'

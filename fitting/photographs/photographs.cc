@@ -11,6 +11,17 @@
 namespace glint {
 namespace {
 
+// Of LDR radiance; resampling may have mixed a little of a darker pixel in.
+constexpr float kLimit = 0.99f;
+// Radiance from which a masked texel of an LDR photograph is masked because a pixel is clipped.
+constexpr float kMaskedBright = 0.25f;
+
+float Brightest(const Photograph& photograph, size_t texel) {
+  const size_t texels = photograph.mask.size();
+  const std::vector<float>& rgb = photograph.rgb;
+  return std::max({rgb[texel], rgb[texels + texel], rgb[2 * texels + texel]});
+}
+
 // Which samples of a picture make those of the smaller one.
 struct Averaging {
   const SamplePlane& big;
@@ -29,23 +40,29 @@ void AverageRows(const Averaging& averaging, const Photograph& from, int first_r
       const size_t top = static_cast<size_t>(down.first - first_row);
       for (size_t column = 0; column < width; ++column) {
         const Overlaps& across = averaging.across[column];
-        double area = 0, usable = 0, sum[3] = {0, 0, 0};
+        double area = 0, usable = 0, seen = 0, sum[3] = {0, 0, 0};
+        bool clipped = false;
         for (size_t u = 0; u < down.shares.size(); ++u) {
           for (size_t v = 0; v < across.shares.size(); ++v) {
             const size_t i = (top + u) * big_width + static_cast<size_t>(across.first) + v;
             const double weight = down.shares[u] * across.shares[v];
-            const double used = weight * from.mask[i];
+            const bool limited = ReachesLimit(from, i);
+            const double used = limited ? weight : weight * from.mask[i];
             area += weight;
             if (used <= 0) continue;
-            usable += used;
+            clipped |= limited;
+            usable += weight * from.mask[i];
+            seen += used;
             for (size_t c = 0; c < 3; ++c) sum[c] += used * from.rgb[c * big_texels + i];
           }
         }
         const size_t o = static_cast<size_t>(row) * width + column;
-        to->mask[o] = static_cast<float>(usable / area);
         for (size_t c = 0; c < 3; ++c) {
-          to->rgb[c * texels + o] = usable > 0 ? static_cast<float>(sum[c] / usable) : 0.0f;
+          to->rgb[c * texels + o] = seen > 0 ? static_cast<float>(sum[c] / seen) : 0.0f;
         }
+        to->mask[o] = !clipped                      ? static_cast<float>(usable / area)
+                      : Brightest(*to, o) >= kLimit ? 1.0f
+                                                    : 0.0f;
       }
     }
   });
@@ -69,6 +86,11 @@ std::string CheckPhotograph(const Photograph& p, size_t texels) {
 }
 
 }  // namespace
+
+bool ReachesLimit(const Photograph& photograph, size_t texel) {
+  if (!photograph.ldr) return false;
+  return Brightest(photograph, texel) >= (photograph.mask[texel] < 0.5f ? kMaskedBright : kLimit);
+}
 
 std::string PhotographSet::Check() const {
   if (plane.width < 1 || plane.height < 1) return "the sample has no texels";

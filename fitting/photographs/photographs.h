@@ -36,7 +36,16 @@ struct PhotographSet {
 // Rows first_row … first_row + rows − 1 of a photograph.
 using ReadRows = std::function<Photograph(int first_row, int rows)>;
 
-// Area averages of the usable texels; a texel's mask becomes the usable share of its area.
+// Whether the sensor's limit was reached in a texel: radiance of an LDR photograph at its limit, or
+// masked since a pixel under it is clipped (rectification keeps the radiance of such texels, which
+// are bright; what lies outside of the picture or under the frame is dark or has a mask of its own).
+// Such a texel is part of a highlight, not unknown: its radiance is a lower bound.
+bool ReachesLimit(const Photograph& photograph, size_t texel);
+
+// Area averages of the texels that say something. What is clipped stays clipped, as in a photograph
+// that was rectified at the smaller size: a texel with a clipped part has its radiance, of the
+// clipped part too, and is masked unless the average is at the limit. Elsewhere a texel's mask
+// becomes the usable share of its area.
 // width and height at most the set's. Works tile by tile; results do not depend on `threads`.
 // Throws std::invalid_argument for other sizes.
 PhotographSet Downsampled(const PhotographSet& set, int width, int height, int threads);

@@ -19,6 +19,9 @@ void CheckProblem(const RefineProblem& problem, const SvbrdfMaps& start) {
   if (start.width != plane.width || start.height != plane.height) {
     throw std::invalid_argument("refine: the start's size is not the photographs'");
   }
+  if (!problem.initial_sd.empty() && problem.initial_sd.size() != kDeviationPlanes * texels) {
+    throw std::invalid_argument("refine: the start's deviations are not of the plane's size");
+  }
   for (const RefineView& view : problem.views) {
     if (view.rgb.size() != 3 * texels || view.mask.size() != texels) {
       throw std::invalid_argument("refine: a photograph's size is not the plane's");
@@ -40,7 +43,8 @@ struct PickedProblem {
     problem.plane = from.plane.Every(stride);
     start = SvbrdfMaps(problem.plane.width, problem.plane.height);
     start.planes = pick(from_start.planes);
-    values.reserve(2 * from.views.size());
+    values.reserve(2 * from.views.size() + 1);
+    if (!from.initial_sd.empty()) problem.initial_sd = values.emplace_back(pick(from.initial_sd));
     for (RefineView& view : problem.views) {
       view.rgb = values.emplace_back(pick(view.rgb));
       view.mask = values.emplace_back(pick(view.mask));

@@ -25,6 +25,7 @@
 
 #include "fitting/reflectance/convention.h"
 #include "fitting/reflectance/environment_lighting.h"
+#include "fitting/reflectance/svbrdf_deviations.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/reflectance/systematic_deviations.h"
 #include "fitting/reflectance/view.h"
@@ -48,6 +49,9 @@ struct RefineProblem {
   SamplePlane plane;
   ReflectanceConvention convention;
   std::vector<RefineView> views;
+  // Standard deviations of the initial maps, kDeviationPlanes planes of H·W, as whoever made them
+  // states them; empty: those of InitialisationErrors. The span belongs to the caller.
+  std::span<const float> initial_sd = {};
   EnvironmentLighting environment;     // beside what each view has as ambient light
   SystematicDeviations systematic_sd;  // of errors that follow from uncertain views
 };
@@ -84,18 +88,9 @@ struct RefineOptions {
   std::string Check() const;
 };
 
-// Standard deviations, H×W each, in the maps' units.
+// What confidence.exr holds: standard deviations (DeviationPlane), and beside them
 enum ConfidencePlane : int {
-  kSigmaNormalX,
-  kSigmaNormalY,
-  kSigmaDiffuseR,
-  kSigmaDiffuseG,
-  kSigmaDiffuseB,
-  kSigmaSpecularR,
-  kSigmaSpecularG,
-  kSigmaSpecularB,
-  kSigmaRoughness,
-  kTexelCost,  // half the sum of squared residuals
+  kTexelCost = kDeviationPlanes,  // half the sum of squared residuals
   kConfidencePlanes
 };
 

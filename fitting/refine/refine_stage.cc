@@ -27,9 +27,14 @@ namespace {
 namespace fs = std::filesystem;
 
 // In the order of ConfidencePlane.
-const std::vector<std::string> kConfidenceChannels = {
-    "normal.X",   "normal.Y",   "diffuse.R",  "diffuse.G",   "diffuse.B",
-    "specular.R", "specular.G", "specular.B", "roughness.Y", "cost.Y"};
+const std::vector<std::string>& ConfidenceChannels() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> channels = DeviationChannels();
+    channels.emplace_back("cost.Y");
+    return channels;
+  }();
+  return names;
+}
 
 constexpr char kMapsFile[] = "svbrdf.exr", kConfidenceFile[] = "confidence.exr";
 
@@ -171,7 +176,7 @@ CorrectionResult CorrectViewsWithBar(const RefineOptions& refine, const Correcti
 SampleEstimate EstimateFrom(const RefineOptions& options, int threads, SampleSource* source) {
   const int stride = EstimationStride(source->plane(), options.estimation_size);
   const SampleSource::Part part = source->Every(stride, threads);
-  return EstimateSample(ProblemOf(part.photographs), part.start, options, threads);
+  return EstimateSample(part.Problem(), part.start, options, threads);
 }
 
 // How many rows are refined at a time: as the memory that they need allows.
@@ -218,7 +223,7 @@ struct Sample {
       : set(ReadRectifiedSet(rectify_manifest)),
         views(ChooseViews(set, start, stage_options)),
         options(OptionsFor(set, stage_options)),
-        source(set, views, start.light_scale_rgb, start.maps_file),
+        source(set, views, start.light_scale_rgb, start.maps_file, start.deviations_file),
         correction(CorrectViewsWithBar(stage_options.refine,
                                        CorrectionFor(set, views, stage_options.correction), threads,
                                        &source)),
@@ -255,7 +260,7 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
   };
   RowRefiner refiner(estimate, options, rows, threads, progress);
   SvbrdfWriter maps(stage->Output(kMapsFile), plane.width, rows, convention);
-  ExrWriter confidence(stage->Output(kConfidenceFile), plane.width, rows, kConfidenceChannels,
+  ExrWriter confidence(stage->Output(kConfidenceFile), plane.width, rows, ConfidenceChannels(),
                        {{"convention", ToString(convention)}}, ExrPrecision::kHalf);
   const int reached = DependentRows(ProblemOf(source->Views()), options);
   for (int first = part.first(plane.height); first < end; first += rows_at_once) {
@@ -264,9 +269,9 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
     const SampleSource::Part some =
         source->Rows(first - above, above + last - first + below, threads);
     RowRefiner::Rows refined =
-        refiner.Refine(ProblemOf(some.photographs), some.start, above, below);
+        refiner.Refine(some.Problem(), some.start, above, below);
     Image deviations(plane.width, last - first, {});
-    deviations.channels = kConfidenceChannels;
+    deviations.channels = ConfidenceChannels();
     deviations.samples = std::move(refined.confidence);
     // Compressing takes as long as reading the photographs.
     ForEachPiece(2, threads, [&](int file) {
@@ -421,6 +426,10 @@ RefineStart ResolveRefineStart(const fs::path& work, const RefineStageOptions& o
   const Manifest fit = ReadManifest(file, "fit");
   VerifyOutputs(file, fit);
   start.maps_file = work / "fit" / kMapsFile;
+  const bool stated = std::any_of(fit.outputs.begin(), fit.outputs.end(), [](const auto& output) {
+    return output.path == kConfidenceFile;
+  });
+  if (stated) start.deviations_file = work / "fit" / kConfidenceFile;
   if (fit.data.contains("light_scale_rgb")) {
     const auto scale = RequireNumbers(file, fit.data, "data", "light_scale_rgb", 3);
     std::copy(scale.begin(), scale.end(), start.light_scale_rgb.begin());

@@ -42,6 +42,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options);
 // What the stage starts from: file, light scale and the views that were used.
 struct RefineStart {
   std::filesystem::path maps_file;
+  std::filesystem::path deviations_file;  // of those maps; empty: not stated
   std::filesystem::path manifest_file;  // of fit; empty with `from`
   Vec3d light_scale_rgb{1, 1, 1};
   std::vector<std::string> views;

@@ -130,6 +130,21 @@ SampleModel SampleModel::On(const SamplePart& part) const {
 }
 
 TexelGaussian SampleModel::Initialisation(size_t texel) const {
+  const std::span<const float> stated = part_->problem().initial_sd;
+  if (!stated.empty()) {
+    const auto of = [&](int plane) {
+      return initial_errors_.factor * stated[static_cast<size_t>(plane) * part_->texels() + texel];
+    };
+    std::array<double, kTexelParameters> sd;
+    for (int c = 0; c < 3; ++c) {
+      sd[static_cast<size_t>(DiffuseParameter(c))] = of(kSigmaDiffuseR + c);
+      sd[static_cast<size_t>(SpecularParameter(c))] = of(kSigmaSpecularR + c);
+    }
+    sd[kRough] = of(kSigmaRoughness);
+    sd[kSlopeX] = of(kSigmaNormalX);
+    sd[kSlopeY] = of(kSigmaNormalY);
+    return TexelGaussian(ReadTexel(part_->initial(), texel), sd);
+  }
   return TexelGaussian(ReadTexel(part_->initial(), texel), initial_errors_);
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/resampling/resampling.h"
+#include "fitting/refine/correct_views.h"
 
 namespace glint {
 namespace {
@@ -21,10 +22,21 @@ RectifiedSet WithWeightOf(RectifiedSet set, const std::filesystem::path& maps_fi
 }  // namespace
 
 SampleSource::SampleSource(const RectifiedSet& set, const std::vector<RectifiedView>& views,
-                           const Vec3d& light_scale_rgb, std::filesystem::path maps_file)
+                           const Vec3d& light_scale_rgb, std::filesystem::path maps_file,
+                           const std::filesystem::path& deviations_file)
     : maps_file_(std::move(maps_file)),
       maps_(maps_file_, set.plane.width, set.plane.height),
-      photographs_(WithWeightOf(set, maps_file_), views, light_scale_rgb) {}
+      photographs_(WithWeightOf(set, maps_file_), views, light_scale_rgb) {
+  if (!deviations_file.empty()) {
+    deviations_.emplace(deviations_file, set.plane.width, set.plane.height);
+  }
+}
+
+RefineProblem SampleSource::Part::Problem() const {
+  RefineProblem problem = ProblemOf(photographs);
+  problem.initial_sd = start_sd.planes;
+  return problem;
+}
 
 void SampleSource::Correct(ViewCorrections corrections) { corrections_ = std::move(corrections); }
 
@@ -45,13 +57,15 @@ PhotographSet SampleSource::PhotographRows(int first_row, int rows, int threads)
 }
 
 SampleSource::Part SampleSource::Rows(int first_row, int rows, int threads) {
-  return {PhotographRows(first_row, rows, threads), maps_.Read(first_row, rows)};
+  return {PhotographRows(first_row, rows, threads), maps_.Read(first_row, rows),
+          deviations_ ? deviations_->Read(first_row, rows) : SvbrdfDeviations()};
 }
 
 SampleSource::Part SampleSource::Every(int stride, int threads) {
   if (stride == 1) return Rows(0, plane().height, threads);
   const SamplePlane picked = plane().Every(stride);
-  Part part{Views(), SvbrdfMaps(picked.width, picked.height)};
+  Part part{Views(), SvbrdfMaps(picked.width, picked.height), {}};
+  if (deviations_) part.start_sd = SvbrdfDeviations(picked.width, picked.height);
   part.photographs.plane = picked;
   for (Photograph& p : part.photographs.photographs) {
     p.rgb.assign(3 * part.start.texels(), 0.0f);
@@ -66,6 +80,7 @@ SampleSource::Part SampleSource::Every(int stride, int threads) {
               first / stride, *to);
     };
     take(from.start.planes, &part.start.planes);
+    if (deviations_) take(from.start_sd.planes, &part.start_sd.planes);
     part.photographs.environment = from.photographs.environment;
     part.photographs.systematic_sd = from.photographs.systematic_sd;
     for (size_t v = 0; v < from.photographs.photographs.size(); ++v) {
@@ -80,7 +95,8 @@ SampleSource::Part SampleSource::Every(int stride, int threads) {
 
 SampleSource::Part SampleSource::Downsampled(int width, int height, int threads) {
   return {photographs_.Downsampled(width, height, threads),
-          ResampledSvbrdf(maps_file_, width, height).Read(0, height)};
+          ResampledSvbrdf(maps_file_, width, height).Read(0, height),
+          {}};
 }
 
 }  // namespace glint

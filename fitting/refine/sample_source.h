@@ -3,11 +3,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "fitting/rectified_photographs/rectified_photographs.h"
+#include "fitting/refine/refine.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/view_correction/view_correction.h"
+#include "pipeline/contract/deviation_rows.h"
 #include "pipeline/contract/svbrdf_rows.h"
 
 namespace glint {
@@ -15,13 +18,19 @@ namespace glint {
 class SampleSource {
  public:
   // `maps_file`: an svbrdf.exr, which is resampled to the set's size; its diffuse weight becomes
-  // that of the convention. Throws UserError; so do all that read.
+  // that of the convention. `deviations_file`: of those maps; empty: not known. Throws UserError; so
+  // do all that read.
   SampleSource(const RectifiedSet& set, const std::vector<RectifiedView>& views,
-               const Vec3d& light_scale_rgb, std::filesystem::path maps_file);
+               const Vec3d& light_scale_rgb, std::filesystem::path maps_file,
+               const std::filesystem::path& deviations_file);
 
   struct Part {
     PhotographSet photographs;
     SvbrdfMaps start;
+    SvbrdfDeviations start_sd;  // empty: not known
+
+    // What of it refinement takes; this must outlive it.
+    RefineProblem Problem() const;
   };
   // From now on Rows() and Every() give photographs as the corrections say.
   void Correct(ViewCorrections corrections);
@@ -32,7 +41,7 @@ class SampleSource {
   Part Rows(int first_row, int rows, int threads);
   // The texel in the middle of every stride × stride.
   Part Every(int stride, int threads);
-  // Averages, not corrected.
+  // Averages, not corrected; without deviations of the maps.
   Part Downsampled(int width, int height, int threads);
 
  private:
@@ -40,6 +49,7 @@ class SampleSource {
 
   std::filesystem::path maps_file_;
   ResampledSvbrdf maps_;
+  std::optional<ResampledDeviations> deviations_;
   RectifiedPhotographs photographs_;
   ViewCorrections corrections_;  // no views: none
 };

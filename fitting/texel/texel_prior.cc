@@ -30,6 +30,13 @@ TexelGaussian::TexelGaussian(const TexelValues& initial, const InitialisationErr
   precision_[kSlopeX] = precision_[kSlopeY] = 1 / (errors.normal * errors.normal);
 }
 
+TexelGaussian::TexelGaussian(const TexelValues& initial,
+                             const std::array<double, kTexelParameters>& sd)
+    : mean_(initial) {
+  NormalOfSlopes(initial[kSlopeX], initial[kSlopeY], &mean_[kSlopeX]);
+  for (size_t i = 0; i < sd.size(); ++i) precision_[i] = 1 / (sd[i] * sd[i]);
+}
+
 void TexelGaussian::Multiply(int parameter, double mean, double precision) {
   const double sum = precision_[parameter] + precision;
   if (!(sum > 0)) return;

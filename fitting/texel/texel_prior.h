@@ -22,11 +22,13 @@ struct InitialisationErrors {
   double diffuse_relative = 0.1;
   double specular = 0.02;
   double specular_relative = 0.2;
+  double factor = 1;  // by which they were scaled
 
-  void Scale(double factor) {
+  void Scale(double by) {
+    factor *= by;
     for (double* error :
          {&normal, &roughness, &diffuse, &diffuse_relative, &specular, &specular_relative}) {
-      *error *= factor;
+      *error *= by;
     }
   }
 };
@@ -38,6 +40,8 @@ class TexelGaussian {
   TexelGaussian() = default;
   // Values with the errors of an initialisation.
   TexelGaussian(const TexelValues& initial, const InitialisationErrors& errors);
+  // Values with standard deviations, in the parameters' order and of n_x and n_y.
+  TexelGaussian(const TexelValues& initial, const std::array<double, kTexelParameters>& sd);
 
   // Multiplies with a Gaussian of one value. precision ≥ 0.
   void Multiply(int parameter, double mean, double precision);

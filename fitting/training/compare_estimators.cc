@@ -88,7 +88,7 @@ int Run(const std::vector<std::string>& arguments) {
   const Tensor truth = Materials(materials, size);
   std::printf("%-32s %3s %8s %10s %10s\n", "file", "N", "maps", "roughness", "renderings");
   for (const std::string& file : files) {
-    const EstimatorNetwork network = LoadEstimator(file).network;
+    const EstimatorNetwork network = LoadEstimator(file);
     for (const int photographs : kCounts) {
       const Errors errors = Evaluate(network, truth, photographs);
       std::printf("%-32s %3d %8.4f %10.4f %10.4f\n", file.c_str(), photographs, errors.maps,

@@ -34,7 +34,7 @@ EstimatorNetwork FirstNetwork(const EstimatorTrainOptions& options) {
   if (options.from.empty()) {
     return EstimatorNetwork::Random(ChannelsOf(options), options.seed, wanted);
   }
-  EstimatorNetwork network = LoadEstimator(options.from).network;
+  EstimatorNetwork network = LoadEstimator(options.from);
   if (network.kind == EstimatorKind::kPooled && wanted == EstimatorKind::kDescent) {
     network.kind = wanted;
     network.descent = DescentNetwork::Random(options.seed);

@@ -57,10 +57,6 @@ void Normalise(SvbrdfMaps* maps) {
   }
 }
 
-std::vector<Taps> TapsBetween(int from, int to) {
-  return from > to ? AreaTaps(from, to) : TentTaps(from, to);
-}
-
 }  // namespace
 
 SvbrdfReader::SvbrdfReader(const std::filesystem::path& file, ReflectanceConvention* convention)

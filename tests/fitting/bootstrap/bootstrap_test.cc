@@ -142,23 +142,5 @@ TEST(PhotographSet, SaysWhatIsWrong) {
   EXPECT_NE(bad.Check(), "");
 }
 
-TEST(Downsampled, KeepsMeansAndIgnoresMaskedTexels) {
-  PhotographSet set = PhotographMaps(ToyMaterial(2, 30, 20), 1);
-  set.environment.radiance_rgb = {{0.1, 0.2, 0.3}};
-  const PhotographSet small = Downsampled(set, 15, 10, 1);
-  EXPECT_EQ(small.environment.radiance_rgb, set.environment.radiance_rgb);
-  const auto mean = [](const std::vector<float>& v) {
-    return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
-  };
-  EXPECT_NEAR(mean(small.photographs[0].rgb), mean(set.photographs[0].rgb), 1e-6);
-  EXPECT_EQ(small.photographs[0].rgb, Downsampled(set, 15, 10, 2).photographs[0].rgb);
-  set.photographs[0].mask[0] = 0;
-  set.photographs[0].rgb[0] = std::numeric_limits<float>::quiet_NaN();
-  const PhotographSet holed = Downsampled(set, 15, 10, 1);
-  EXPECT_TRUE(std::isfinite(holed.photographs[0].rgb[0]));
-  EXPECT_FLOAT_EQ(holed.photographs[0].mask[0], 0.75f);
-  EXPECT_THROW(Downsampled(set, 31, 20, 1), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace glint

@@ -26,9 +26,7 @@ class EstimatorFile : public testing::TestWithParam<EstimatorKind> {
     SaveEstimator(path_, &network, {});
   }
   SvbrdfMaps Estimate(const PhotographSet& set, int threads = 1) const {
-    return Estimator::Load(path_)
-        .Estimate(set.photographs, set.plane, set.convention, {}, threads)
-        .maps;
+    return Estimator::Load(path_).Estimate(set, {}, threads).maps;
   }
   const test::TemporaryFolder folder_;
   const std::filesystem::path path_ = folder_.path() / "e.safetensors";
@@ -110,7 +108,7 @@ TEST(EstimatorKinds, AreNamedInTheFileAndOthersAreRefused) {
   EstimatorNetwork network =
       EstimatorNetwork::Random({{8, 12, 16, 16, 24}, 8, 16}, 3, EstimatorKind::kDescent);
   SaveEstimator(path, &network, {});
-  EXPECT_EQ(LoadEstimator(path).network.kind, EstimatorKind::kDescent);
+  EXPECT_EQ(LoadEstimator(path).kind, EstimatorKind::kDescent);
   SaveEstimator(path, &network, {{"architecture", "glint-estimator v3 clairvoyant"}});
   try {
     LoadEstimator(path);
@@ -118,14 +116,6 @@ TEST(EstimatorKinds, AreNamedInTheFileAndOthersAreRefused) {
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("\"glint-estimator v3 clairvoyant\""));
   }
-}
-
-TEST(StartingPhotograph, IsTheOneFromTheTop) {
-  PhotographSet set = PhotographMaps(UniformMaps(16, 0.3f, 0.04f, 0.5f), 4);
-  std::swap(set.photographs[0], set.photographs[2]);  // synthetic sets begin with the top view
-  EXPECT_EQ(BestStartingPhotograph(set), 2u);
-  for (float& m : set.photographs[2].mask) m = 0;
-  EXPECT_NE(BestStartingPhotograph(set), 2u);
 }
 
 }  // namespace

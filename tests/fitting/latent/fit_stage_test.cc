@@ -20,13 +20,13 @@ FitStageOptions WithMetals(const std::string& metals) {
   return options;
 }
 
-TEST(FitInputs, AreTheEstimatorForTheMetalsExpected) {
+TEST(FitInputs, AreTheEstimatorUnlessInitialMapsComeFromElsewhere) {
   const auto name = [](const FitStageOptions& options) {
     const std::vector<fs::path> inputs = FitInputs(options);
     return inputs.empty() ? "" : inputs.front().filename().string();
   };
   EXPECT_EQ(name(WithMetals("possible")), kEstimatorModel);
-  EXPECT_EQ(name(WithMetals("rare")), kRareMetalsEstimatorModel);
+  EXPECT_EQ(name(WithMetals("rare")), kEstimatorModel);
   FitStageOptions heuristic = WithMetals("rare");
   heuristic.bootstrap = "heuristic";
   EXPECT_EQ(name(heuristic), "");
@@ -38,12 +38,10 @@ TEST(FitInputs, OfAnEstimatorThatIsGivenAreThatOne) {
   EXPECT_EQ(FitInputs(options), std::vector<fs::path>{options.estimator});
 }
 
-// Mean F0 that the shipped network takes the photograph's sample for.
-double EstimatedSpecular(const char* model, const PhotographSet& set) {
+// Mean F0 that the shipped network takes the photographs' sample for.
+double EstimatedSpecular(bool metals_rare, const PhotographSet& set) {
   const SvbrdfMaps maps =
-      Estimator::Load(FindModel(model))
-          .Estimate(std::span(set.photographs).first(1), set.plane, set.convention, {}, 1)
-          .maps;
+      Estimator::Load(FindModel(kEstimatorModel)).Estimate(set, {metals_rare, true}, 1).maps;
   double sum = 0;
   for (const float s : maps.plane(kSpecularG)) sum += s;
   return sum / static_cast<double>(maps.texels());
@@ -51,9 +49,9 @@ double EstimatedSpecular(const char* model, const PhotographSet& set) {
 
 TEST(RareMetals, TakesABlackMirrorForGlass) {
   const PhotographSet glass = test::PhotographMaps(test::UniformMaps(128, 0.005f, 0.04f, 0.1f), 1);
-  const double rare = EstimatedSpecular(kRareMetalsEstimatorModel, glass);
+  const double rare = EstimatedSpecular(true, glass);
   EXPECT_LT(rare, 0.12);
-  EXPECT_LT(rare, EstimatedSpecular(kEstimatorModel, glass));
+  EXPECT_LT(rare, EstimatedSpecular(false, glass));
 }
 
 // A rectified set of three views, and the manifest's path.
@@ -97,22 +95,6 @@ TEST(ResolveFitOptions, PutsTheMethodsOwnNumbersWhereNoneAreGiven) {
   EXPECT_EQ(resolved(classic), std::pair(3000, 200));
   EXPECT_EQ(resolved(single), std::pair(8, 8));
   EXPECT_EQ(resolved(given), std::pair(17, 80));
-}
-
-TEST(ResolveFitOptions, MetalsAreRareWhereNoHighlightsBrightnessTellsThem) {
-  const test::TemporaryFolder folder;
-  const auto metals = [&](bool light_power_known, FitStageOptions options) {
-    const std::string name = light_power_known ? "known" : "unknown";
-    ResolveFitOptions(WriteRectifiedViews(folder / name, light_power_known), &options);
-    return options.metals;
-  };
-  FitStageOptions start;
-  start.method = "start";
-  EXPECT_EQ(metals(true, {}), "possible");
-  EXPECT_EQ(metals(false, {}), "rare");
-  EXPECT_EQ(metals(false, start), "rare");
-  EXPECT_EQ(metals(false, WithMetals("possible")), "possible");
-  EXPECT_EQ(metals(true, WithMetals("rare")), "rare");
 }
 
 // So that whoever reads a manifest knows what was done.
