@@ -147,6 +147,17 @@ SvbrdfEstimate InitialMaps(const FitStageOptions& options, const PhotographSet& 
   return {EstimateMaps(photographs, threads), {}};
 }
 
+// The detail of initial maps that the fit's size does not hold, added to what was fitted to them:
+// the learned space corrects what is coarse, and has not seen the rest.
+SvbrdfMaps WithDetail(const SvbrdfMaps& fitted, const SvbrdfMaps& initial) {
+  if (initial.width <= fitted.width && initial.height <= fitted.height) return fitted;
+  const EncodedMaps fine = EncodeMaps(initial);
+  const EncodedMaps coarse = Resized(Resized(fine, fitted.width, fitted.height), fine.width, fine.height);
+  EncodedMaps maps = Resized(EncodeMaps(fitted), fine.width, fine.height);
+  for (size_t i = 0; i < maps.planes.size(); ++i) maps.planes[i] += fine.planes[i] - coarse.planes[i];
+  return DecodeMaps(maps);
+}
+
 Json Metrics(const FitResult& fit, const std::vector<RectifiedView>& views) {
   Json levels = Json::array();
   for (const FitLevel& level : fit.levels) {
@@ -281,6 +292,7 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
       const Autoencoder network = AsUserError(
           [&] { return Autoencoder::Load(FindModel(kAutoencoderModel, options.weights)); });
       result.fit = FitLatent(photographs, start, network, fit_options, progress);
+      result.fit.maps = WithDetail(result.fit.maps, start);
     } else {
       result.fit = FitClassic(photographs, start, fit_options, progress);
     }
