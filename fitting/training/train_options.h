@@ -46,10 +46,10 @@ struct TrainOptions {
 };
 
 struct TrainFiles {
-  std::filesystem::path weights;     // the result, rewritten at each checkpoint
-  std::filesystem::path checkpoint;  // optimiser and all; empty: <weights>.checkpoint
-  std::filesystem::path log_csv;     // empty: <weights>.csv; appended to when resuming
-  bool resume = false;               // go on from the checkpoint when it exists
+  std::filesystem::path weights;       // the result, rewritten at each checkpoint
+  std::filesystem::path checkpoint;    // optimiser and all; empty: <weights>.checkpoint
+  std::filesystem::path log_csv;       // empty: <weights>.csv; appended to when resuming
+  bool resume = false;                 // go on from the checkpoint when it exists
   std::filesystem::path float32 = {};  // the result in float32 beside; empty: none
 
   std::filesystem::path CheckpointPath() const;
