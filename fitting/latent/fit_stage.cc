@@ -12,6 +12,7 @@
 #include "fitting/bootstrap/bootstrap.h"
 #include "fitting/estimator/estimator.h"
 #include "fitting/latent/levels.h"
+#include "fitting/latent/light_power.h"
 #include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/weights/find_model.h"
 #include "pipeline/contract/deviation_rows.h"
@@ -121,12 +122,15 @@ fs::path EstimatorWeights(const FitStageOptions& options) {
   return AsUserError([&] { return FindModel(kEstimatorModel, options.estimator); });
 }
 
-SvbrdfEstimate Estimated(const FitStageOptions& options, const PhotographSet& photographs,
-                         const EstimatorConditions& conditions, int threads) {
-  const fs::path weights = EstimatorWeights(options);
-  const Estimator estimator = AsUserError([&] { return Estimator::Load(weights); });
-  SvbrdfEstimate estimate = estimator.Estimate(photographs, conditions, threads);
-  if (photographs.convention.diffuse_weight == DiffuseWeight::kOne) return estimate;
+// Maps to begin with, and what their light's power is to be multiplied with.
+struct Initial {
+  SvbrdfMaps maps;
+  SvbrdfDeviations deviations;  // empty: not known
+  PowerEstimate power;
+};
+
+SvbrdfEstimate EstimatedAs(const ReflectanceConvention& convention, SvbrdfEstimate estimate) {
+  if (convention.diffuse_weight == DiffuseWeight::kOne) return estimate;
   for (int c = 0; c < 3; ++c) {  // the same look with diffuse weight 1 − k_s
     for (size_t i = 0; i < estimate.maps.texels(); ++i) {
       const float weight = std::max(0.05f, 1 - estimate.maps.plane(kSpecularR + c)[i]);
@@ -138,13 +142,26 @@ SvbrdfEstimate Estimated(const FitStageOptions& options, const PhotographSet& ph
   return estimate;
 }
 
-// Where fitting begins: of the photographs' size, unless they come from a file. Without deviations
-// where none are known.
-SvbrdfEstimate InitialMaps(const FitStageOptions& options, const PhotographSet& photographs,
-                           const EstimatorConditions& conditions, int threads) {
-  if (!options.start.empty()) return {ReadSvbrdf(options.start), {}};
+Initial Estimated(const FitStageOptions& options, const PhotographSet& photographs,
+                  const EstimatorConditions& conditions, int threads) {
+  const fs::path weights = EstimatorWeights(options);
+  const Estimator estimator = AsUserError([&] { return Estimator::Load(weights); });
+  PowerEstimate power;
+  if (!photographs.light_power_known) {
+    power = EstimatePower(estimator, photographs, conditions, threads);
+  }
+  SvbrdfEstimate estimate = EstimatedAs(
+      photographs.convention,
+      estimator.Estimate(WithPower(photographs, power.factor), conditions, threads));
+  return {std::move(estimate.maps), std::move(estimate.deviations), power};
+}
+
+// Where fitting begins: of the photographs' size, unless they come from a file.
+Initial InitialMaps(const FitStageOptions& options, const PhotographSet& photographs,
+                    const EstimatorConditions& conditions, int threads) {
+  if (!options.start.empty()) return {ReadSvbrdf(options.start), {}, {}};
   if (Estimates(options)) return Estimated(options, photographs, conditions, threads);
-  return {EstimateMaps(photographs, threads), {}};
+  return {EstimateMaps(photographs, threads), {}, {}};
 }
 
 // The detail of initial maps that the fit's size does not hold, added to what was fitted to them:
@@ -276,9 +293,11 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
 
   const auto began = std::chrono::steady_clock::now();
   const EstimatorConditions conditions{options.metals == "rare", set.light_power_known};
-  const auto [start, deviations] = InitialMaps(options, Downsampled(photographs, shown.first, shown.second, threads),
+  const auto [start, deviations, power] =
+      InitialMaps(options, Downsampled(photographs, shown.first, shown.second, threads),
                   conditions, threads);
-  photographs = Downsampled(photographs, fitted.first, fitted.second, threads);
+  photographs = WithPower(
+      Downsampled(photographs, fitted.first, fitted.second, threads), power.factor);
   FitStageResult result;
   {
     std::unique_ptr<Progress> bar;
@@ -297,6 +316,7 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
       result.fit = FitClassic(photographs, start, fit_options, progress);
     }
   }
+  result.fit.light_scale *= power.factor;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   result.width = set.plane.width;
   result.height = set.plane.height;
