@@ -1,13 +1,17 @@
 // glint-train: trains the learned parts of Glint. Builds with libtorch and header-only libraries
 // alone.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "datasets/procedural/material.h"
 #include "fitting/training/autoencoder_trainer.h"
 #include "fitting/training/estimator_trainer.h"
+#include "fitting/training/pnm_materials.h"
 #include "fitting/training/training_materials.h"
 
 namespace {
@@ -26,6 +30,8 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
   app->add_option("--out", files->weights, "weights file to write (safetensors)")->required();
   app->add_option("--checkpoint", files->checkpoint, "checkpoint file (default: OUT.checkpoint)");
   app->add_option("--log", files->log_csv, "loss log, CSV (default: OUT.csv)");
+  app->add_option("--float32", files->float32,
+                  "also write the averaged weights in float32 to this file (default: bf16 alone)");
   app->add_flag("--resume", files->resume, "continue from the checkpoint if there is one");
   app->add_option("--steps", o->steps, "number of optimiser steps");
   app->add_option("--minutes", o->minutes,
@@ -75,6 +81,16 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
       ->capture_default_str();
   app->add_option("--checkpoint-minutes", o->checkpoint_minutes, "minutes between checkpoints")
       ->capture_default_str();
+  app->add_option("--report-seconds", o->report_seconds, "seconds between lines of the loss log")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app->add_flag("--supervise", o->supervise,
+                "when the loss jumps, return to the last good weights and halve the learning rate");
+  app->add_option("--test-jump", o->test_jump_step,
+                  "for tests: spoil the weights once, after this step");
+  app->add_option("--batches-ahead", o->batches_ahead, "number of batches cut ahead of use")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
   app->add_option("--seed", o->seed, "seed of weights, materials and crops")->capture_default_str();
   app->add_option("--threads", o->threads,
                   "torch threads; results are reproducible for a fixed number of threads")
@@ -116,6 +132,12 @@ void AddEstimatorOptions(CLI::App* app, EstimatorTrainOptions* o) {
                   "branch of global features")
       ->delimiter(',')
       ->capture_default_str();
+  app->add_option("--network", o->network,
+                  "pooled: mean and maximum over the photographs; attended: attention over them; "
+                  "descent: also improved by the gradient of the photographs' likelihood, from "
+                  "pooled weights too")
+      ->check(CLI::IsMember({"pooled", "attended", "descent"}))
+      ->capture_default_str();
   app->add_option(
          "--spread-weight", o->spread_weight,
          "weight of the negative log-likelihood of the errors under the predicted variances")
@@ -129,10 +151,12 @@ void AddEstimatorOptions(CLI::App* app, EstimatorTrainOptions* o) {
 void Report(const TrainProgress& p) {
   std::fprintf(stderr,
                "step %lld  %.0f s  %.1f samples/s  lr %.2e  loss %.4f (map %.4f smooth %.4f "
-               "render %.4f)  ETA %.0f s",
+               "render %.4f)  waiting for data %.0f %%  ETA %.0f s",
                static_cast<long long>(p.step), p.seconds, p.samples_per_second, p.learning_rate,
-               p.loss, p.map_loss, p.smoothness_loss, p.render_loss, p.eta_seconds);
+               p.loss, p.map_loss, p.smoothness_loss, p.render_loss, 100 * p.wait_share,
+               p.eta_seconds);
   if (p.validation_map_loss) std::fprintf(stderr, "  validation %.4f", *p.validation_map_loss);
+  if (!p.event.empty()) std::fprintf(stderr, "  %s", p.event.c_str());
   std::fputc('\n', stderr);
 }
 
@@ -142,6 +166,8 @@ struct MaterialOptions {
   double pack_share = 0.5;
   double glossy_dielectric_share = 0;
   double one_substance_share = 0;
+  double metal_share = -1;
+  double varnish_share = 0;
 
   void AddTo(CLI::App* app) {
     app->add_option("--materials", pack, "pack of real materials to mix in (glint-synth pack)");
@@ -156,6 +182,16 @@ struct MaterialOptions {
                           "--glossy-dielectric-share");
     app->add_option("--one-substance-share", one_substance_share,
                     "fraction of materials with nearly constant roughness and specular albedo")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    app->add_option("--metal-share", metal_share,
+                    "fraction of materials with metal; the metals of the others become paint; "
+                    "negative: as generated and packed")
+        ->check(CLI::Range(-1.0, 1.0))
+        ->capture_default_str();
+    app->add_option("--varnish-share", varnish_share,
+                    "fraction of wood and paint given a clear varnish; of all else without metal a "
+                    "fifth of it")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
   }
@@ -178,12 +214,18 @@ struct Sources {
     if (options.one_substance_share > 0) {
       name += ", " + std::to_string(options.one_substance_share) + " of one substance";
     }
-    const glint::TrainingMaterialOptions chosen{seed,
-                                                size,
-                                                options.pack_share,
-                                                0.3,
-                                                options.glossy_dielectric_share,
-                                                options.one_substance_share};
+    if (options.metal_share >= 0)
+      name += ", " + std::to_string(options.metal_share) + " with metal";
+    if (options.varnish_share > 0)
+      name += ", " + std::to_string(options.varnish_share) + " varnished";
+    glint::TrainingMaterialOptions chosen;
+    chosen.seed = seed;
+    chosen.size = size;
+    chosen.pack_share = options.pack_share;
+    chosen.glossy_dielectric_share = options.glossy_dielectric_share;
+    chosen.one_substance_share = options.one_substance_share;
+    chosen.metal_share = options.metal_share;
+    chosen.varnish_share = options.varnish_share;
     training = [this, chosen](std::uint64_t k) { return TrainingMaterial(chosen, &pack, k); };
     validation = [size](std::uint64_t k) {
       return glint::MakeMaterial(glint::kReservedSeedBase + kValidationOffset + k, size, size);
@@ -195,6 +237,46 @@ int Say(const TrainFiles& files, const TrainProgress& last) {
   std::printf("%s: %lld steps, map loss %.4f, validation %.4f\n", files.weights.c_str(),
               static_cast<long long>(last.step), last.map_loss,
               last.validation_map_loss.value_or(0.0));
+  return 0;
+}
+
+// Folders of pictures to a pack, where glint-synth is not: it needs libraries that read pictures.
+struct PackOptions {
+  std::vector<std::filesystem::path> folders;
+  std::filesystem::path out;
+  int size = 512;
+
+  void AddTo(CLI::App* app) {
+    app->add_option("folders", folders,
+                    "folders of maps as PNM pictures, or folders of such folders")
+        ->required()
+        ->check(CLI::ExistingDirectory);
+    app->add_option("--out", out, "pack to write, ….safetensors")->required();
+    app->add_option("--size", size, "texels per side")
+        ->check(CLI::Range(8, 8192))
+        ->capture_default_str();
+  }
+};
+
+int Pack(const PackOptions& options) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> materials;
+  for (const fs::path& folder : options.folders) {
+    std::vector<fs::path> inside;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      if (entry.is_directory()) inside.push_back(entry.path());
+    }
+    std::sort(inside.begin(), inside.end());
+    if (inside.empty()) inside.push_back(folder);
+    materials.insert(materials.end(), inside.begin(), inside.end());
+  }
+  glint::MaterialPack pack;
+  for (const fs::path& material : materials) {
+    pack.push_back(glint::ReadPnmMaterial(material, options.size));
+  }
+  glint::WriteMaterialPack(options.out, pack);
+  std::printf("%s: %zu materials of %d x %d\n", options.out.c_str(), pack.size(), options.size,
+              options.size);
   return 0;
 }
 
@@ -212,6 +294,8 @@ int main(int argc, char** argv) {
   CLI::App app("Trains Glint's networks on procedural and packed materials.", "glint-train");
   app.set_version_flag("--version", GLINT_VERSION);
   app.require_subcommand(1);
+  // Of an option given twice the later one counts: scripts append to their own.
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   AutoencoderTrainOptions autoencoder_options;
   EstimatorTrainOptions estimator_options;
   TrainFiles files;
@@ -226,12 +310,17 @@ int main(int argc, char** argv) {
   AddCommonOptions(bootstrap, &estimator_options, &files);
   AddEstimatorOptions(bootstrap, &estimator_options);
   materials.AddTo(bootstrap);
+  PackOptions pack_options;
+  CLI::App* pack = app.add_subcommand(
+      "pack", "pack folders of PNM pictures for --materials; glint-synth pack reads other formats");
+  pack_options.AddTo(pack);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
+    if (pack->parsed()) return Pack(pack_options);
     if (autoencoder->parsed()) {
       return Run(autoencoder_options, files, materials, glint::TrainAutoencoder);
     }

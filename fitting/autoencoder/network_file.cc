@@ -32,13 +32,13 @@ AutoencoderNetwork ReadNetwork(const std::filesystem::path& path, const TensorFi
 }
 
 void SaveNetwork(const std::filesystem::path& path, AutoencoderNetwork* network,
-                 std::map<std::string, std::string> metadata) {
+                 std::map<std::string, std::string> metadata, bool bf16) {
   TensorFile file;
   file.metadata = std::move(metadata);
   file.metadata.merge(NetworkMetadata(*network));
   for (auto& [name, t] : network->State()) {
     file.tensors.push_back(
-        ToRecord(name, *t, name.rfind("code.", 0) != 0 && name.rfind("level.", 0) != 0));
+        ToRecord(name, *t, bf16 && name.rfind("code.", 0) != 0 && name.rfind("level.", 0) != 0));
   }
   WriteTensorFile(path, std::move(file));
 }

@@ -20,9 +20,9 @@ std::map<std::string, std::string> NetworkMetadata(const AutoencoderNetwork& net
 AutoencoderNetwork ReadNetwork(const std::filesystem::path& path, const TensorFile& file,
                                const std::string& prefix);
 
-// Weights for users: bf16, the code's statistics float32.
+// Weights for users: bf16 or float32, the code's statistics float32.
 void SaveNetwork(const std::filesystem::path& path, AutoencoderNetwork* network,
-                 std::map<std::string, std::string> metadata);
+                 std::map<std::string, std::string> metadata, bool bf16 = true);
 AutoencoderNetwork LoadNetwork(const std::filesystem::path& path);
 
 }  // namespace glint

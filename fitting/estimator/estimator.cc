@@ -78,8 +78,7 @@ SvbrdfEstimate Estimator::Estimate(const PhotographSet& set, const EstimatorCond
   const auto forward = [&] {
     const auto [width, height] = SizeAtMost(plane.width, plane.height, kGlobalSize);
     const bool whole = width == plane.width && height == plane.height;
-    const Shown small =
-        ShownOf(whole ? set : Downsampled(set, width, height, threads), threads);
+    const Shown small = ShownOf(whole ? set : Downsampled(set, width, height, threads), threads);
     if (whole) return network.Forward(small.features, small.profiles, known, torch::kFloat32);
     const auto global = network.Global(small.features, small.profiles, known, torch::kFloat32);
     return network.ForwardWithGlobal(ShownOf(set, threads).features, global, torch::kFloat32);

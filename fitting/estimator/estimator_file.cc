@@ -24,30 +24,46 @@ EstimatorChannels FromList(const std::vector<int>& list) {
   return channels;
 }
 
+std::string ArchitectureOf(EstimatorKind kind) {
+  const std::string architecture = kEstimatorArchitecture;
+  return kind == EstimatorKind::kPooled ? architecture
+                                        : architecture + " " + EstimatorKindName(kind);
+}
+
+// The network that a file names; other names are refused.
+EstimatorKind KindOf(const std::filesystem::path& path, const TensorFile& file) {
+  const std::string found = RequireMetadata(path, file, "architecture");
+  for (const EstimatorKind kind : {EstimatorKind::kAttended, EstimatorKind::kDescent}) {
+    if (found == ArchitectureOf(kind)) return kind;
+  }
+  CheckMetadata(path, file, "architecture", kEstimatorArchitecture);
+  return EstimatorKind::kPooled;
+}
+
 }  // namespace
 
 std::map<std::string, std::string> EstimatorMetadata(const EstimatorNetwork& network) {
-  return {{"architecture", kEstimatorArchitecture},
+  return {{"architecture", ArchitectureOf(network.kind)},
           {"encoding", kEncodingName},
           {"channels", ChannelText(ChannelList(network.channels))}};
 }
 
 void SaveEstimator(const std::filesystem::path& path, EstimatorNetwork* network,
-                   std::map<std::string, std::string> metadata) {
+                   std::map<std::string, std::string> metadata, bool bf16) {
   TensorFile file;
   file.metadata = std::move(metadata);
   file.metadata.merge(EstimatorMetadata(*network));
-  for (auto& [name, t] : network->State()) file.tensors.push_back(ToRecord(name, *t, true));
+  for (auto& [name, t] : network->State()) file.tensors.push_back(ToRecord(name, *t, bf16));
   WriteTensorFile(path, std::move(file));
 }
 
 EstimatorNetwork LoadEstimator(const std::filesystem::path& path) {
   const TensorFile file = ReadTensorFile(path);
-  CheckMetadata(path, file, "architecture", kEstimatorArchitecture);
+  const EstimatorKind kind = KindOf(path, file);
   CheckMetadata(path, file, "encoding", kEncodingName);
   const std::vector<int> list =
       ParseChannels(path, RequireMetadata(path, file, "channels"), kChannelNumbers);
-  EstimatorNetwork network = EstimatorNetwork::Random(FromList(list), 0);
+  EstimatorNetwork network = EstimatorNetwork::Random(FromList(list), 0, kind);
   for (auto& [name, tensor] : network.State()) {
     *tensor = ReadTensor(path, file, name, tensor->sizes().vec());
   }

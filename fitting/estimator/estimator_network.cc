@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <stdexcept>
 
 #include "fitting/encoding/encoding.h"
 #include "fitting/estimator/estimator_conditions.h"
 #include "fitting/estimator/photograph_features.h"
 #include "fitting/layers/layers.h"
+#include "fitting/layers/staging.h"
 
 namespace glint {
 namespace {
@@ -14,8 +17,8 @@ namespace {
 using torch::Tensor;
 
 // Means and spreads that bring the features near the range −1 … 1.
-constexpr float kFeatureMean[kFeaturePlanes] = {0.5f, 0.5f, 0.5f, 0, 1, 0, 0, 0, 0, 0.35f, 0};
-constexpr float kFeatureScale[kFeaturePlanes] = {2, 2, 2, 1, 1, 1.5f, 1.5f, 1.5f, 1.5f, 2.5f, 0.7f};
+constexpr double kFeatureMean[kFeaturePlanes] = {0.5, 0.5, 0.5, 0, 1, 0, 0, 0, 0, 0.35, 0};
+constexpr double kFeatureScale[kFeaturePlanes] = {2, 2, 2, 1, 1, 1.5, 1.5, 1.5, 1.5, 2.5, 0.7};
 constexpr int kMaskPlane = 4, kPlanesOfMask = 5;  // planes 0–4 are 0 where the mask is
 constexpr double kProfileScale = 0.4;
 constexpr double kFirstRoughness = 0.1;  // of the tanh's argument: r about 0.55
@@ -28,10 +31,8 @@ constexpr int kOutputs = 2 * kEncodedChannels;
 constexpr int kPooledInputs = 3 * kFeaturePlanes;  // mean, maximum, minimum over photographs
 
 Tensor Normalised(const Tensor& features) {
-  const auto row = [&](const float* values) {
-    return torch::from_blob(const_cast<float*>(values), {1, kFeaturePlanes, 1, 1})
-        .clone()
-        .to(features.device());
+  const auto row = [&](const double* values) {
+    return Staged({values, kFeaturePlanes}, {1, kFeaturePlanes, 1, 1}, features.options());
   };
   return (features - row(kFeatureMean)) * row(kFeatureScale);
 }
@@ -48,6 +49,14 @@ int UpOutput(const EstimatorChannels& c, int level) {
 
 int FullInput(const EstimatorChannels& c, int k) {
   return c.full + kPooledInputs + (k == 0 ? 2 * c.full : 0);
+}
+
+// What photographs are pooled of: the levels, full resolution, the global track.
+std::vector<int> AttendedChannels(const EstimatorChannels& c) {
+  std::vector<int> list(c.levels.begin(), c.levels.end());
+  list.push_back(c.full);
+  list.push_back(c.global);
+  return list;
 }
 
 Tensor Spread(const Tensor& global, const Tensor& weight) {
@@ -68,6 +77,30 @@ Tensor Pooled(const Tensor& x, int64_t photographs) {
   shape.insert(shape.begin(), x.size(0) / photographs);
   const Tensor y = x.contiguous().view(shape);
   return torch::cat({y.mean(1), y.amax(1)}, 1);
+}
+
+// Heads of attention, each of as many channels.
+constexpr int64_t kHeads = 4;
+int64_t HeadsOf(int64_t channels) { return std::gcd(kHeads, channels); }
+
+// [B·N, C, …] → two averages over N, side by side: [B, 2·C, …]. Each head of an average has weights
+// of its own, softmax over N of its scores.
+Tensor Attended(const Tensor& x, int64_t photographs, const Tensor& weight) {
+  if (photographs == 1) return torch::cat({x, x}, 1);
+  const bool picture = x.dim() == 4;
+  const Tensor all = picture ? x : x.unsqueeze(2).unsqueeze(3);
+  const int64_t b = all.size(0) / photographs, c = all.size(1), h = all.size(2), w = all.size(3);
+  const int64_t heads = HeadsOf(c);
+  const Tensor scores =
+      at::conv2d(all, AsType(weight.view({2 * heads, c, 1, 1}), all.scalar_type()))
+          .to(torch::kFloat32)
+          .contiguous()
+          .view({b, photographs, 2, heads, 1, h, w})
+          .softmax(1)
+          .to(all.scalar_type());
+  const Tensor values = all.contiguous().view({b, photographs, 1, heads, c / heads, h, w});
+  const Tensor mean = (scores * values).sum(1).view({b, 2 * c, h, w});
+  return picture ? mean : mean.view({b, 2 * c});
 }
 
 // Mean, maximum and minimum over the photographs in which the texel is usable; elsewhere those of
@@ -103,13 +136,35 @@ constexpr int64_t kBandRows = 128, kRowsAbout = 3;
 
 }  // namespace
 
-EstimatorNetwork EstimatorNetwork::Random(const EstimatorChannels& channels, std::uint64_t seed) {
+std::string EstimatorKindName(EstimatorKind kind) {
+  switch (kind) {
+    case EstimatorKind::kPooled:
+      return "pooled";
+    case EstimatorKind::kAttended:
+      return "attended";
+    case EstimatorKind::kDescent:
+      return "descent";
+  }
+  return "";
+}
+
+EstimatorKind ParseEstimatorKind(const std::string& name) {
+  for (const EstimatorKind kind :
+       {EstimatorKind::kPooled, EstimatorKind::kAttended, EstimatorKind::kDescent}) {
+    if (name == EstimatorKindName(kind)) return kind;
+  }
+  throw std::invalid_argument("network: found \"" + name + "\"; give pooled, attended or descent");
+}
+
+EstimatorNetwork EstimatorNetwork::Random(const EstimatorChannels& channels, std::uint64_t seed,
+                                          EstimatorKind kind) {
   torch::Generator generator = torch::make_generator<torch::CPUGeneratorImpl>(seed);
   const auto draw = [&](std::vector<int64_t> shape, double fan_in, double gain) {
     return torch::randn(shape, generator) * (gain * std::sqrt(2.0 / fan_in));
   };
   EstimatorNetwork net;
   net.channels = channels;
+  net.kind = kind;
   for (int i = 0; i < kEstimatorLevels; ++i) {
     const int in = i == 0 ? kFeaturePlanes : channels.levels[i - 1], out = channels.levels[i];
     net.down_weights.push_back(draw({out, in, 4, 4}, in * 16.0, 1));
@@ -142,6 +197,12 @@ EstimatorNetwork EstimatorNetwork::Random(const EstimatorChannels& channels, std
     net.full_weights[1].select(0, kEncodedDiffuse + c).select(0, channels.full + c)[1][1] += 1.0;
   }
   net.final_feed = torch::zeros({kOutputs, 2 * channels.global});
+  if (kind == EstimatorKind::kAttended) {
+    for (const int c : AttendedChannels(channels)) {
+      net.attention_weights.push_back(draw({2 * HeadsOf(c), c}, c, 1));
+    }
+  }
+  if (kind == EstimatorKind::kDescent) net.descent = DescentNetwork::Random(seed + 1);
   return net;
 }
 
@@ -169,7 +230,18 @@ NamedTensors EstimatorNetwork::State() {
   list.emplace_back("photograph.weight", &photograph_weight);
   list.emplace_back("photograph.bias", &photograph_bias);
   list.emplace_back("final.feed", &final_feed);
+  if (kind == EstimatorKind::kAttended) {
+    add("attention.weight", &attention_weights, AttendedChannels(channels).size());
+  }
+  if (kind == EstimatorKind::kDescent) {
+    for (const auto& tensor : descent.State()) list.push_back(tensor);
+  }
   return list;
+}
+
+Tensor EstimatorNetwork::Pool(const Tensor& x, int64_t photographs, size_t part) const {
+  return kind == EstimatorKind::kAttended ? Attended(x, photographs, attention_weights[part])
+                                          : Pooled(x, photographs);
 }
 
 EstimatorNetwork::Codes EstimatorNetwork::Encode(const Tensor& features, const Tensor& first_global,
@@ -187,7 +259,7 @@ EstimatorNetwork::Codes EstimatorNetwork::Encode(const Tensor& features, const T
     }
     x = at::leaky_relu(x + Spread(track, feed_weights[i]).to(compute), kLeak);
     x = WithResidual(x, down_residual_weights[i], down_residual_biases[i], compute);
-    codes.levels.push_back(Pooled(x, features.size(1)));
+    codes.levels.push_back(Pool(x, features.size(1), static_cast<size_t>(i)));
     codes.global.push_back(track);
   }
   return codes;
@@ -211,18 +283,21 @@ Tensor EstimatorNetwork::FullResolution(const Tensor& features, const Tensor& de
   const Tensor input = AsType(Normalised(features.flatten(0, 1)), compute);
   const Tensor pooled = AsType(PooledInputs(features), compute);
   const Tensor detail =
-      Pooled(at::leaky_relu(convolve(input, photograph_weight, photograph_bias), kLeak),
-             features.size(1));
+      Pool(at::leaky_relu(convolve(input, photograph_weight, photograph_bias), kLeak),
+           features.size(1), kEstimatorLevels);
   const Tensor x = at::leaky_relu(
       convolve(torch::cat({decoded, pooled, detail}, 1), full_weights[0], full_biases[0]), kLeak);
   return convolve(torch::cat({x, pooled}, 1), full_weights[1], full_biases[1]).to(torch::kFloat32);
 }
 
-EstimatorOutput EstimatorNetwork::Output(const Tensor& full, const Tensor& global,
-                                         int64_t photographs) const {
-  const Tensor out = (full + Spread(Pooled(global, photographs), final_feed)).contiguous();
-  return {at::tanh(out.slice(1, 0, kEncodedChannels).contiguous()),
-          out.slice(1, kEncodedChannels).clamp(kLeastLogScale, kMostLogScale)};
+EstimatorOutput EstimatorNetwork::Output(const Tensor& features, const Tensor& full,
+                                         const Tensor& global, torch::Dtype compute) const {
+  const Tensor track = Pool(global, features.size(1), kEstimatorLevels + 1);
+  const Tensor out = (full + Spread(track, final_feed)).contiguous();
+  Tensor maps = at::tanh(out.slice(1, 0, kEncodedChannels).contiguous());
+  Tensor log_scale = out.slice(1, kEncodedChannels);
+  if (kind == EstimatorKind::kDescent) descent.Improve(features, compute, &maps, &log_scale);
+  return {maps, log_scale.clamp(kLeastLogScale, kMostLogScale)};
 }
 
 std::vector<Tensor> EstimatorNetwork::Global(const Tensor& features, const Tensor& profiles,
@@ -234,7 +309,7 @@ EstimatorOutput EstimatorNetwork::Forward(const Tensor& features, const Tensor& 
                                           const Tensor& conditions, torch::Dtype compute) const {
   const Codes codes = Encode(features, FirstGlobal(profiles, conditions), nullptr, compute);
   const Tensor full = FullResolution(features, Decode(codes, compute), compute);
-  return Output(full, codes.global.back(), features.size(1));
+  return Output(features, full, codes.global.back(), compute);
 }
 
 EstimatorOutput EstimatorNetwork::ForwardWithGlobal(const Tensor& features,
@@ -247,16 +322,17 @@ EstimatorOutput EstimatorNetwork::ForwardWithGlobal(const Tensor& features,
     const int64_t end = std::min(begin + kBandRows, height);
     const int64_t first = std::max<int64_t>(0, begin - kRowsAbout);
     const int64_t last = std::min(height, end + kRowsAbout);
-    const Tensor band = FullResolution(features.slice(3, first, last),
-                                       decoded.slice(2, first, last), compute);
+    const Tensor band =
+        FullResolution(features.slice(3, first, last), decoded.slice(2, first, last), compute);
     bands.push_back(band.slice(2, begin - first, end - first).contiguous());
   }
-  return Output(torch::cat(bands, 2), global.back(), features.size(1));
+  return Output(features, torch::cat(bands, 2), global.back(), compute);
 }
 
 EstimatorNetwork Clone(EstimatorNetwork* network) {
   EstimatorNetwork copy;
   copy.channels = network->channels;
+  copy.kind = network->kind;
   CopyTensors(network->State(), copy.State());
   return copy;
 }

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "fitting/estimator/estimator_descent.h"
 #include "fitting/weights/tensor_records.h"
 
 namespace glint {
@@ -30,6 +31,16 @@ struct EstimatorChannels {
   int global = 192;  // of the global track
 };
 
+// Networks that can be trained; docs/experiments/training.md compares them.
+enum class EstimatorKind {
+  kPooled,    // mean and maximum over the photographs
+  kAttended,  // two averages over the photographs, weighted by attention, instead
+  kDescent    // kPooled, whose estimate is improved by a learned descent (estimator_descent.h)
+};
+// "pooled", "attended", "descent". Throws std::invalid_argument for another name.
+std::string EstimatorKindName(EstimatorKind kind);
+EstimatorKind ParseEstimatorKind(const std::string& name);
+
 struct EstimatorOutput {
   torch::Tensor maps;       // [B, 9, H, W] encoded, in [−1, 1], float32
   torch::Tensor log_scale;  // [B, 9, H, W]: ln b, b the mean absolute error expected of `maps`
@@ -37,6 +48,7 @@ struct EstimatorOutput {
 
 struct EstimatorNetwork {
   EstimatorChannels channels;
+  EstimatorKind kind = EstimatorKind::kPooled;
   std::vector<torch::Tensor> down_weights, down_biases;  // [out, in, 4, 4]
   std::vector<torch::Tensor> up_weights, up_biases;      // [4·out, in, 2, 2]
   // 3×3 residual convolutions: [c, c, 3, 3].
@@ -49,8 +61,14 @@ struct EstimatorNetwork {
   torch::Tensor photograph_weight, photograph_bias;
   std::vector<torch::Tensor> full_weights, full_biases;
   torch::Tensor final_feed;  // [18, 2·global]
+  // kAttended: scores of a photograph's features, [2·heads, channels]: of the levels, at full
+  // resolution, and of the global track.
+  std::vector<torch::Tensor> attention_weights;
+  DescentNetwork descent;  // kDescent
+
   // Weights drawn for `seed`; diffuse starts as what a matte, flat texel's would be.
-  static EstimatorNetwork Random(const EstimatorChannels& channels, std::uint64_t seed);
+  static EstimatorNetwork Random(const EstimatorChannels& channels, std::uint64_t seed,
+                                 EstimatorKind kind = EstimatorKind::kPooled);
 
   NamedTensors State();  // all learned
 
@@ -62,10 +80,10 @@ struct EstimatorNetwork {
   // The global features alone, after each level: [B·N, global]. Arguments as Forward()'s.
   std::vector<torch::Tensor> Global(const torch::Tensor& features, const torch::Tensor& profiles,
                                     const torch::Tensor& conditions, torch::Dtype compute) const;
-  // Forward() with global features that are given, such as those of the same photographs at the size
-  // that training showed: means over a picture are then what the network knows, and only what is
-  // local depends on the resolution. `features` of any size, without gradient; works band by band at
-  // full resolution.
+  // Forward() with global features that are given, such as those of the same photographs at the
+  // size that training showed: means over a picture are then what the network knows, and only what
+  // is local depends on the resolution. `features` of any size, without gradient; works band by
+  // band at full resolution.
   EstimatorOutput ForwardWithGlobal(const torch::Tensor& features,
                                     const std::vector<torch::Tensor>& global,
                                     torch::Dtype compute) const;
@@ -82,8 +100,11 @@ struct EstimatorNetwork {
   // The last convolutions, of some rows: [B, 18, h, W] before the output's nonlinearity.
   torch::Tensor FullResolution(const torch::Tensor& features, const torch::Tensor& decoded,
                                torch::Dtype compute) const;
-  EstimatorOutput Output(const torch::Tensor& full, const torch::Tensor& global,
-                         int64_t photographs) const;
+  EstimatorOutput Output(const torch::Tensor& features, const torch::Tensor& full,
+                         const torch::Tensor& global, torch::Dtype compute) const;
+  // Over the photographs, as the network's kind does it; `part` counts the levels, then full
+  // resolution, then the global track. [B·N, C, …] → [B, 2·C, …]
+  torch::Tensor Pool(const torch::Tensor& x, int64_t photographs, size_t part) const;
 };
 
 EstimatorNetwork Clone(EstimatorNetwork* network);

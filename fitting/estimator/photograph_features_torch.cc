@@ -1,9 +1,10 @@
 #include "fitting/estimator/photograph_features_torch.h"
 
 #include <numbers>
+#include <span>
 
 #include "fitting/estimator/photograph_features.h"
-#include "fitting/render/view_tensors.h"
+#include "fitting/layers/staging.h"
 
 namespace glint {
 namespace {
@@ -12,10 +13,9 @@ using torch::Tensor;
 
 // The ring of each texel, as weights [B·N, bins, texels] of 0 and 1; 0 in all where `usable` is.
 Tensor RingWeights(const Tensor& angle, const Tensor& usable) {
-  const Tensor ends = torch::tensor(std::vector<double>(features::kBinEndDegrees.begin(),
-                                                        features::kBinEndDegrees.end() - 1),
-                                    angle.options()) *
-                      (std::numbers::pi / 180);
+  const std::span<const double> inner_ends(features::kBinEndDegrees.data(), kProfileBins - 1);
+  const Tensor ends =
+      Staged(inner_ends, {kProfileBins - 1}, angle.options()) * (std::numbers::pi / 180);
   const Tensor ring = torch::bucketize(angle, ends).flatten(0, 1).flatten(1).unsqueeze(1);
   const Tensor bins = torch::arange(kProfileBins, ring.options()).view({1, kProfileBins, 1});
   return (ring == bins).to(angle.scalar_type()) * usable.flatten(0, 1).flatten(1).unsqueeze(1);
@@ -40,13 +40,14 @@ Tensor Profiles(const Tensor& rings, const Tensor& albedo, const Tensor& clipped
 
 }  // namespace
 
-FeatureTensors FeaturesOfTensors(const PhotographTensors& photographs, const ViewBatch& believed) {
+FeatureTensors FeaturesOfTensors(const PhotographTensors& photographs, const ViewTensors& believed,
+                                 const SamplePlane& plane, LightFalloff falloff) {
   const auto options = photographs.radiance.options();
-  const ViewDirections d = DirectionsOf(believed, options);
+  const ViewDirections d = DirectionsOf(believed, plane);
   const Tensor cosine = d.light.slice(2, 2, 3).clamp_min(features::kLeastCosine);
   const Tensor angle = d.half.slice(2, 2, 3).clamp(-1, 1).acos();
-  Tensor irradiance = PerView(believed, &View::light_rgb, options) * ExposuresOf(believed, options);
-  if (believed.convention.falloff == LightFalloff::kInverseSquare) {
+  Tensor irradiance = believed.light_rgb * believed.exposure;
+  if (falloff == LightFalloff::kInverseSquare) {
     irradiance = irradiance / d.light_distance_squared;
   }
   const Tensor received = irradiance * cosine;  // [B, N, 3, 1 or H, 1 or W]

@@ -4,7 +4,7 @@
 
 #include <torch/torch.h>
 
-#include "fitting/render/render_autograd.h"
+#include "fitting/render/view_tensors.h"
 
 namespace glint {
 
@@ -21,6 +21,7 @@ struct FeatureTensors {
 
 // `believed`: the photographs' views as the estimator is told. The same values as FeaturesOf(), up
 // to float's rounding, of photographs whose mask hides no clipped texel.
-FeatureTensors FeaturesOfTensors(const PhotographTensors& photographs, const ViewBatch& believed);
+FeatureTensors FeaturesOfTensors(const PhotographTensors& photographs, const ViewTensors& believed,
+                                 const SamplePlane& plane, LightFalloff falloff);
 
 }  // namespace glint

@@ -33,7 +33,8 @@ Tensor SpecularFactor(const Tensor& normal, const Tensor& half, const Tensor& n_
 
 Tensor RenderReference(const Tensor& maps, const Tensor& light_rgb, const ViewBatch& batch) {
   TORCH_CHECK(maps.dim() == 4 && maps.size(1) == kSvbrdfPlanes, "maps: expected [B, 10, H, W]");
-  const auto [light, camera, half, light_distance_squared] = DirectionsOf(batch, maps.options());
+  const ViewTensors views = TensorsOf(batch, maps.options());
+  const auto [light, camera, half, light_distance_squared] = DirectionsOf(views, batch.plane);
 
   const Tensor texels = maps.unsqueeze(1);  // [B, 1, 10, H, W]
   const Tensor normal = texels.slice(2, kNormalX, kDiffuseR);
@@ -51,14 +52,12 @@ Tensor RenderReference(const Tensor& maps, const Tensor& light_rgb, const ViewBa
     lobe = lobe * (1 - specular);
   }
   const Tensor brdf = lobe + SpecularFactor(normal, half, n_dot_l, n_dot_v, roughness) * fresnel;
-  Tensor irradiance = light_rgb.defined() ? light_rgb.unsqueeze(-1).unsqueeze(-1)
-                                          : PerView(batch, &View::light_rgb, maps.options());
+  Tensor irradiance = light_rgb.defined() ? light_rgb.unsqueeze(-1).unsqueeze(-1) : views.light_rgb;
   if (batch.convention.falloff == LightFalloff::kInverseSquare) {
     irradiance = irradiance / light_distance_squared;
   }
-  const Tensor ambient =
-      PerView(batch, &View::ambient_rgb, maps.options()) * (lobe + specular * kInversePi);
-  return ExposuresOf(batch, maps.options()) * (irradiance * brdf * n_dot_l + ambient);
+  const Tensor ambient = views.ambient_rgb * (lobe + specular * kInversePi);
+  return views.exposure * (irradiance * brdf * n_dot_l + ambient);
 }
 
 Tensor LogLossReference(const Tensor& rendered, const Tensor& images, const Tensor& masks,

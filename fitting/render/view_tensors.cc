@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "fitting/layers/staging.h"
+
 namespace glint {
 namespace {
 
@@ -10,50 +12,54 @@ using torch::TensorOptions;
 using torch::indexing::None;
 using torch::indexing::Slice;
 
-// `values` of all views, as many of each, [B, V, n, 1, 1].
-Tensor OfViews(const std::vector<double>& values, const ViewBatch& batch,
-               const TensorOptions& options) {
-  const auto views = static_cast<int64_t>(batch.views.size());
-  return torch::tensor(values, torch::kFloat64)
-      .view({views / batch.views_per_element, batch.views_per_element,
-             static_cast<int64_t>(values.size()) / views, 1, 1})
-      .to(options);
+// Coordinates of `count` texels, as SamplePlane has them, made on the device.
+Tensor Coordinates(int count, int first, int stride, int whole, double size_mm,
+                   TexelSampling sampling, const TensorOptions& options) {
+  const Tensor i = torch::arange(count, options.dtype(torch::kFloat64)) * stride + first;
+  if (sampling == TexelSampling::kPixelCentres) return ((i + 0.5) / whole - 0.5) * size_mm;
+  if (whole > 1) return (i / (whole - 1) - 0.5) * size_mm;
+  return torch::zeros_like(i);
 }
 
 // Texel positions [3, H, W].
 Tensor Positions(const SamplePlane& plane, const TensorOptions& options) {
-  Tensor x = torch::empty({plane.width}, torch::kFloat64);
-  Tensor y = torch::empty({plane.height}, torch::kFloat64);
-  for (int i = 0; i < plane.width; ++i) x.data_ptr<double>()[i] = plane.x_mm(i);
-  for (int i = 0; i < plane.height; ++i) y.data_ptr<double>()[i] = plane.y_mm(i);
+  const PlaneOfPart& part = plane.whole;
+  const Tensor x = Coordinates(plane.width, part.first_column, part.stride, plane.whole_width(),
+                               plane.width_mm, plane.sampling, options);
+  const Tensor y = -Coordinates(plane.height, part.first_row, part.stride, plane.whole_height(),
+                                plane.height_mm, plane.sampling, options);
   const auto size = {static_cast<int64_t>(plane.height), static_cast<int64_t>(plane.width)};
   return torch::stack({x.index({None, Slice()}).expand(size), y.index({Slice(), None}).expand(size),
-                       torch::zeros(size, torch::kFloat64)})
-      .to(options);
+                       torch::zeros(size, x.options())})
+      .to(c10::typeMetaToScalarType(options.dtype()));
 }
 
 Tensor SquaredLength(const Tensor& v) { return v.square().sum(2, /*keepdim=*/true); }
 
 }  // namespace
 
-Tensor PerView(const ViewBatch& batch, Vec3d View::*member, const TensorOptions& options) {
+ViewTensors TensorsOf(const ViewBatch& batch, const TensorOptions& options) {
+  constexpr int64_t kNumbers = 4 * 3 + 1;
   std::vector<double> values;
+  values.reserve(batch.views.size() * kNumbers);
   for (const View& view : batch.views) {
-    values.insert(values.end(), (view.*member).begin(), (view.*member).end());
+    for (const Vec3d& vector :
+         {view.light_in_sample_mm, view.camera_in_sample_mm, view.light_rgb, view.ambient_rgb}) {
+      values.insert(values.end(), vector.begin(), vector.end());
+    }
+    values.push_back(view.exposure);
   }
-  return OfViews(values, batch, options);
+  const int64_t per_element = batch.views_per_element;
+  const auto elements = static_cast<int64_t>(batch.views.size()) / per_element;
+  const Tensor all = Staged(values, {elements, per_element, kNumbers, 1, 1}, options);
+  const auto vector = [&](int64_t k) { return all.slice(2, 3 * k, 3 * k + 3); };
+  return {vector(0), vector(1), vector(2), vector(3), all.slice(2, kNumbers - 1)};
 }
 
-Tensor ExposuresOf(const ViewBatch& batch, const TensorOptions& options) {
-  std::vector<double> values;
-  for (const View& view : batch.views) values.push_back(view.exposure);
-  return OfViews(values, batch, options);
-}
-
-ViewDirections DirectionsOf(const ViewBatch& batch, const TensorOptions& options) {
-  const Tensor position = Positions(batch.plane, options);
-  const Tensor to_light = PerView(batch, &View::light_in_sample_mm, options) - position;
-  const Tensor to_camera = PerView(batch, &View::camera_in_sample_mm, options) - position;
+ViewDirections DirectionsOf(const ViewTensors& views, const SamplePlane& plane) {
+  const Tensor position = Positions(plane, views.light.options());
+  const Tensor to_light = views.light - position;
+  const Tensor to_camera = views.camera - position;
   ViewDirections d;
   d.light_distance_squared = SquaredLength(to_light);
   d.light = to_light / d.light_distance_squared.sqrt();

@@ -8,17 +8,19 @@
 
 namespace glint {
 
-// A vector of every view, [B, V, 3, 1, 1].
-torch::Tensor PerView(const ViewBatch& batch, Vec3d View::*member,
-                      const torch::TensorOptions& options);
+// Numbers of every view, as in View: [B, V, 3, 1, 1], the exposure [B, V, 1, 1, 1].
+struct ViewTensors {
+  torch::Tensor light, camera, light_rgb, ambient_rgb, exposure;
+};
 
-torch::Tensor ExposuresOf(const ViewBatch& batch, const torch::TensorOptions& options);  // …, 1, 1
+// All of them in one copy to the device, for which the host does not wait (layers/staging.h).
+ViewTensors TensorsOf(const ViewBatch& batch, const torch::TensorOptions& options);
 
 struct ViewDirections {
   torch::Tensor light, camera, half;     // unit, from the texel, [B, V, 3, H, W]
   torch::Tensor light_distance_squared;  // mm², [B, V, 1, H, W]
 };
 
-ViewDirections DirectionsOf(const ViewBatch& batch, const torch::TensorOptions& options);
+ViewDirections DirectionsOf(const ViewTensors& views, const SamplePlane& plane);
 
 }  // namespace glint

@@ -55,9 +55,9 @@ class AutoencoderTraining : public MapTraining<AutoencoderNetwork, AutoencoderTr
   std::map<std::string, std::string> Description() const override {
     return NetworkMetadata(network_);
   }
-  void SaveWeights(const std::filesystem::path& path,
-                   std::map<std::string, std::string> metadata) override {
-    SaveNetwork(path, &average_, std::move(metadata));
+  void SaveWeights(const std::filesystem::path& path, std::map<std::string, std::string> metadata,
+                   bool bf16) override {
+    SaveNetwork(path, &average_, std::move(metadata), bf16);
   }
 
   StepLosses Forward(std::int64_t step) override {
@@ -112,8 +112,7 @@ TrainProgress TrainAutoencoder(const AutoencoderTrainOptions& options, const Tra
                                const TrainReport& report) {
   Check(options);
   UseThreads(options.threads);
-  AutoencoderTraining training(options, FirstStep(files) * options.accumulate, materials,
-                               validation);
+  AutoencoderTraining training(options, FirstBatch(options, files), materials, validation);
   return RunTraining(options, files, &training, report);
 }
 

@@ -4,6 +4,12 @@
 // times hardly suffers from what else the machine does.
 //
 //   bench_training [THREADS=1] [VIEWS=9] [CROP=128] [BATCH=8] [TURNS=3]
+//
+// And the speed of training the estimator as training/gpu_run.sh does, on procedural materials made
+// meanwhile: samples a second, and the share of the time that it waits for data.
+//
+//   bench_training estimator [DEVICE=cpu] [BATCH=16] [PHOTOGRAPHS=32] [POOL_THREADS=1] [SECONDS=60]
+//   [NETWORK=pooled]
 #include <torch/torch.h>
 
 #include <algorithm>
@@ -12,6 +18,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "datasets/procedural/material.h"
@@ -20,9 +27,11 @@
 #include "fitting/layers/layers.h"
 #include "fitting/render/render_reference.h"
 #include "fitting/training/autoencoder_trainer.h"
+#include "fitting/training/estimator_trainer.h"
 #include "fitting/training/map_batches.h"
 #include "fitting/training/random.h"
 #include "fitting/training/render_loss.h"
+#include "fitting/training/training_materials.h"
 
 namespace glint {
 namespace {
@@ -221,6 +230,44 @@ void Run(const AutoencoderTrainOptions& options, int turns) {
               Median(ours.wall) / Median(theirs.wall));
 }
 
+struct EstimatorBench {
+  std::string device = "cpu";
+  int batch = 16, photographs = 32, pool_threads = 1, seconds = 60;
+  std::string network = "pooled";
+};
+
+void RunEstimator(const EstimatorBench& bench) {
+  EstimatorTrainOptions options;
+  options.device = bench.device;
+  options.batch = bench.batch;
+  options.batch_photographs = bench.photographs;
+  options.network = bench.network;
+  options.minutes = bench.seconds / 60.0;
+  options.report_seconds = bench.seconds / 6.0;
+  options.checkpoint_minutes = 1e9;
+  options.supervise = true;
+  options.pool.threads = bench.pool_threads;
+  options.pool.first = 64;
+  options.pool.window = 6000;
+  options.pool.per_step = 2;
+  TrainingMaterialOptions materials;
+  materials.glossy_dielectric_share = 0.2;
+  materials.one_substance_share = 0.25;
+  materials.metal_share = 0.1;
+  materials.varnish_share = 0.5;
+  const auto folder = std::filesystem::temp_directory_path() / "glint-bench-training";
+  std::filesystem::create_directories(folder);
+  const auto source = [&](std::uint64_t k) { return TrainingMaterial(materials, nullptr, k); };
+  int lines = 0;
+  TrainEstimator(options, {folder / "e.safetensors", {}, {}, false}, source, Material,
+                 [&](const TrainProgress& p) {
+                   if (++lines <= 2) return;  // what is prepared once
+                   std::printf("%8.1f samples a second, %3.0f %% of the time waiting for data\n",
+                               p.samples_per_second, 100 * p.wait_share);
+                 });
+  std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace glint
 
@@ -228,6 +275,17 @@ int main(int argc, char** argv) {
   const auto argument = [&](int i, int otherwise) {
     return argc > i ? std::max(1, std::atoi(argv[i])) : otherwise;
   };
+  if (argc > 1 && std::string(argv[1]) == "estimator") {
+    glint::EstimatorBench bench;
+    if (argc > 2) bench.device = argv[2];
+    bench.batch = argument(3, bench.batch);
+    bench.photographs = argument(4, bench.photographs);
+    bench.pool_threads = argument(5, bench.pool_threads);
+    bench.seconds = argument(6, bench.seconds);
+    if (argc > 7) bench.network = argv[7];
+    glint::RunEstimator(bench);
+    return 0;
+  }
   glint::Run(glint::Options(argument(1, 1), argument(2, 9), argument(3, 128), argument(4, 8)),
              argument(5, 3));
 }

@@ -24,6 +24,14 @@ double Number(const std::filesystem::path& path, const TensorFile& file, const s
   }
 }
 
+// Checkpoints from before steps could be taken back do not name it.
+std::int64_t BatchOf(const std::filesystem::path& path, const TensorFile& file, int accumulate) {
+  if (file.metadata.contains("batch")) {
+    return static_cast<std::int64_t>(Number(path, file, "batch"));
+  }
+  return static_cast<std::int64_t>(Number(path, file, "step")) * accumulate;
+}
+
 }  // namespace
 
 TrainState TrainState::From(NamedTensors network, NamedTensors average, size_t learned) {
@@ -42,6 +50,8 @@ void SaveCheckpoint(const std::filesystem::path& path, const TrainState& state,
   TensorFile file;
   file.metadata = description;
   file.metadata["step"] = std::to_string(state.step);
+  file.metadata["batch"] = std::to_string(state.batch);
+  file.metadata["rate_factor"] = std::to_string(state.rate_factor);
   file.metadata["seconds"] = std::to_string(state.seconds);
   for (const auto& [name, t] : state.network) file.tensors.push_back(ToRecord(name, *t, false));
   for (const auto& [name, t] : state.average) {
@@ -56,7 +66,8 @@ void SaveCheckpoint(const std::filesystem::path& path, const TrainState& state,
 }
 
 void LoadCheckpoint(const std::filesystem::path& path,
-                    const std::map<std::string, std::string>& description, TrainState* state) {
+                    const std::map<std::string, std::string>& description, int accumulate,
+                    TrainState* state) {
   const TensorFile file = ReadTensorFile(path);
   for (const auto& [key, wanted] : description) {
     const std::string found = RequireMetadata(path, file, key);
@@ -76,11 +87,14 @@ void LoadCheckpoint(const std::filesystem::path& path,
     state->moment2[i] = ReadTensor(path, file, "moment2." + name, shape).to(device);
   }
   state->step = static_cast<std::int64_t>(Number(path, file, "step"));
+  state->batch = BatchOf(path, file, accumulate);
   state->seconds = Number(path, file, "seconds");
+  state->rate_factor =
+      file.metadata.contains("rate_factor") ? Number(path, file, "rate_factor") : 1;
 }
 
-std::int64_t CheckpointStep(const std::filesystem::path& path) {
-  return static_cast<std::int64_t>(Number(path, ReadTensorFile(path), "step"));
+std::int64_t CheckpointBatch(const std::filesystem::path& path, int accumulate) {
+  return BatchOf(path, ReadTensorFile(path), accumulate);
 }
 
 }  // namespace glint

@@ -27,6 +27,27 @@ EstimatorChannels ChannelsOf(const EstimatorTrainOptions& options) {
   return channels;
 }
 
+// Drawn weights, or the file's. A pooled network's file begins a descent too, whose first changes
+// are none: the same function.
+EstimatorNetwork FirstNetwork(const EstimatorTrainOptions& options) {
+  const EstimatorKind wanted = ParseEstimatorKind(options.network);
+  if (options.from.empty()) {
+    return EstimatorNetwork::Random(ChannelsOf(options), options.seed, wanted);
+  }
+  EstimatorNetwork network = LoadEstimator(options.from);
+  if (network.kind == EstimatorKind::kPooled && wanted == EstimatorKind::kDescent) {
+    network.kind = wanted;
+    network.descent = DescentNetwork::Random(options.seed);
+  }
+  if (network.kind != wanted) {
+    throw std::runtime_error(options.from.string() + ": network: found " +
+                             EstimatorKindName(network.kind) + " where " + options.network +
+                             " is to be trained; give --network " +
+                             EstimatorKindName(network.kind) + ", or no --from");
+  }
+  return network;
+}
+
 Stream ShotStream(const EstimatorTrainOptions& options, std::int64_t step) {
   return Stream(StreamSeed(options.seed ^ kShotStream, static_cast<std::uint64_t>(step)));
 }
@@ -55,19 +76,15 @@ class EstimatorTraining : public MapTraining<EstimatorNetwork, EstimatorTrainOpt
       : MapTraining(
             options, first_batch, materials, validation,
             [options](std::int64_t step) { return ShapeOf(options, step); },
-            [&](MapBatches*) {
-              return options.from.empty()
-                         ? EstimatorNetwork::Random(ChannelsOf(options), options.seed)
-                         : LoadEstimator(options.from);
-            }) {}
+            [&](MapBatches*) { return FirstNetwork(options); }) {}
 
   size_t learned() const override { return EstimatorNetwork(network_).State().size(); }
   std::map<std::string, std::string> Description() const override {
     return EstimatorMetadata(network_);
   }
-  void SaveWeights(const std::filesystem::path& path,
-                   std::map<std::string, std::string> metadata) override {
-    SaveEstimator(path, &average_, std::move(metadata));
+  void SaveWeights(const std::filesystem::path& path, std::map<std::string, std::string> metadata,
+                   bool bf16) override {
+    SaveEstimator(path, &average_, std::move(metadata), bf16);
   }
 
   double samples_per_batch() const override {
@@ -110,7 +127,7 @@ TrainProgress TrainEstimator(const EstimatorTrainOptions& options, const TrainFi
                              const TrainReport& report) {
   CheckTrainOptions(options);
   UseThreads(options.threads);
-  EstimatorTraining training(options, FirstStep(files) * options.accumulate, materials, validation);
+  EstimatorTraining training(options, FirstBatch(options, files), materials, validation);
   return RunTraining(options, files, &training, report);
 }
 

@@ -20,6 +20,7 @@ struct EstimatorTrainOptions : TrainOptions {
   EstimatorTrainOptions() { max_gradient_norm = 0.5; }
   std::vector<int> channels{32,  64, 128, 224,
                             320, 24, 192};  // five levels, full resolution, global
+  std::string network = "pooled";           // "attended", "descent" (estimator_network.h)
   double spread_weight = 0.05;
   // Photographs in a batch, at most (one sample has them all at least): time and memory.
   int batch_photographs = 16;

@@ -1,6 +1,7 @@
 #include "fitting/training/map_batches.h"
 
 #include <algorithm>
+#include <chrono>
 #include <stdexcept>
 
 #include "fitting/encoding/encoding.h"
@@ -26,36 +27,77 @@ std::span<float> Values(const Tensor& t) {
 
 }  // namespace
 
-BatchShape BatchShapeOf(const TrainOptions& options, std::int64_t step) {
-  Stream random(StreamSeed(options.seed ^ kCropStream, static_cast<std::uint64_t>(step)));
+BatchShape BatchShapeOf(const TrainOptions& options, std::int64_t batch) {
+  Stream random(StreamSeed(options.seed ^ kCropStream, static_cast<std::uint64_t>(batch)));
   const int crop = options.crops[random.Below(static_cast<int>(options.crops.size()))];
   const double side = static_cast<double>(options.crops[0]) / crop;
   return {std::max(1, static_cast<int>(options.batch * side * side)), crop};
 }
 
 MapBatches::MapBatches(const TrainOptions& options, const MaterialSource& materials,
-                       std::int64_t first_step, ShapeOf shape_of)
+                       std::int64_t first_batch, ShapeOf shape_of)
     : device_(options.device),
+      ahead_(static_cast<size_t>(std::max(1, options.batches_ahead))),
       shape_of_(shape_of ? std::move(shape_of)
-                         : [options](std::int64_t step) { return BatchShapeOf(options, step); }),
-      pool_(WithSeed(options), materials, first_step) {}
+                         : [options](std::int64_t batch) { return BatchShapeOf(options, batch); }),
+      pool_(WithSeed(options), materials, first_batch) {}
 
 MapBatches::~MapBatches() {
-  if (next_.valid()) next_.wait();
+  {
+    std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  if (cutter_.joinable()) cutter_.join();
 }
 
-Tensor MapBatches::Cut(std::int64_t step) {
-  const auto [count, crop] = shape_of_(step);
-  const Tensor batch = torch::empty({count, kEncodedChannels, crop, crop});
-  pool_.Sample(step, count, crop, Values(batch));
-  return device_.is_cpu() ? batch : batch.pin_memory();
+void MapBatches::CutAhead(std::int64_t first) {
+  for (std::int64_t batch = first;; ++batch) {
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return stop_ || ready_.size() < ahead_; });
+      if (stop_) return;
+    }
+    Tensor cut;
+    std::exception_ptr failure;
+    try {
+      cut = Cut(batch);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    std::lock_guard lock(mutex_);
+    ready_.push_back(std::move(cut));
+    failure_ = failure;
+    changed_.notify_all();
+    if (failure) return;
+  }
 }
 
-Tensor MapBatches::Sample(std::int64_t step) {
-  const Tensor batch = next_.valid() && next_step_ == step ? next_.get() : Cut(step);
-  next_step_ = step + 1;
-  next_ = std::async(std::launch::async, [this, step] { return Cut(step + 1); });
-  return batch.to(device_, /*non_blocking=*/true);
+Tensor MapBatches::Cut(std::int64_t batch) {
+  const auto [count, crop] = shape_of_(batch);
+  const Tensor maps = torch::empty({count, kEncodedChannels, crop, crop},
+                                   torch::TensorOptions().pinned_memory(device_.is_cuda()));
+  pool_.Sample(batch, count, crop, Values(maps));
+  return maps;
+}
+
+Tensor MapBatches::Sample(std::int64_t batch) {
+  TORCH_CHECK(next_ < 0 || batch == next_, "batches: found number ", batch, " after ", next_ - 1);
+  if (!cutter_.joinable()) cutter_ = std::thread([this, batch] { CutAhead(batch); });
+  next_ = batch + 1;
+  Tensor maps;
+  {
+    const auto began = std::chrono::steady_clock::now();
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return !ready_.empty(); });
+    maps = std::move(ready_.front());
+    ready_.pop_front();
+    if (!maps.defined()) std::rethrow_exception(failure_);
+    waited_seconds_ +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  }
+  changed_.notify_all();
+  return maps.to(device_, /*non_blocking=*/true);
 }
 
 Tensor MapBatches::SampleFirst(int count, int crop) {

@@ -16,6 +16,7 @@ class MapTraining : public Trainable {
   NamedTensors State() override { return network_.State(); }
   NamedTensors AverageState() override { return average_.State(); }
   double samples_per_batch() const override { return options_.batch; }
+  double waited_seconds() const override { return pool_.waited_seconds(); }
 
   double Validate() override {
     torch::NoGradGuard no_gradient;

@@ -5,18 +5,20 @@
 #include <cmath>
 #include <fstream>
 #include <iomanip>
+#include <optional>
 #include <stdexcept>
 
 #include "fitting/autoencoder/adam.h"
 #include "fitting/training/checkpoint.h"
+#include "fitting/training/flat_state.h"
 #include "fitting/training/loss_plot.h"
+#include "fitting/training/supervisor.h"
 
 namespace glint {
 namespace {
 
 using torch::Tensor;
 
-constexpr double kReportSeconds = 5.0;
 constexpr int kCropMultiple = 32;
 
 double Now() {
@@ -111,17 +113,34 @@ class Window {
   int batches_ = 0;
 };
 
+// A copy of the last checkpoint beside it, for when a training does not get on from the next one.
+void KeepPrevious(const std::filesystem::path& checkpoint) {
+  if (!std::filesystem::exists(checkpoint)) return;
+  const std::filesystem::path copy = checkpoint.string() + ".previous";
+  const std::filesystem::path beside = copy.string() + ".tmp";
+  std::filesystem::copy_file(checkpoint, beside, std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::rename(beside, copy);
+}
+
+// The weights and Adam's state as they stand, or as the checkpoint has them.
+TrainState BeginningOf(const TrainOptions& options, const TrainFiles& files, Trainable* trainable) {
+  TrainState state =
+      TrainState::From(trainable->State(), trainable->AverageState(), trainable->learned());
+  if (files.resume && std::filesystem::exists(files.CheckpointPath())) {
+    LoadCheckpoint(files.CheckpointPath(), trainable->Description(), options.accumulate, &state);
+  }
+  return state;
+}
+
 class Loop {
  public:
   Loop(const TrainOptions& options, const TrainFiles& files, Trainable* trainable)
       : options_(options),
         files_(files),
         trainable_(trainable),
-        state_(
-            TrainState::From(trainable->State(), trainable->AverageState(), trainable->learned())) {
-    if (files.resume && std::filesystem::exists(files.CheckpointPath())) {
-      LoadCheckpoint(files.CheckpointPath(), trainable->Description(), &state_);
-    }
+        state_(BeginningOf(options, files, trainable)),
+        flat_(&state_) {
+    if (options.supervise) supervisor_.emplace(files.resume ? files.LogPath() : "", flat_, state_);
   }
 
   TrainProgress Run(const TrainReport& report) {
@@ -138,10 +157,13 @@ class Loop {
       state_.seconds += elapsed;
       window_seconds += elapsed;
       since_checkpoint += elapsed;
-      const bool checkpoint =
-          Done() >= 1.0 || since_checkpoint > 60.0 * options_.checkpoint_minutes;
-      if (window_seconds < kReportSeconds && !checkpoint) continue;
+      const bool last = Done() >= 1.0;
+      const bool due = last || since_checkpoint > 60.0 * options_.checkpoint_minutes;
+      if (window_seconds < options_.report_seconds && !due) continue;
       progress = Report(window_seconds);
+      // A checkpoint waits for a loss that is beyond doubt; the last one is of weights that were.
+      const bool good = Supervise(last, &progress);
+      const bool checkpoint = due && (good || last);
       if (checkpoint) {
         progress.validation_map_loss = trainable_->Validate();
         Save(*progress.validation_map_loss);
@@ -152,6 +174,7 @@ class Loop {
       if (checkpoint) WriteLossPlot(files_.LogPath(), files_.PlotPath());
       if (report) report(progress);
       tick = Now();  // validation and writing are not training time
+      if (last) break;
     }
     return progress;
   }
@@ -169,62 +192,53 @@ class Loop {
     const double since = static_cast<double>(state_.step - options_.warmup_from);
     const double warm = std::clamp((since + 1) / std::max(1, options_.warmup_steps), 0.01, 1.0);
     const double cosine = 0.5 * (1.0 + std::cos(M_PI * std::min(1.0, Done())));
-    return options_.learning_rate * warm * std::max(0.01, cosine);
+    return options_.learning_rate * state_.rate_factor * warm * std::max(0.01, cosine);
   }
 
   void Step() {
-    for (size_t i = 0; i < state_.moment1.size(); ++i) {
-      Tensor* tensor = state_.network[i].second;
-      tensor->set_requires_grad(true);
-      tensor->mutable_grad().reset();
-    }
+    flat_.gradients.zero_();
     for (int k = 0; k < options_.accumulate; ++k) {
-      const StepLosses losses = trainable_->Forward(state_.step * options_.accumulate + k);
+      const StepLosses losses = trainable_->Forward(state_.batch++);
       (losses.total / options_.accumulate).backward();
       window_.Add(losses);
     }
     Update();
-  }
-
-  // What a step's gradients are multiplied with: 1, or what brings their norm down to the most.
-  Tensor GradientScale() const {
-    std::vector<Tensor> norms;
-    for (size_t i = 0; i < state_.moment1.size(); ++i) {
-      norms.push_back(state_.network[i].second->grad().norm());
+    if (state_.step == options_.test_jump_step && !spoilt_) {
+      constexpr double kSpoilt = 20;  // puts the outputs at the ends of their ranges
+      flat_.weights.mul_(kSpoilt);
+      spoilt_ = true;
     }
-    return (options_.max_gradient_norm / torch::stack(norms).norm().clamp_min(1e-12)).clamp_max(1);
   }
 
   void Update() {
+    torch::NoGradGuard no_gradient;
     ++state_.step;
-    const bool cut = options_.max_gradient_norm > 0;
-    const Tensor scale = cut ? GradientScale() : Tensor();
-    const AdamOptions adam{LearningRate()};
+    if (options_.max_gradient_norm > 0) {
+      flat_.gradients.mul_(
+          (options_.max_gradient_norm / flat_.gradients.norm().clamp_min(1e-12)).clamp_max(1));
+    }
     const double t = static_cast<double>(state_.step);
     const double decay = std::min(options_.average_decay, (1.0 + t) / (10.0 + t));
-    for (size_t i = 0; i < state_.network.size(); ++i) {
-      Tensor weights = state_.network[i].second->detach();
-      if (i < state_.moment1.size()) {
-        Tensor g = state_.network[i].second->grad().contiguous();
-        if (cut) g *= scale;
-        Learn(adam, g, weights, state_.moment1[i], state_.moment2[i]);
-      }
-      Average(decay, weights, *state_.average[i].second);
+    Learn({LearningRate()});
+    Average(decay, flat_.weights, flat_.average);
+    for (size_t i = state_.moment1.size(); i < state_.network.size(); ++i) {
+      Average(decay, state_.network[i].second->detach(), *state_.average[i].second);
     }
   }
 
   // One step of Adam (adam.h), there or by torch's operations.
-  void Learn(const AdamOptions& adam, const Tensor& gradient, Tensor weights, Tensor moment1,
-             Tensor moment2) const {
-    if (gradient.device().is_cpu()) {
-      AdamStep(adam, state_.step, Span(gradient), Span(weights), Span(moment1), Span(moment2));
+  void Learn(const AdamOptions& adam) {
+    if (flat_.weights.device().is_cpu()) {
+      AdamStep(adam, state_.step, Span(flat_.gradients), Span(flat_.weights), Span(flat_.moment1),
+               Span(flat_.moment2));
       return;
     }
     const double t = static_cast<double>(state_.step);
-    moment1.lerp_(gradient, 1 - adam.beta1);
-    moment2.mul_(adam.beta2).addcmul_(gradient, gradient, 1 - adam.beta2);
-    const Tensor scale = (moment2 / (1 - std::pow(adam.beta2, t))).sqrt_().add_(adam.epsilon);
-    weights.addcdiv_(moment1, scale, -adam.learning_rate / (1 - std::pow(adam.beta1, t)));
+    flat_.moment1.lerp_(flat_.gradients, 1 - adam.beta1);
+    flat_.moment2.mul_(adam.beta2).addcmul_(flat_.gradients, flat_.gradients, 1 - adam.beta2);
+    const Tensor scale = (flat_.moment2 / (1 - std::pow(adam.beta2, t))).sqrt_().add_(adam.epsilon);
+    flat_.weights.addcdiv_(flat_.moment1, scale,
+                           -adam.learning_rate / (1 - std::pow(adam.beta1, t)));
   }
 
   static void Average(double decay, const Tensor& weights, Tensor average) {
@@ -235,23 +249,43 @@ class Loop {
     }
   }
 
+  // Whether the weights are beyond doubt; takes them back where the loss has jumped, or is doubtful
+  // at the end.
+  bool Supervise(bool last, TrainProgress* progress) {
+    if (!supervisor_) {
+      if (!std::isfinite(progress->loss)) {
+        throw std::runtime_error("training: the loss is not finite before step " +
+                                 std::to_string(state_.step) +
+                                 "; resume with a lower --lr, or give --supervise");
+      }
+      return true;
+    }
+    const double loss =
+        std::isfinite(progress->loss) ? progress->map_loss + progress->render_loss : progress->loss;
+    const LossVerdict verdict = supervisor_->Judge(loss, flat_, state_);
+    if (verdict == LossVerdict::kCalm) return true;
+    if (verdict == LossVerdict::kSuspicious && !last) return false;
+    progress->event = supervisor_->GoBack(&flat_, &state_);
+    return false;
+  }
+
   TrainProgress Report(double window_seconds) {
     const int batches = window_.batches();
     TrainProgress progress = window_.Take();
-    if (!std::isfinite(progress.loss)) {
-      throw std::runtime_error("training: the loss is not finite before step " +
-                               std::to_string(state_.step) + "; resume with a lower --lr");
-    }
     progress.step = state_.step;
     progress.seconds = state_.seconds;
     progress.samples_per_second =
         batches * trainable_->samples_per_batch() / std::max(window_seconds, 1e-9);
+    const double waited = trainable_->waited_seconds();
+    progress.wait_share = (waited - waited_seconds_) / std::max(window_seconds, 1e-9);
+    waited_seconds_ = waited;
     progress.learning_rate = LearningRate();
     progress.eta_seconds = state_.seconds * (1.0 / std::max(Done(), 1e-9) - 1.0);
     return progress;
   }
 
   void Save(double validation) {
+    if (options_.supervise) KeepPrevious(files_.CheckpointPath());
     SaveCheckpoint(files_.CheckpointPath(), state_, trainable_->Description());
     std::map<std::string, std::string> metadata{
         {"data", options_.data_name},
@@ -262,14 +296,19 @@ class Loop {
                                      trainable_->samples_per_batch()))},
         {"validation_map_l1", std::to_string(validation)}};
     if (!options_.from.empty()) metadata["from"] = options_.from.filename().string();
-    trainable_->SaveWeights(files_.weights, std::move(metadata));
+    if (!files_.float32.empty()) trainable_->SaveWeights(files_.float32, metadata, false);
+    trainable_->SaveWeights(files_.weights, std::move(metadata), true);
   }
 
   const TrainOptions& options_;
   const TrainFiles& files_;
   Trainable* trainable_;
   TrainState state_;
+  FlatState flat_;
+  std::optional<Supervisor> supervisor_;
   Window window_;
+  double waited_seconds_ = 0;
+  bool spoilt_ = false;
 };
 
 }  // namespace
@@ -286,9 +325,10 @@ std::filesystem::path TrainFiles::PlotPath() const {
   return std::filesystem::path(LogPath()).replace_extension(".svg");
 }
 
-std::int64_t FirstStep(const TrainFiles& files) {
+std::int64_t FirstBatch(const TrainOptions& options, const TrainFiles& files) {
   const std::filesystem::path path = files.CheckpointPath();
-  return files.resume && std::filesystem::exists(path) ? CheckpointStep(path) : 0;
+  return files.resume && std::filesystem::exists(path) ? CheckpointBatch(path, options.accumulate)
+                                                       : 0;
 }
 
 TrainProgress RunTraining(const TrainOptions& options, const TrainFiles& files,

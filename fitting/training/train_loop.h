@@ -32,13 +32,15 @@ class Trainable {
   virtual StepLosses Forward(std::int64_t batch) = 0;
   // Crops in a batch, in the mean.
   virtual double samples_per_batch() const = 0;
+  // How long Forward() has waited for batches, in all.
+  virtual double waited_seconds() const = 0;
   // L1 of encoded maps on materials that are never trained on, by the averaged weights.
   virtual double Validate() = 0;
   // What kind of network this is; a checkpoint of another is refused.
   virtual std::map<std::string, std::string> Description() const = 0;
-  // Writes the averaged weights.
+  // Writes the averaged weights, in bf16 or float32.
   virtual void SaveWeights(const std::filesystem::path& path,
-                           std::map<std::string, std::string> metadata) = 0;
+                           std::map<std::string, std::string> metadata, bool bf16) = 0;
 };
 
 // Throws std::runtime_error for options that cannot be.
@@ -49,7 +51,7 @@ void CheckTrainOptions(const TrainOptions& options);
 TrainProgress RunTraining(const TrainOptions& options, const TrainFiles& files,
                           Trainable* trainable, const TrainReport& report);
 
-// The step that training begins with: 0, or the checkpoint's. (Data may have to be made up to it.)
-std::int64_t FirstStep(const TrainFiles& files);
+// The batch that training begins with: 0, or the checkpoint's. (Data may have to be made up to it.)
+std::int64_t FirstBatch(const TrainOptions& options, const TrainFiles& files);
 
 }  // namespace glint

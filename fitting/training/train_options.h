@@ -35,15 +35,22 @@ struct TrainOptions {
   std::uint64_t seed = 1;
   std::filesystem::path from;     // weights to begin with; empty: new ones
   double checkpoint_minutes = 3;  // also how often validation runs
+  double report_seconds = 5;      // between lines of the log
+  int batches_ahead = 3;          // cut while the device works
+  // Whether a jump of the loss (loss_watch.h) takes the training back to where it was good, with
+  // half the learning rate. Without, a loss that is not finite ends it.
+  bool supervise = false;
+  std::int64_t test_jump_step = 0;  // for tests: the step after which the weights are spoilt, once
   PoolOptions pool;
   std::string data_name;  // written into the weights' metadata
 };
 
 struct TrainFiles {
-  std::filesystem::path weights;     // the result, rewritten at each checkpoint
-  std::filesystem::path checkpoint;  // optimiser and all; empty: <weights>.checkpoint
-  std::filesystem::path log_csv;     // empty: <weights>.csv; appended to when resuming
-  bool resume = false;               // go on from the checkpoint when it exists
+  std::filesystem::path weights;       // the result, rewritten at each checkpoint
+  std::filesystem::path checkpoint;    // optimiser and all; empty: <weights>.checkpoint
+  std::filesystem::path log_csv;       // empty: <weights>.csv; appended to when resuming
+  bool resume = false;                 // go on from the checkpoint when it exists
+  std::filesystem::path float32 = {};  // the result in float32 beside; empty: none
 
   std::filesystem::path CheckpointPath() const;
   std::filesystem::path LogPath() const;
@@ -59,6 +66,8 @@ struct TrainProgress {
   double learning_rate = 0;
   double loss = 0, map_loss = 0, smoothness_loss = 0, render_loss = 0;  // means since the last line
   std::optional<double> validation_map_loss;  // L1 of encoded maps, averaged weights
+  double wait_share = 0;  // of the time since the last line, spent waiting for batches
+  std::string event;      // what happened besides; empty: nothing
 };
 
 using TrainReport = std::function<void(const TrainProgress&)>;

@@ -1,8 +1,10 @@
 #include "fitting/training/training_materials.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
+#include <string>
 
 #include "datasets/procedural/blend.h"
 #include "datasets/procedural/material.h"
@@ -114,6 +116,70 @@ SvbrdfMaps OneSubstanceAtTimes(SvbrdfMaps maps, double share, Stream* random) {
   return maps;
 }
 
+// Metal becomes paint or plastic of its colour.
+SvbrdfMaps WithoutMetal(SvbrdfMaps maps, Stream* random) {
+  const auto f0 = static_cast<float>(DrawF0(random));
+  const auto paint = static_cast<float>(random->Uniform(0.3, 1.0));
+  for (size_t i = 0; i < maps.texels(); ++i) {
+    float most = 0;
+    for (int c = 0; c < 3; ++c) most = std::max(most, maps.plane(kSpecularR + c)[i]);
+    const float metal = std::clamp((most - kMetalF0) / (kLeastMetalF0 - kMetalF0), 0.0f, 1.0f);
+    for (int c = 0; c < 3; ++c) {
+      float& diffuse = maps.plane(kDiffuseR + c)[i];
+      float& specular = maps.plane(kSpecularR + c)[i];
+      diffuse = std::min(1 - f0, diffuse + metal * paint * specular);
+      specular += metal * (f0 - specular);
+    }
+  }
+  return maps;
+}
+
+// A material and whether it is wood or painted, which people varnish.
+struct NamedMaterial {
+  SvbrdfMaps maps;
+  bool wood_or_paint = false;
+};
+
+bool IsWoodOrPaint(const std::string& name) {
+  static const std::array<const char*, 9> kNames{"wood",    "Wood",          "planks",
+                                                 "Planks",  "chipboard",     "impasto",
+                                                 "stripes", "peeling_paint", "Paint"};
+  return std::any_of(kNames.begin(), kNames.end(),
+                     [&](const char* part) { return name.find(part) != std::string::npos; });
+}
+
+// A clear coat: its own smooth reflection from a surface that levels the relief, over a ground that
+// it makes darker and more saturated, as if wet.
+SvbrdfMaps Varnished(SvbrdfMaps maps, Stream* random) {
+  const auto f0 = static_cast<float>(random->Uniform(0.035, 0.05));
+  const auto roughness = static_cast<float>(random->Uniform(0.05, 0.3));
+  const auto relief = static_cast<float>(random->Uniform(0, 0.4));
+  const auto wet = static_cast<float>(random->Uniform(1, 1.3));
+  constexpr float kRoughnessLeft = 0.1f;  // of the ground's variation
+  DrawTogether(kRoughnessLeft, maps.plane(kRoughness));
+  double mean = 0;
+  for (const float r : maps.plane(kRoughness)) mean += r;
+  mean /= static_cast<double>(maps.texels());
+  for (size_t i = 0; i < maps.texels(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      float& diffuse = maps.plane(kDiffuseR + c)[i];
+      diffuse = std::min(1 - f0, std::pow(diffuse, wet));
+      maps.plane(kSpecularR + c)[i] = f0;
+    }
+    float& r = maps.plane(kRoughness)[i];
+    r = std::clamp(roughness + r - static_cast<float>(mean), 0.05f, 1.0f);
+    FlattenNormal(relief, i, &maps);
+  }
+  return maps;
+}
+
+SvbrdfMaps VarnishedAtTimes(NamedMaterial material, double share, Stream* random) {
+  constexpr double kElsewhere = 0.2;
+  if (random->Uniform() >= share * (material.wood_or_paint ? 1 : kElsewhere)) return material.maps;
+  if (HasMetal(material.maps)) return material.maps;
+  return Varnished(std::move(material.maps), random);
+}
+
 SvbrdfMaps PackedWindow(const PackedMaterial& material, int size, Stream* random) {
   const int window = size + random->Below(material.size - size + 1);
   const int column = random->Below(material.size - window + 1);
@@ -124,31 +190,76 @@ SvbrdfMaps PackedWindow(const PackedMaterial& material, int size, Stream* random
   return maps;
 }
 
+NamedMaterial Procedural(std::uint64_t seed, int size) {
+  const MaterialRecipe recipe = DrawRecipe(seed);
+  return {MakeMaterial(recipe, size, size), IsWoodOrPaint(recipe.family)};
+}
+
 // As found, procedural or packed or both.
-SvbrdfMaps PlainMaterial(const TrainingMaterialOptions& options, const MaterialPack* pack,
-                         std::uint64_t seed, Stream* random) {
+NamedMaterial PlainMaterial(const TrainingMaterialOptions& options, const MaterialPack* pack,
+                            std::uint64_t seed, Stream* random) {
   const bool packed = pack != nullptr && !pack->empty() && random->Uniform() < options.pack_share;
-  if (!packed) return MakeMaterial(seed, options.size, options.size);
+  if (!packed) return Procedural(seed, options.size);
   const PackedMaterial& material =
       (*pack)[static_cast<size_t>(random->Below(static_cast<int>(pack->size())))];
+  const bool wood_or_paint = IsWoodOrPaint(material.name);
   const SvbrdfMaps maps = PackedWindow(material, options.size, random);
-  if (random->Uniform() >= options.mixture_share) return maps;
+  if (random->Uniform() >= options.mixture_share) return {maps, wood_or_paint};
   const SvbrdfMaps other = MakeMaterial(seed, options.size, options.size);
-  return procedural::BlendMaterials(maps, other,
-                                    procedural::DrawBlendMask(seed, options.size, options.size));
+  return {procedural::BlendMaterials(maps, other,
+                                     procedural::DrawBlendMask(seed, options.size, options.size)),
+          wood_or_paint};
+}
+
+// The same with the wanted odds of metal. One with metal is looked for among small pictures of
+// procedural ones: the same material at any size.
+NamedMaterial MaterialWithMetalOdds(const TrainingMaterialOptions& options,
+                                    const MaterialPack* pack, std::uint64_t seed, Stream* random) {
+  constexpr int kTries = 32, kSmall = 32;
+  const bool metal = random->Uniform() < options.metal_share;
+  NamedMaterial material = PlainMaterial(options, pack, seed, random);
+  if (HasMetal(material.maps) == metal) return material;
+  if (!metal) {
+    return {WithoutMetal(std::move(material.maps), random), material.wood_or_paint};
+  }
+  for (int k = 0; k < kTries; ++k) {
+    const std::uint64_t other = random->Bits() % kReservedSeedBase;
+    if (HasMetal(MakeMaterial(other, kSmall, kSmall))) return Procedural(other, options.size);
+  }
+  return material;
 }
 
 }  // namespace
+
+bool HasMetal(const SvbrdfMaps& maps) {
+  size_t metal = 0;
+  for (size_t i = 0; i < maps.texels(); ++i) {
+    float most = 0;
+    for (int c = 0; c < 3; ++c) most = std::max(most, maps.plane(kSpecularR + c)[i]);
+    metal += most > kLeastMetalF0;
+  }
+  return static_cast<double>(metal) > kLeastMetalShare * static_cast<double>(maps.texels());
+}
 
 SvbrdfMaps TrainingMaterial(const TrainingMaterialOptions& options, const MaterialPack* pack,
                             std::uint64_t k) {
   Stream random(StreamSeed(options.seed ^ kChoiceStream, k));
   const std::uint64_t seed = ProceduralSeed(options.seed, k);
-  SvbrdfMaps maps = PlainMaterial(options, pack, seed, &random);
-  maps = WithGlossyDielectrics(std::move(maps), options.glossy_dielectric_share, seed, &random);
-  // Drawn only when asked for, so that trainings of before repeat.
-  if (options.one_substance_share <= 0) return maps;
-  return OneSubstanceAtTimes(std::move(maps), options.one_substance_share, &random);
+  // What is new is drawn only when asked for, so that trainings of before repeat.
+  NamedMaterial material = options.metal_share < 0
+                               ? PlainMaterial(options, pack, seed, &random)
+                               : MaterialWithMetalOdds(options, pack, seed, &random);
+  // Odds of metal that were asked for stay.
+  if (options.metal_share < 0 || !HasMetal(material.maps)) {
+    material.maps = WithGlossyDielectrics(std::move(material.maps), options.glossy_dielectric_share,
+                                          seed, &random);
+  }
+  if (options.one_substance_share > 0) {
+    material.maps =
+        OneSubstanceAtTimes(std::move(material.maps), options.one_substance_share, &random);
+  }
+  if (options.varnish_share <= 0) return material.maps;
+  return VarnishedAtTimes(std::move(material), options.varnish_share, &random);
 }
 
 }  // namespace glint

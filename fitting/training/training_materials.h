@@ -18,7 +18,18 @@ struct TrainingMaterialOptions {
   // Of all, whose roughness and specular albedo hardly vary: most samples that people photograph
   // are one substance, printed or dyed.
   double one_substance_share = 0;
+  // Of all, that have metal somewhere; the metals of the others become paint of their colour.
+  // Negative: as the generator and the pack have them.
+  double metal_share = -1;
+  // Of wood and paint without metal, that have a thin clear smooth coat; of all else without metal
+  // a fifth of it.
+  double varnish_share = 0;
 };
+
+// What counts as metal, and the share of texels from which on a material is said to have some.
+inline constexpr float kLeastMetalF0 = 0.2f;
+inline constexpr double kLeastMetalShare = 0.02;
+bool HasMetal(const SvbrdfMaps& maps);
 
 // Material k. `pack` may be null or empty: procedural materials alone. Packed materials get a
 // window of random place and scale; F0 of their dielectrics, which collections leave at 0.04, is

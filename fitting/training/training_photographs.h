@@ -3,7 +3,8 @@
 //
 // A capture is N photographs of one crop, taken as the whole sample of [−1, 1]², a part or a
 // multiple of it. Its geometry is one of three kinds, its disturbances have a size of their own, so
-// that clean captures occur beside bad ones (CaptureKind, DrawDisturbance in the .cc file).
+// that clean captures occur beside bad ones (capture_draw.h). The host draws numbers and hands them
+// to the device; it does not wait for it.
 #pragma once
 
 #include <torch/torch.h>

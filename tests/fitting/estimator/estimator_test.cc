@@ -17,30 +17,27 @@ namespace {
 using test::PhotographMaps;
 using test::UniformMaps;
 
-EstimatorNetwork Small() { return EstimatorNetwork::Random({{8, 12, 16, 16, 24}, 8, 16}, 3); }
-
-// A network of drawn weights, as a file.
-class EstimatorFile : public testing::Test {
+// A network of drawn weights, as a file: of each kind that there is.
+class EstimatorFile : public testing::TestWithParam<EstimatorKind> {
  protected:
   void SetUp() override {
-    EstimatorNetwork network = Small();
+    EstimatorNetwork network =
+        EstimatorNetwork::Random({{8, 12, 16, 16, 24}, 8, 16}, 3, GetParam());
     SaveEstimator(path_, &network, {});
   }
   SvbrdfMaps Estimate(const PhotographSet& set, int threads = 1) const {
-    return Estimator::Load(path_)
-        .Estimate(set, {}, threads)
-        .maps;
+    return Estimator::Load(path_).Estimate(set, {}, threads).maps;
   }
   const test::TemporaryFolder folder_;
   const std::filesystem::path path_ = folder_.path() / "e.safetensors";
 };
 
-TEST_F(EstimatorFile, BitsDoNotDependOnThreads) {
+TEST_P(EstimatorFile, BitsDoNotDependOnThreads) {
   const PhotographSet set = PhotographMaps(ToyMaterial(2, 70, 45), 1);
   EXPECT_EQ(Estimate(set, 1).planes, Estimate(set, 2).planes);
 }
 
-TEST_F(EstimatorFile, MapsAreOfThePhotographsSizeAndWithinTheirRanges) {
+TEST_P(EstimatorFile, MapsAreOfThePhotographsSizeAndWithinTheirRanges) {
   for (const auto& [width, height] : {std::pair{1, 1}, {33, 20}, {64, 96}}) {
     const PhotographSet set = PhotographMaps(ToyMaterial(2, width, height), 1);
     const SvbrdfMaps maps = Estimate(set);
@@ -51,13 +48,13 @@ TEST_F(EstimatorFile, MapsAreOfThePhotographsSizeAndWithinTheirRanges) {
   }
 }
 
-TEST_F(EstimatorFile, BeforeTrainingDiffuseIsAboutWhatAMatteTexelShows) {
+TEST_P(EstimatorFile, BeforeTrainingDiffuseIsAboutWhatAMatteTexelShows) {
   const PhotographSet set = PhotographMaps(UniformMaps(64, 0.3f, 0.0f, 1.0f), 1);
   const SvbrdfMaps maps = Estimate(set);
   EXPECT_NEAR(maps.at(kDiffuseR, 20, 20), 0.3f, 0.15f);
 }
 
-TEST_F(EstimatorFile, TheOrderOfPhotographsDoesNotMatter) {
+TEST_P(EstimatorFile, TheOrderOfPhotographsDoesNotMatter) {
   PhotographSet set = PhotographMaps(ToyMaterial(2, 64, 64), 4);
   const SvbrdfMaps before = Estimate(set);
   std::reverse(set.photographs.begin(), set.photographs.end());
@@ -67,7 +64,7 @@ TEST_F(EstimatorFile, TheOrderOfPhotographsDoesNotMatter) {
   }
 }
 
-TEST_F(EstimatorFile, APhotographGivenTwiceSaysNoMoreThanOnce) {
+TEST_P(EstimatorFile, APhotographGivenTwiceSaysNoMoreThanOnce) {
   PhotographSet set = PhotographMaps(ToyMaterial(2, 64, 64), 1);
   const SvbrdfMaps once = Estimate(set);
   set.photographs.push_back(set.photographs[0]);
@@ -77,7 +74,7 @@ TEST_F(EstimatorFile, APhotographGivenTwiceSaysNoMoreThanOnce) {
   }
 }
 
-TEST_F(EstimatorFile, APhotographWhoseFrameEndsAtATexelDoesNotDarkenIt) {
+TEST_P(EstimatorFile, APhotographWhoseFrameEndsAtATexelDoesNotDarkenIt) {
   PhotographSet set = PhotographMaps(UniformMaps(64, 0.3f, 0.0f, 1.0f), 2);
   for (int i = 0; i < 64 * 32; ++i) {
     set.photographs[1].mask[i] = 0;
@@ -86,7 +83,7 @@ TEST_F(EstimatorFile, APhotographWhoseFrameEndsAtATexelDoesNotDarkenIt) {
   EXPECT_NEAR(Estimate(set).at(kDiffuseR, 10, 20), 0.3f, 0.15f);
 }
 
-TEST_F(EstimatorFile, DamagedFilesAreRefusedWithTheirName) {
+TEST_P(EstimatorFile, DamagedFilesAreRefusedWithTheirName) {
   const std::string bytes = test::ReadAll(path_);
   for (const double share : {0.0, 0.01, 0.5, 0.99}) {
     test::WriteAll(path_,
@@ -97,6 +94,27 @@ TEST_F(EstimatorFile, DamagedFilesAreRefusedWithTheirName) {
     } catch (const std::runtime_error& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("e.safetensors"));
     }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EstimatorFile,
+                         testing::Values(EstimatorKind::kPooled, EstimatorKind::kAttended,
+                                         EstimatorKind::kDescent),
+                         [](const auto& kind) { return EstimatorKindName(kind.param); });
+
+TEST(EstimatorKinds, AreNamedInTheFileAndOthersAreRefused) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "e.safetensors";
+  EstimatorNetwork network =
+      EstimatorNetwork::Random({{8, 12, 16, 16, 24}, 8, 16}, 3, EstimatorKind::kDescent);
+  SaveEstimator(path, &network, {});
+  EXPECT_EQ(LoadEstimator(path).kind, EstimatorKind::kDescent);
+  SaveEstimator(path, &network, {{"architecture", "glint-estimator v3 clairvoyant"}});
+  try {
+    LoadEstimator(path);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("\"glint-estimator v3 clairvoyant\""));
   }
 }
 

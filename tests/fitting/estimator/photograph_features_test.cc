@@ -102,7 +102,8 @@ TEST(PhotographFeatures, AreTheSameForBatches) {
       return torch::stack(list).unsqueeze(0);
     };
     const FeatureTensors all = FeaturesOfTensors(
-        {stacked(radiance), stacked(mask), torch::full({1, 3, 1, 1, 1}, ldr ? 1.0f : 0.0f)}, batch);
+        {stacked(radiance), stacked(mask), torch::full({1, 3, 1, 1, 1}, ldr ? 1.0f : 0.0f)},
+        TensorsOf(batch, torch::kFloat32), batch.plane, batch.convention.falloff);
     for (int n = 0; n < 3; ++n) {
       const PhotographFeatures one =
           FeaturesOf(set.photographs[static_cast<size_t>(n)], set.plane, set.convention);

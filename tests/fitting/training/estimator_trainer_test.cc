@@ -66,6 +66,52 @@ TEST(EstimatorTrainer, ATrainingFromWeightsBeginsWhereTheyWere) {
   EXPECT_NEAR(first, *trained.validation_map_loss, 0.01 * first);  // weights are kept in bf16
 }
 
+// The weights are spoilt after the first third; without help all outputs would stay at the ends of
+// their ranges.
+TEST(EstimatorTrainer, ASupervisedTrainingReturnsFromAJumpOfItsLossWithHalfTheRate) {
+  const test::TemporaryFolder folder;
+  EstimatorTrainOptions options = TinyEstimator(240);
+  options.supervise = true;
+  options.test_jump_step = 80;
+  options.report_seconds = 0.05;
+  double first = 0, rate_before = 0;
+  int returns = 0;
+  const auto report = [&](const TrainProgress& p) {
+    if (p.step == 0) first = *p.validation_map_loss;
+    if (returns == 0) rate_before = p.learning_rate;
+    if (!p.event.empty()) {
+      ++returns;
+      EXPECT_LT(p.step, 110);
+    }
+  };
+  const TrainProgress last = TrainEstimator(
+      options, {folder.path() / "e.safetensors", {}, {}, false}, Toy, Unseen, report);
+  EXPECT_GE(returns, 1);
+  EXPECT_EQ(last.step, 240);
+  EXPECT_LT(last.learning_rate, 0.5 * rate_before);
+  EXPECT_LT(*last.validation_map_loss, 0.8 * first);
+}
+
+TEST(EstimatorTrainer, ADescentBeginsWherePooledWeightsWereAndNoOtherNetworkDoes) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "e.safetensors";
+  const TrainProgress trained =
+      TrainEstimator(TinyEstimator(60), {path, {}, {}, false}, Toy, Unseen, {});
+  EstimatorTrainOptions options = TinyEstimator(2);
+  options.from = path;
+  options.network = "descent";
+  double first = 0;
+  TrainEstimator(options, {folder.path() / "on.safetensors", {}, {}, false}, Toy, Unseen,
+                 [&](const TrainProgress& p) {
+                   if (p.step == 0) first = *p.validation_map_loss;
+                 });
+  EXPECT_NEAR(first, *trained.validation_map_loss, 0.01 * first);
+  options.network = "attended";
+  EXPECT_THROW(
+      TrainEstimator(options, {folder.path() / "no.safetensors", {}, {}, false}, Toy, Unseen, {}),
+      std::runtime_error);
+}
+
 TEST(EstimatorTrainer, ACheckpointOfOtherChannelsIsRefused) {
   const test::TemporaryFolder folder;
   const TrainFiles files{folder.path() / "e.safetensors", {}, {}, true};
