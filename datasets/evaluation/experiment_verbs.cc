@@ -18,7 +18,8 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
   options->Add("counts", counts, "numbers of views");
   options->Add("methods", &experiment->methods,
                "any of: start (no fitting), classic (texel by texel), latent, refined (latent, "
-               "then glint-refine), direct (start, then glint-refine), uncorrected (refined without correcting the views)");
+               "then glint-refine), direct (start, then glint-refine), uncorrected (refined "
+               "without correcting the views)");
   options->Add("work", &experiment->work, "folder in which views and results are kept (required)");
   options->AddRange("size", &experiment->size, 8, 4096, "texels per side");
   ViewSetOptions* views = &experiment->views;

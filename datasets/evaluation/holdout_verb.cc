@@ -54,9 +54,10 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
               "'2,6;7,8'");
   options.Add("shown", &fitted,
               "views to fit; all others are held out; numbers, names and groups as in --pairs");
-  options.Add("methods", &experiment.methods,
-              "any of: start (the initial maps), classic, latent, refined, direct (the initial maps, "
-              "refined)");
+  options.Add(
+      "methods", &experiment.methods,
+      "any of: start (the initial maps), classic, latent, refined, direct (the initial maps, "
+      "refined)");
   options.Add("programs", &programs,
               "other builds to compare with, as NAME=FOLDER,…; FOLDER holds the build's programs");
   options.Add("import-args", &experiment.import_arguments,

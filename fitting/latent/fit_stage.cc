@@ -28,10 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// From one photograph roughness and specular drift along ambiguities while the loss falls: stopping
-// early halves the damage (docs/experiments/pictures.md, "How long to fit one photograph").
-constexpr int kSinglePhotoIterations = 8;
-
 // Of few photographs the estimator sees all detail up to this size, of more refinement finds it
 // itself: docs/experiments/pictures.md.
 constexpr size_t kFewPhotographs = 2;
@@ -81,8 +77,8 @@ Size FittedSize(const SamplePlane& plane, const FitStageOptions& options, const 
   return LevelSizes(plane.width, plane.height, fit.coarse_size, fit.finest_size).back();
 }
 
-// Of the photographs that initial maps are estimated from. Of a first level's detail nothing more is
-// kept than it can hold.
+// Of the photographs that initial maps are estimated from. Of a first level's detail nothing more
+// is kept than it can hold.
 Size ShownSize(const SamplePlane& plane, const FitStageOptions& options, const FitOptions& fit) {
   if (Estimates(options)) return SizeAtMost(plane.width, plane.height, options.estimator_size);
   if (options.method == "start" || !options.start.empty()) return {plane.width, plane.height};
@@ -93,9 +89,8 @@ Size ShownSize(const SamplePlane& plane, const FitStageOptions& options, const F
 PhotographSet Load(const RectifiedSet& set, const std::vector<RectifiedView>& views,
                    const Size& fitted, const Size& shown, int threads) {
   RectifiedPhotographs source(set, views);
-  PhotographSet photographs =
-      source.Downsampled(std::max(fitted.first, shown.first),
-                         std::max(fitted.second, shown.second), threads);
+  PhotographSet photographs = source.Downsampled(std::max(fitted.first, shown.first),
+                                                 std::max(fitted.second, shown.second), threads);
   if (const std::string wrong = photographs.Check(); !wrong.empty()) {
     throw UserError(set.manifest_file, "data.views", wrong,
                     "check the photographs and run rectify again");
@@ -152,9 +147,9 @@ Initial Estimated(const FitStageOptions& options, const PhotographSet& photograp
   if (!photographs.light_power_known) {
     power = EstimatePower(estimator, photographs, conditions, threads);
   }
-  SvbrdfEstimate estimate = EstimatedAs(
-      photographs.convention,
-      estimator.Estimate(WithPower(photographs, power.factor), conditions, threads));
+  SvbrdfEstimate estimate =
+      EstimatedAs(photographs.convention,
+                  estimator.Estimate(WithPower(photographs, power.factor), conditions, threads));
   return {std::move(estimate.maps), std::move(estimate.deviations), power};
 }
 
@@ -171,9 +166,11 @@ Initial InitialMaps(const FitStageOptions& options, const PhotographSet& photogr
 SvbrdfMaps WithDetail(const SvbrdfMaps& fitted, const SvbrdfMaps& initial) {
   if (initial.width <= fitted.width && initial.height <= fitted.height) return fitted;
   const EncodedMaps fine = EncodeMaps(initial);
-  const EncodedMaps coarse = Resized(Resized(fine, fitted.width, fitted.height), fine.width, fine.height);
+  const EncodedMaps coarse =
+      Resized(Resized(fine, fitted.width, fitted.height), fine.width, fine.height);
   EncodedMaps maps = Resized(EncodeMaps(fitted), fine.width, fine.height);
-  for (size_t i = 0; i < maps.planes.size(); ++i) maps.planes[i] += fine.planes[i] - coarse.planes[i];
+  for (size_t i = 0; i < maps.planes.size(); ++i)
+    maps.planes[i] += fine.planes[i] - coarse.planes[i];
   return DecodeMaps(maps);
 }
 
@@ -184,9 +181,9 @@ SvbrdfDeviations DeviationsOfFit(SvbrdfDeviations deviations, const SvbrdfMaps& 
                                  const SvbrdfMaps& fitted) {
   if (deviations.empty()) return deviations;
   const SvbrdfMaps maps = ResampleSvbrdf(fitted, initial.width, initial.height);
-  constexpr std::array<SvbrdfPlane, kDeviationPlanes> kPlanes{
-      kNormalX,   kNormalY,   kDiffuseR,  kDiffuseG, kDiffuseB,
-      kSpecularR, kSpecularG, kSpecularB, kRoughness};
+  constexpr std::array<SvbrdfPlane, kDeviationPlanes> kPlanes{kNormalX,   kNormalY,   kDiffuseR,
+                                                              kDiffuseG,  kDiffuseB,  kSpecularR,
+                                                              kSpecularG, kSpecularB, kRoughness};
   for (int p = 0; p < kDeviationPlanes; ++p) {
     const auto a = initial.plane(kPlanes[static_cast<size_t>(p)]);
     const auto b = maps.plane(kPlanes[static_cast<size_t>(p)]);
@@ -231,8 +228,9 @@ Json Data(const FitResult& fit, const RectifiedSet& set, const FitStageOptions& 
 
 void AddFitOptions(OptionSet* set, FitStageOptions* options) {
   set->AddChoice("method", &options->method, {"latent", "classic", "start"},
-                 "latent: in the auto-encoder's latent space; classic: the maps themselves, texel "
-                 "by texel; start: the initial maps, unfitted");
+                 "latent: in the auto-encoder's latent space, but for one photograph, which is "
+                 "explained better by the initial maps, unless --iterations is given; classic: the "
+                 "maps themselves, texel by texel; start: the initial maps, unfitted");
   set->AddChoice(
       "bootstrap", &options->bootstrap, {"estimator", "heuristic"},
       "how the initial maps are estimated; estimator: a trained network; heuristic: lobes fitted "
@@ -278,14 +276,13 @@ void ResolveFitOptions(const fs::path& rectify_manifest, FitStageOptions* option
     options->estimator_size =
         photographs <= kFewPhotographs ? kMostEstimatorSize : Estimator::kGlobalSize;
   }
+  // From one photograph roughness and specular drift along ambiguities while the loss falls
+  // (docs/experiments/pictures.md, "How long to fit one photograph"): no step is best.
+  if (IsLatent(*options) && photographs == 1 && options->iterations == 0) options->method = "start";
   if (options->method == "start") return;  // without iterations
   const FitOptions own = IsLatent(*options) ? FitOptions::Latent() : FitOptions::Classic();
-  const bool single = IsLatent(*options) && photographs == 1;
-  const auto resolve = [&](int own_iterations, int* iterations) {
-    if (*iterations == 0) *iterations = single ? kSinglePhotoIterations : own_iterations;
-  };
-  resolve(own.coarse_iterations, &options->iterations);
-  resolve(own.fine_iterations, &options->fine_iterations);
+  if (options->iterations == 0) options->iterations = own.coarse_iterations;
+  if (options->fine_iterations == 0) options->fine_iterations = own.fine_iterations;
 }
 
 std::vector<fs::path> FitInputs(const FitStageOptions& options) {
@@ -314,11 +311,10 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
 
   const auto began = std::chrono::steady_clock::now();
   const EstimatorConditions conditions{options.metals == "rare", set.light_power_known};
-  const auto [start, deviations, power] =
-      InitialMaps(options, Downsampled(photographs, shown.first, shown.second, threads),
-                  conditions, threads);
-  photographs = WithPower(
-      Downsampled(photographs, fitted.first, fitted.second, threads), power.factor);
+  const auto [start, deviations, power] = InitialMaps(
+      options, Downsampled(photographs, shown.first, shown.second, threads), conditions, threads);
+  photographs =
+      WithPower(Downsampled(photographs, fitted.first, fitted.second, threads), power.factor);
   FitStageResult result;
   {
     std::unique_ptr<Progress> bar;

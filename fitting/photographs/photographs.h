@@ -38,8 +38,8 @@ using ReadRows = std::function<Photograph(int first_row, int rows)>;
 
 // Whether the sensor's limit was reached in a texel: radiance of an LDR photograph at its limit, or
 // masked since a pixel under it is clipped (rectification keeps the radiance of such texels, which
-// are bright; what lies outside of the picture or under the frame is dark or has a mask of its own).
-// Such a texel is part of a highlight, not unknown: its radiance is a lower bound.
+// are bright; what lies outside of the picture or under the frame is dark or has a mask of its
+// own). Such a texel is part of a highlight, not unknown: its radiance is a lower bound.
 bool ReachesLimit(const Photograph& photograph, size_t texel);
 
 // Area averages of the texels that say something. What is clipped stays clipped, as in a photograph

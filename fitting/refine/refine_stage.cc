@@ -268,8 +268,7 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
     const int above = std::min(first, reached), below = std::min(plane.height - last, reached);
     const SampleSource::Part some =
         source->Rows(first - above, above + last - first + below, threads);
-    RowRefiner::Rows refined =
-        refiner.Refine(some.Problem(), some.start, above, below);
+    RowRefiner::Rows refined = refiner.Refine(some.Problem(), some.start, above, below);
     Image deviations(plane.width, last - first, {});
     deviations.channels = ConfidenceChannels();
     deviations.samples = std::move(refined.confidence);

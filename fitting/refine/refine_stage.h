@@ -14,7 +14,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 31;
+inline constexpr int kRefineVersion = 32;
 
 struct RefineStageOptions {
   RefineOptions refine;
@@ -43,7 +43,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options);
 struct RefineStart {
   std::filesystem::path maps_file;
   std::filesystem::path deviations_file;  // of those maps; empty: not stated
-  std::filesystem::path manifest_file;  // of fit; empty with `from`
+  std::filesystem::path manifest_file;    // of fit; empty with `from`
   Vec3d light_scale_rgb{1, 1, 1};
   std::vector<std::string> views;
 };

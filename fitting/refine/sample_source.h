@@ -18,8 +18,8 @@ namespace glint {
 class SampleSource {
  public:
   // `maps_file`: an svbrdf.exr, which is resampled to the set's size; its diffuse weight becomes
-  // that of the convention. `deviations_file`: of those maps; empty: not known. Throws UserError; so
-  // do all that read.
+  // that of the convention. `deviations_file`: of those maps; empty: not known. Throws UserError;
+  // so do all that read.
   SampleSource(const RectifiedSet& set, const std::vector<RectifiedView>& views,
                const Vec3d& light_scale_rgb, std::filesystem::path maps_file,
                const std::filesystem::path& deviations_file);

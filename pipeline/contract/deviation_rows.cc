@@ -14,9 +14,9 @@ constexpr int kRowsAtOnce = 256;
 }  // namespace
 
 const std::vector<std::string>& DeviationChannels() {
-  static const std::vector<std::string> names = {
-      "normal.X",   "normal.Y",   "diffuse.R",  "diffuse.G",  "diffuse.B",
-      "specular.R", "specular.G", "specular.B", "roughness.Y"};
+  static const std::vector<std::string> names = {"normal.X",   "normal.Y",   "diffuse.R",
+                                                 "diffuse.G",  "diffuse.B",  "specular.R",
+                                                 "specular.G", "specular.B", "roughness.Y"};
   return names;
 }
 
@@ -24,8 +24,8 @@ void WriteDeviations(const std::filesystem::path& file, const SvbrdfDeviations& 
                      int width, int height, const ReflectanceConvention& convention) {
   const std::vector<Taps> across = TapsBetween(deviations.width, width);
   const std::vector<Taps> down = TapsBetween(deviations.height, height);
-  ExrWriter writer(file, width, height, DeviationChannels(),
-                   {{"convention", ToString(convention)}}, ExrPrecision::kHalf);
+  ExrWriter writer(file, width, height, DeviationChannels(), {{"convention", ToString(convention)}},
+                   ExrPrecision::kHalf);
   for (int first = 0; first < height; first += kRowsAtOnce) {
     const int rows = std::min(kRowsAtOnce, height - first);
     Image image(width, rows, DeviationChannels());
@@ -59,8 +59,8 @@ SvbrdfDeviations ResampledDeviations::ReadFile(int first_row, int rows) {
     const auto values = image.channel(channels_[static_cast<size_t>(plane)]);
     for (const float value : values) {
       if (std::isfinite(value) && value > 0) continue;
-      throw UserError(file_, DeviationChannels()[static_cast<size_t>(plane)],
-                      std::to_string(value), "standard deviations are above 0; run glint-fit again");
+      throw UserError(file_, DeviationChannels()[static_cast<size_t>(plane)], std::to_string(value),
+                      "standard deviations are above 0; run glint-fit again");
     }
     std::copy(values.begin(), values.end(), deviations.plane(plane).begin());
   }

@@ -87,14 +87,28 @@ TEST(ResolveFitOptions, PutsTheMethodsOwnNumbersWhereNoneAreGiven) {
     ResolveFitOptions(manifest, &options);
     return std::pair(options.iterations, options.fine_iterations);
   };
-  FitStageOptions latent, classic, single, given;
+  FitStageOptions latent, classic, given;
   classic.method = "classic";
-  single.exclude = {"view_001", "view_002"};
   given.iterations = 17;
   EXPECT_EQ(resolved(latent), std::pair(300, 80));
   EXPECT_EQ(resolved(classic), std::pair(3000, 200));
-  EXPECT_EQ(resolved(single), std::pair(8, 8));
   EXPECT_EQ(resolved(given), std::pair(17, 80));
+}
+
+// Fitting makes what is estimated of one photograph worse; who asks for steps gets them.
+TEST(ResolveFitOptions, InitialMapsOfOnePhotographAreKept) {
+  const test::TemporaryFolder folder;
+  const fs::path manifest = WriteRectifiedViews(folder / "rectify");
+  FitStageOptions single;
+  single.exclude = {"view_001", "view_002"};
+  FitStageOptions fitted = single;
+  fitted.iterations = 8;
+  ResolveFitOptions(manifest, &single);
+  ResolveFitOptions(manifest, &fitted);
+  EXPECT_EQ(single.method, "start");
+  EXPECT_EQ(single.estimator_size, 1024);
+  EXPECT_EQ(fitted.method, "latent");
+  EXPECT_EQ(fitted.iterations, 8);
 }
 
 // So that whoever reads a manifest knows what was done.
