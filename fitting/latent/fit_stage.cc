@@ -340,9 +340,8 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
   result.data = Data(result.fit, set, options, views);
   result.metrics = Metrics(result.fit, views);
   if (Estimates(options) && !set.light_power_known) {
-    result.metrics["light_power"] = {{"factor", power.factor},
-                                     {"log_l1", power.log_l1},
-                                     {"log_l1_as_given", power.as_given}};
+    result.metrics["light_power"] = {
+        {"factor", power.factor}, {"log_l1", power.log_l1}, {"log_l1_as_given", power.as_given}};
   }
   WriteAtSize(stage->Output("svbrdf.exr"), result.fit.maps, set);
   if (!deviations.empty()) {

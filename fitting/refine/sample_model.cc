@@ -131,9 +131,9 @@ SampleModel SampleModel::On(const SamplePart& part) const {
 
 TexelGaussian SampleModel::Initialisation(size_t texel) const {
   const std::span<const float> stated = part_->problem().initial_sd;
-  if (!stated.empty()) {
+  if (!stated.empty() && all_views_.size() < kLeastValidatedViews) {
     const auto of = [&](int plane) {
-      return initial_errors_.factor * stated[static_cast<size_t>(plane) * part_->texels() + texel];
+      return stated[static_cast<size_t>(plane) * part_->texels() + texel];
     };
     std::array<double, kTexelParameters> sd;
     for (int c = 0; c < 3; ++c) {

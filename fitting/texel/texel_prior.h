@@ -22,13 +22,11 @@ struct InitialisationErrors {
   double diffuse_relative = 0.1;
   double specular = 0.02;
   double specular_relative = 0.2;
-  double factor = 1;  // by which they were scaled
 
-  void Scale(double by) {
-    factor *= by;
+  void Scale(double factor) {
     for (double* error :
          {&normal, &roughness, &diffuse, &diffuse_relative, &specular, &specular_relative}) {
-      *error *= by;
+      *error *= factor;
     }
   }
 };

@@ -389,7 +389,7 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   text += "# Options of the stages, as on their command lines (glint help fit):\n";
   text += result->has_board ? "# [calib]\n" : "";
   text += "# [rectify]\n# [fit]\n";
-  text += "# metals = \"rare\"                # no bare metal, or possible: see docs/capture.md\n";
+  text += "# metals = \"possible\"            # there may be bare metal: see docs/capture.md\n";
   text += "# [refine]\n# [report]\n";
   text += "[export]\nname = \"" + MaterialName(options.folder) +
           "\"                  # what the files' names begin with\n";
