@@ -50,7 +50,8 @@ struct RefineProblem {
   ReflectanceConvention convention;
   std::vector<RefineView> views;
   // Standard deviations of the initial maps, kDeviationPlanes planes of H·W, as whoever made them
-  // states them; empty: those of InitialisationErrors. The span belongs to the caller.
+  // states them, for one or two views; empty: those of InitialisationErrors. The span belongs to
+  // the caller.
   std::span<const float> initial_sd = {};
   EnvironmentLighting environment;     // beside what each view has as ambient light
   SystematicDeviations systematic_sd;  // of errors that follow from uncertain views
