@@ -199,7 +199,7 @@ Side SolveWithCeres(const Scene& scene, const KernelOptions& options, double sca
   const double began = Now();
   for (size_t t = 0; t < texels; ++t) {
     TexelValues texel = ReadTexel(scene.start, t);
-    const TexelPrior prior(TexelGaussian(texel, {}), scale);
+    const TexelPrior prior(TexelGaussian(texel, InitialisationErrors()), scale);
     ceres::Problem problem;
     AddViewBlocks(scene, t, options, &problem, &texel);
     problem.AddResidualBlock(new PriorResiduals(prior), nullptr, texel.data());
