@@ -20,9 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSide = 128;  // texels of what is compared
+constexpr int kShownSide = 128;  // texels of what is compared
 
-// The first `count` photographs of a set imported at `size`, averaged to kSide².
+// The first `count` photographs of a set imported at `size`, averaged to kShownSide².
 PhotographSet ShownOf(const fs::path& source, int size, size_t count) {
   const test::TemporaryFolder folder;
   const ForeignSet foreign = ReadForeignSet(source);
@@ -35,7 +35,7 @@ PhotographSet ShownOf(const fs::path& source, int size, size_t count) {
   const RectifiedSet set = ImportSet(foreign, options, common, &stage).set;
   std::vector<RectifiedView> views = set.views;
   views.resize(std::min(count, views.size()));
-  return RectifiedPhotographs(set, views).Downsampled(kSide, kSide, 2);
+  return RectifiedPhotographs(set, views).Downsampled(kShownSide, kShownSide, 2);
 }
 
 void ExpectAlike(const PhotographSet& a, const PhotographSet& b, const std::string& what) {
@@ -99,14 +99,14 @@ void WriteClippedSet(const fs::path& folder, int side) {
 
 TEST(ImportSizes, AClippedHighlightIsOneAtEverySize) {
   const test::TemporaryFolder folder;
-  WriteClippedSet(folder.path() / "set", 8 * kSide);
-  const PhotographSet imported = ShownOf(folder.path() / "set", kSide, 1);
+  WriteClippedSet(folder.path() / "set", 8 * kShownSide);
+  const PhotographSet imported = ShownOf(folder.path() / "set", kShownSide, 1);
   size_t limits = 0;
   for (size_t i = 0; i < imported.photographs[0].mask.size(); ++i) {
     limits += ReachesLimit(imported.photographs[0], i);
   }
   EXPECT_GT(limits, imported.photographs[0].mask.size() / 20);
-  for (const int size : {2 * kSide, 4 * kSide, 8 * kSide}) {
+  for (const int size : {2 * kShownSide, 4 * kShownSide, 8 * kShownSide}) {
     const PhotographSet averaged = ShownOf(folder.path() / "set", size, 1);
     ExpectAlike(imported, averaged, std::to_string(size));
     ExpectMapsAlike(imported, averaged, std::to_string(size));
@@ -119,8 +119,8 @@ TEST(ImportSizes, RealSetsShowTheSameAtEverySize) {
   for (const fs::path& set :
        {captures / "cards-blue", captures / "nine_photographs_512" / "book1"}) {
     for (const size_t count : {1u, 7u}) {
-      const PhotographSet imported = ShownOf(set, kSide, count);
-      for (const int size : {2 * kSide, 4 * kSide}) {
+      const PhotographSet imported = ShownOf(set, kShownSide, count);
+      for (const int size : {2 * kShownSide, 4 * kShownSide}) {
         const std::string what = set.filename().string() + " at " + std::to_string(size);
         const PhotographSet averaged = ShownOf(set, size, count);
         ExpectAlike(imported, averaged, what);

@@ -306,7 +306,7 @@ TEST(SampleSource, GivesPartsOfTheCorrectedWhole) {
   const test::TemporaryFolder folder;
   WriteCapture(folder.path());
   const RectifiedSet set = ReadRectifiedSet(folder.path() / "glint/rectify/manifest.json");
-  SampleSource source(set, set.views, {2, 2, 2}, folder.path() / "glint/fit/svbrdf.exr");
+  SampleSource source(set, set.views, {2, 2, 2}, folder.path() / "glint/fit/svbrdf.exr", {});
   ViewCorrections corrections;
   corrections.views.resize(set.views.size());
   for (int k = 0; k < 4; ++k) {

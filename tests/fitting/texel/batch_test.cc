@@ -64,7 +64,8 @@ struct Lanes {
     for (size_t lane = 0; lane < kBatch; ++lane) {
       place_mm[lane] = {Draw(random, -50, 50), Draw(random, -50, 50)};
       texels[lane] = RandomTexel(random, 0.6);
-      priors[lane] = TexelPrior(TexelGaussian(RandomTexel(random, 0.6), InitialisationErrors()), scale);
+      priors[lane] =
+          TexelPrior(TexelGaussian(RandomTexel(random, 0.6), InitialisationErrors()), scale);
       for (int v = 0; v < kViews; ++v) {
         for (int c = 0; c < 3; ++c) radiance[lane][v][c] = Draw(random, 0, 1);
         clipped[lane][v] = {false, Draw(random, 0, 1) < 0.2, false};
@@ -546,7 +547,8 @@ TEST(BatchSearch, TexelsLikeTheOthersOfTheirSubstanceAreFoundFromAPoorStart) {
   const auto same_roughness = [](const TexelValues& found, const TexelValues& truth) {
     return std::abs(std::log(found[kRough] / truth[kRough])) < 0.2;
   };
-  const TexelPrior of_substance(TexelGaussian(GreyTexel(0.045, 0.045, 0.165, 0, 0), InitialisationErrors()), 0.003);
+  const TexelPrior of_substance(
+      TexelGaussian(GreyTexel(0.045, 0.045, 0.165, 0, 0), InitialisationErrors()), 0.003);
   EXPECT_LT(Misses(kRounds, smooth, GreyTexel(0.02, 0.045, 0.7, 0.05, -0.05), of_substance,
                    same_roughness),
             0.02 * kRounds * kBatch);
