@@ -88,7 +88,7 @@ TEST(RealSets, BathTileFramesAreCroppedToTheSample) {
   const fs::path source = test::DataFolder() / "captures" / "bath-tile";
   if (!fs::exists(source)) GTEST_SKIP() << "no real data here";
   const ForeignSet foreign = ReadForeignSet(source);
-  EXPECT_EQ(foreign.views.size(), 4u);  // of the nine in parameters.json
+  EXPECT_EQ(foreign.views.size(), 9u);  // as in parameters.json
   EXPECT_EQ(foreign.crop_px, 1024);
   const SamplePlane plane = ImportedPlane(foreign, {});
   EXPECT_EQ(plane.width, 1024);
