@@ -159,7 +159,7 @@ EstimatorKind ParseEstimatorKind(const std::string& name) {
 EstimatorNetwork EstimatorNetwork::Random(const EstimatorChannels& channels, std::uint64_t seed,
                                           EstimatorKind kind) {
   torch::Generator generator = torch::make_generator<torch::CPUGeneratorImpl>(seed);
-  const auto draw = [&](std::vector<int64_t> shape, double fan_in, double gain) {
+  const auto draw = [&](const std::vector<int64_t>& shape, double fan_in, double gain) {
     return torch::randn(shape, generator) * (gain * std::sqrt(2.0 / fan_in));
   };
   EstimatorNetwork net;
