@@ -1,7 +1,6 @@
 #include "fitting/latent/fit_stage.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -29,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Of few photographs the estimator sees all detail up to this size, of more refinement finds it
-// itself: docs/experiments/pictures.md.
+// itself: docs/experiments/one-photograph.md.
 constexpr size_t kFewPhotographs = 2;
 constexpr int kMostEstimatorSize = 1024;
 
@@ -181,12 +180,9 @@ SvbrdfDeviations DeviationsOfFit(SvbrdfDeviations deviations, const SvbrdfMaps& 
                                  const SvbrdfMaps& fitted) {
   if (deviations.empty()) return deviations;
   const SvbrdfMaps maps = ResampleSvbrdf(fitted, initial.width, initial.height);
-  constexpr std::array<SvbrdfPlane, kDeviationPlanes> kPlanes{kNormalX,   kNormalY,   kDiffuseR,
-                                                              kDiffuseG,  kDiffuseB,  kSpecularR,
-                                                              kSpecularG, kSpecularB, kRoughness};
   for (int p = 0; p < kDeviationPlanes; ++p) {
-    const auto a = initial.plane(kPlanes[static_cast<size_t>(p)]);
-    const auto b = maps.plane(kPlanes[static_cast<size_t>(p)]);
+    const int plane = p <= kSigmaNormalY ? p : p + 1;  // deviations have no kNormalZ
+    const auto a = initial.plane(plane), b = maps.plane(plane);
     const auto sd = deviations.plane(p);
     for (size_t i = 0; i < sd.size(); ++i) sd[i] = std::hypot(sd[i], a[i] - b[i]);
   }
@@ -277,7 +273,7 @@ void ResolveFitOptions(const fs::path& rectify_manifest, FitStageOptions* option
         photographs <= kFewPhotographs ? kMostEstimatorSize : Estimator::kGlobalSize;
   }
   // From one photograph roughness and specular drift along ambiguities while the loss falls
-  // (docs/experiments/pictures.md, "How long to fit one photograph"): no step is best.
+  // (docs/experiments/one-photograph.md): no step is best.
   if (IsLatent(*options) && photographs == 1 && options->iterations == 0) options->method = "start";
   if (options->method == "start") return;  // without iterations
   const FitOptions own = IsLatent(*options) ? FitOptions::Latent() : FitOptions::Classic();

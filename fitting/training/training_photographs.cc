@@ -10,7 +10,7 @@
 #include "fitting/training/camera_pictures.h"
 #include "fitting/training/capture_draw.h"
 #include "fitting/training/capture_numbers.h"
-#include "fitting/training/light_power.h"
+#include "fitting/training/guessed_power.h"
 #include "fitting/training/training_materials.h"
 
 namespace glint {

@@ -13,7 +13,7 @@
 #include "fitting/estimator/estimator_descent.h"
 #include "fitting/estimator/photograph_features.h"
 #include "fitting/training/capture_draw.h"
-#include "fitting/training/light_power.h"
+#include "fitting/training/guessed_power.h"
 #include "rectify/linearize/light_guess.h"
 #include "tests/fitting/training/toy_materials.h"
 

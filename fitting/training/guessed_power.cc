@@ -1,4 +1,4 @@
-#include "fitting/training/light_power.h"
+#include "fitting/training/guessed_power.h"
 
 #include <limits>
 #include <numbers>
