@@ -11,6 +11,7 @@
 #include "datasets/evaluation/holdout_verb.h"
 #include "datasets/evaluation/light_verb.h"
 #include "datasets/evaluation/limits_verb.h"
+#include "datasets/evaluation/looks.h"
 #include "datasets/evaluation/map_error.h"
 #include "datasets/evaluation/predicted_deviation.h"
 #include "datasets/evaluation/tiling_verb.h"
@@ -99,9 +100,63 @@ int RunMaps(int argc, char** argv, const ProgramInfo& info) {
   });
 }
 
-Json JsonOf(const ViewError& error) {
-  return {
-      {"mse", error.mse}, {"rmse", error.rmse}, {"log_l1", error.log_l1}, {"texels", error.texels}};
+// A view's errors and looks, or their means.
+struct ViewFigures {
+  std::string name, photo;
+  ViewError error;
+  Looks looks;
+};
+
+Json JsonOf(const ViewFigures& view) {
+  Json json = {{"mse", view.error.mse},
+               {"rmse", view.error.rmse},
+               {"log_l1", view.error.log_l1},
+               {"texels", view.error.texels}};
+  json.update(ToJson(view.looks));
+  return json;
+}
+
+ViewFigures MeanOf(const std::vector<ViewFigures>& views) {
+  ViewFigures mean{"mean", "", {}, {}};
+  std::vector<Looks> looks;
+  for (const ViewFigures& view : views) {
+    mean.error.mse += view.error.mse / static_cast<double>(views.size());
+    mean.error.rmse += view.error.rmse / static_cast<double>(views.size());
+    mean.error.log_l1 += view.error.log_l1 / static_cast<double>(views.size());
+    mean.error.texels += view.error.texels;
+    looks.push_back(view.looks);
+  }
+  mean.looks = MeanLooks(looks);
+  return mean;
+}
+
+std::string ErrorsText(const std::vector<ViewFigures>& lines) {
+  std::string text =
+      fmt::format("{:<12} {:<28} {:>10} {:>10} {:>10}\n", "view", "photo", "MSE", "RMSE", "log L1");
+  for (const ViewFigures& view : lines) {
+    text += fmt::format("{:<12} {:<28} {:>10.6f} {:>10.5f} {:>10.5f}\n", view.name, view.photo,
+                        view.error.mse, view.error.rmse, view.error.log_l1);
+  }
+  return text;
+}
+
+std::string LooksTableText(const std::vector<ViewFigures>& lines) {
+  std::string text = fmt::format("\n{:<12} {:>6}  {:<27} {}\n", "", "", "contrast", "correlation");
+  text += fmt::format("{:<12} {:>6}", "view", "free");
+  for (const char* band : {"1–2", "2–4", "4–8", "8–16", "1–2", "2–4", "4–8"}) {
+    text += fmt::format(" {:>6}", band);
+  }
+  text += fmt::format(" {:>6} {:>9}\n", "SSIM", "highlight");
+  for (const ViewFigures& view : lines) {
+    const auto figures = LooksList(view.looks);
+    text += fmt::format("{:<12}", view.name);
+    for (size_t i = 0; i < figures.size(); ++i) {
+      const int width = i + 1 == figures.size() ? 9 : 6;
+      text += fmt::format(" {:>{}}", LooksText(figures[i], 3), width);
+    }
+    text += "\n";
+  }
+  return text;
 }
 
 int RunViews(int argc, char** argv, const ProgramInfo& info) {
@@ -120,31 +175,22 @@ int RunViews(int argc, char** argv, const ProgramInfo& info) {
     const FittedMaps fit = ReadFittedMaps(fit_path);
     const auto views = SelectViews(set, only, exclude);
     if (!pairs.empty()) fs::create_directories(pairs);
+    std::vector<ViewFigures> lines;
     ProgramResult result;
     result.json["views"] = Json::array();
-    result.text = fmt::format("{:<12} {:<28} {:>10} {:>10} {:>10}\n", "view", "photo", "MSE",
-                              "RMSE", "log L1");
-    const auto line = [&](const std::string& name, const std::string& photo, const ViewError& e) {
-      result.text += fmt::format("{:<12} {:<28} {:>10.6f} {:>10.5f} {:>10.5f}\n", name, photo,
-                                 e.mse, e.rmse, e.log_l1);
-    };
-    ViewError mean;
     for (const RectifiedView& view : views) {
       const RectifiedImage photograph = PhotographOfFit(fit, set, view);
       const std::vector<float> rendered = RenderFit(fit, set, view, common.threads);
-      const ViewError error = CompareView(rendered, photograph, view.ldr);
-      line(view.name, view.photo, error);
+      lines.push_back({view.name, view.photo, CompareView(rendered, photograph, view.ldr),
+                       CompareLooks(rendered, photograph, view.ldr)});
       Json json = {{"name", view.name}, {"photo", view.photo}};
-      json.update(JsonOf(error));
+      json.update(JsonOf(lines.back()));
       result.json["views"].push_back(json);
-      mean.mse += error.mse / views.size();
-      mean.rmse += error.rmse / views.size();
-      mean.log_l1 += error.log_l1 / views.size();
-      mean.texels += error.texels;
       if (!pairs.empty()) WritePair(pairs / (view.name + ".png"), photograph, rendered);
     }
-    line("mean", "", mean);
-    result.json["mean"] = JsonOf(mean);
+    lines.push_back(MeanOf(lines));
+    result.text = ErrorsText(lines) + LooksTableText(lines);
+    result.json["mean"] = JsonOf(lines.back());
     return result;
   });
 }

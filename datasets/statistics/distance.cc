@@ -71,11 +71,11 @@ double ExpectedKolmogorovSmirnov(size_t m, size_t n) {
 
 double Quantile(std::vector<double> sample, double share) {
   if (sample.empty()) return 0;
-  std::sort(sample.begin(), sample.end());
   const double place = share * static_cast<double>(sample.size() - 1);
-  const size_t low = static_cast<size_t>(place);
-  const size_t high = std::min(low + 1, sample.size() - 1);
-  return sample[low] + (place - static_cast<double>(low)) * (sample[high] - sample[low]);
+  const auto low = sample.begin() + static_cast<ptrdiff_t>(place);
+  std::nth_element(sample.begin(), low, sample.end());
+  const double high = low + 1 < sample.end() ? *std::min_element(low + 1, sample.end()) : *low;
+  return *low + (place - std::floor(place)) * (high - *low);
 }
 
 }  // namespace glint

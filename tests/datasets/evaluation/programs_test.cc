@@ -94,6 +94,11 @@ TEST_F(ProgramsTest, ViewsReRenderToTheirQuantisation) {
   EXPECT_EQ(json["views"].size(), 2u);
   EXPECT_LT(json["mean"]["rmse"].get<double>(), 0.003);
   EXPECT_GT(json["mean"]["rmse"].get<double>(), 0);
+  EXPECT_LT(json["mean"]["free"].get<double>(), 0.01);
+  EXPECT_EQ(json["views"][0]["contrast"].size(), 4u);
+  EXPECT_NEAR(json["views"][0]["correlation"][1].get<double>(), 1, 0.01);
+  EXPECT_GT(json["mean"]["ssim"].get<double>(), 0.99);
+  EXPECT_NEAR(json["mean"]["highlight"].get<double>(), 1, 0.01);
   EXPECT_TRUE(fs::exists(Path("pairs/view_002.png")));
   EXPECT_FALSE(fs::exists(Path("pairs/view_001.png")));
 }
