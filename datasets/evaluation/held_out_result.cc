@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "datasets/evaluation/held_out_views.h"
 
@@ -52,11 +53,78 @@ std::string Line(const std::vector<HoldoutEntry>& entries, const std::vector<std
   return text;
 }
 
+// Columns of the table of looks.
+struct LooksColumn {
+  const char* name;
+  int width;
+  size_t figure;  // of LooksList()
+  int decimals;
+};
+constexpr LooksColumn kLooksColumns[] = {{"free", 6, 0, 4},
+                                         {"contrast 1–2", 12, 1, 3},
+                                         {"contrast 2–4", 12, 2, 3},
+                                         {"correlation 1–2", 15, 5, 3},
+                                         {"correlation 2–4", 15, 6, 3},
+                                         {"SSIM", 6, 8, 3},
+                                         {"highlight", 9, 9, 3}};
+constexpr int kLooksNameWidth = 34;
+
+std::string LooksHead(const std::string& method) {
+  std::string text = fmt::format("| {:<{}} | {:<16} |", "looks of held-out views, " + method,
+                                 kLooksNameWidth, "split");
+  std::string rule = "|" + std::string(kLooksNameWidth + 2, '-') + "|" + std::string(18, '-') + "|";
+  for (const LooksColumn& column : kLooksColumns) {
+    text += fmt::format(" {:>{}} |", column.name, column.width);
+    rule += std::string(static_cast<size_t>(column.width) + 1, '-') + ":|";
+  }
+  return text + "\n" + rule + "\n";
+}
+
+std::string LooksLine(const std::string& set, const std::string& split, const Looks& looks) {
+  const auto figures = LooksList(looks);
+  std::string text = fmt::format("| {:<{}} | {:<16} |", set, kLooksNameWidth, split);
+  for (const LooksColumn& column : kLooksColumns) {
+    text +=
+        fmt::format(" {:>{}} |", LooksText(figures[column.figure], column.decimals), column.width);
+  }
+  return text + "\n";
+}
+
+// Of the method that was run last.
+std::string LooksTable(const std::vector<HoldoutEntry>& entries,
+                       const std::vector<HoldoutEntry>& means) {
+  if (entries.empty()) return "";
+  const std::string& method = entries.back().method;
+  std::string text = LooksHead(method);
+  for (const HoldoutEntry& mean : means) {
+    if (mean.method != method) continue;
+    for (const HoldoutEntry& entry : entries) {
+      if (entry.method != method || entry.split != mean.split) continue;
+      text += LooksLine(entry.set, entry.split, entry.held_out.looks);
+    }
+    text += LooksLine("mean", mean.split, mean.held_out.looks);
+    text += LooksLine("mean of fitted views", mean.split, mean.fitted.looks);
+  }
+  return text;
+}
+
+// Empty where it is unknown.
+std::string CsvFigure(double figure) {
+  return std::isnan(figure) ? "" : fmt::format("{:.6g}", figure);
+}
+
+Json FiguresJson(const HoldoutFigures& figures) {
+  Json json = {{"log_l1", figures.log_l1}, {"mse", figures.mse}};
+  json.update(ToJson(figures.looks));
+  return json;
+}
+
 }  // namespace
 
 std::vector<HoldoutEntry> HoldoutResult::Means() const {
   std::vector<HoldoutEntry> means;
   std::vector<double> members;
+  std::vector<std::vector<Looks>> fitted, held_out;
   const auto place = [&](const HoldoutEntry& entry) {
     const auto same = [&](const HoldoutEntry& mean) {
       return mean.split == entry.split && mean.method == entry.method;
@@ -73,13 +141,21 @@ std::vector<HoldoutEntry> HoldoutResult::Means() const {
       mean.views.clear();
       means.push_back(mean);
       members.push_back(0);
+      fitted.emplace_back();
+      held_out.emplace_back();
     }
     members[at] += 1;
+    fitted[at].push_back(entry.fitted.looks);
+    held_out[at].push_back(entry.held_out.looks);
   }
   for (const HoldoutEntry& entry : entries) {
     const size_t at = place(entry);
     Accumulate(entry.fitted, 1 / members[at], &means[at].fitted);
     Accumulate(entry.held_out, 1 / members[at], &means[at].held_out);
+  }
+  for (size_t at = 0; at < means.size(); ++at) {
+    means[at].fitted.looks = MeanLooks(fitted[at]);
+    means[at].held_out.looks = MeanLooks(held_out[at]);
   }
   return means;
 }
@@ -103,13 +179,15 @@ std::string HoldoutResult::Markdown() const {
     for (const std::string& set : sets) text += Line(entries, methods, set, split);
     text += Line(means, methods, "mean", split);
   }
-  return text;
+  return text + "\n" + LooksTable(entries, means);
 }
 
 std::string HoldoutResult::Csv() const {
   std::string text =
       "set,split,method,fitted_views,held_out_views,fitted_log_l1,held_out_log_l1,fitted_mse,"
-      "held_out_mse,standardised_rms\n";
+      "held_out_mse,standardised_rms";
+  for (const char* name : kLooksNames) text += fmt::format(",fitted_{0},held_out_{0}", name);
+  text += "\n";
   const std::vector<HoldoutEntry> means = Means();
   for (const auto* list : {&entries, &means}) {
     for (const HoldoutEntry& e : *list) {
@@ -117,6 +195,10 @@ std::string HoldoutResult::Csv() const {
                           e.method, e.fitted_views, e.held_out_views, e.fitted.log_l1,
                           e.held_out.log_l1, e.fitted.mse, e.held_out.mse);
       if (e.held_out.standardised >= 0) text += fmt::format("{:.4g}", e.held_out.standardised);
+      const auto fitted = LooksList(e.fitted.looks), held_out = LooksList(e.held_out.looks);
+      for (size_t i = 0; i < kLooksFigures; ++i) {
+        text += "," + CsvFigure(fitted[i]) + "," + CsvFigure(held_out[i]);
+      }
       text += "\n";
     }
   }
@@ -132,8 +214,8 @@ Json HoldoutResult::ToJson() const {
                   {"method", e.method},
                   {"fitted_views", e.fitted_views},
                   {"held_out_views", e.held_out_views},
-                  {"fitted", {{"log_l1", e.fitted.log_l1}, {"mse", e.fitted.mse}}},
-                  {"held_out", {{"log_l1", e.held_out.log_l1}, {"mse", e.held_out.mse}}}};
+                  {"fitted", FiguresJson(e.fitted)},
+                  {"held_out", FiguresJson(e.held_out)}};
       if (e.held_out.standardised >= 0) row["standardised_rms"] = e.held_out.standardised;
       json.push_back(row);
     }

@@ -77,11 +77,13 @@ HoldoutFigures FiguresOf(const FittedMaps& fit, const std::optional<StatedDeviat
                          const RectifiedSet& set, const std::vector<RectifiedView>& views,
                          int threads) {
   HoldoutFigures figures;
+  std::vector<Looks> looks;
   double squares = 0, count = 0;
   for (const RectifiedView& view : views) {
     const RectifiedImage photograph = PhotographOfFit(fit, set, view);
     const std::vector<float> rendered = RenderFit(fit, set, view, threads);
     const ViewError error = CompareView(rendered, photograph, view.ldr);
+    looks.push_back(CompareLooks(rendered, photograph, view.ldr));
     figures.log_l1 += error.log_l1 / static_cast<double>(views.size());
     figures.mse += error.mse / static_cast<double>(views.size());
     if (!stated) continue;
@@ -94,7 +96,12 @@ HoldoutFigures FiguresOf(const FittedMaps& fit, const std::optional<StatedDeviat
     }
   }
   if (count > 0) figures.standardised = std::sqrt(squares / count);
+  figures.looks = MeanLooks(looks);
   return figures;
+}
+
+bool HasRectifiedViews(const fs::path& set) {
+  return fs::exists(set / "glint" / "rectify" / "manifest.json");
 }
 
 // One set's runs.
@@ -105,6 +112,7 @@ class SetRuns {
     source_ = fs::weakly_canonical(source_);
     name_ = source_.filename().string();
     folder_ = experiment.work / name_;
+    if (experiment.size > 0) folder_ /= "size_" + std::to_string(experiment.size);
     rectified_ = Rectified();
     set_ = ReadRectifiedSet(rectified_ / "manifest.json");
   }
@@ -130,15 +138,19 @@ class SetRuns {
     const SplitViews views = Divide(set_, split);
     HoldoutEntry entry = Named(split, kTheirs, views);
     const auto figures = [&](const std::vector<RectifiedView>& list, HoldoutFigures* sum) {
+      std::vector<Looks> looks;
       for (const RectifiedView& view : list) {
         const fs::path file = source_ / kTheirs / fs::path(view.photo).filename();
         if (!fs::exists(file)) return false;
         const RectifiedImage photograph = ReadRectifiedImage(set_, view);
-        const ViewError error = CompareView(
-            ReadTheirRendering(file, photograph.width, photograph.height), photograph, view.ldr);
+        const std::vector<float> rendered =
+            ReadTheirRendering(file, photograph.width, photograph.height);
+        const ViewError error = CompareView(rendered, photograph, view.ldr);
+        looks.push_back(CompareLooks(rendered, photograph, view.ldr));
         sum->log_l1 += error.log_l1 / static_cast<double>(list.size());
         sum->mse += error.mse / static_cast<double>(list.size());
       }
+      sum->looks = MeanLooks(looks);
       return true;
     };
     if (!figures(views.fitted, &entry.fitted) || !figures(views.held_out, &entry.held_out)) {
@@ -172,10 +184,14 @@ class SetRuns {
   // Folder of the rectified views: the capture's own, or those of an import.
   fs::path Rectified() const {
     const fs::path part = fs::path("glint") / "rectify";
-    if (fs::exists(source_ / part / "manifest.json")) return source_ / part;
+    if (HasRectifiedViews(source_)) return source_ / part;
     const fs::path capture = folder_ / "capture";
-    Program(SiblingProgram("glint-import"), {source_.string(), capture.string()},
-            experiment_.import_arguments, folder_ / "capture.log");
+    std::vector<std::string> arguments{source_.string(), capture.string()};
+    if (experiment_.size > 0) {
+      arguments.insert(arguments.end(), {"--size", std::to_string(experiment_.size)});
+    }
+    Program(SiblingProgram("glint-import"), arguments, experiment_.import_arguments,
+            folder_ / "capture.log");
     return capture / part;
   }
 
@@ -239,6 +255,11 @@ void CheckExperiment(const HoldoutExperiment& experiment) {
   for (const fs::path& set : experiment.sets) {
     if (!fs::is_directory(set)) {
       throw UserError(set, "", "no folder", "name folders that glint-import reads, or captures");
+    }
+    if (experiment.size > 0 && HasRectifiedViews(set)) {
+      throw UserError(set, "size", std::to_string(experiment.size),
+                      "its views are rectified already; leave out --size, or make them at that "
+                      "size (glint rectify --resolution, glint import --size)");
     }
     const std::string name = fs::weakly_canonical(set).filename().string();
     if (std::find(names.begin(), names.end(), name) != names.end()) {

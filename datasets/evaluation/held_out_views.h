@@ -6,6 +6,7 @@
 //   SET/capture/                   the imported set
 //   SET/SPLIT/METHOD/              a capture of its own, its rectified views hard links
 //   SET/SPLIT/METHOD.log           what the programs said
+// and where a size is given all of these below SET/size_N.
 // Every run asks the programs again; they keep what is up to date, so an interrupted experiment
 // goes on where it was.
 #pragma once
@@ -15,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/evaluation/looks.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/files/json.h"
 
@@ -45,6 +47,7 @@ struct HoldoutExperiment {
   std::vector<ProgramFolder> programs;
   std::vector<std::string> import_arguments, fit_arguments, refine_arguments;
   std::filesystem::path work;
+  int size = 0;  // texels across at which sets are imported; 0: as the images are
 };
 
 // Means over views, each view's over its usable texels.
@@ -53,6 +56,7 @@ struct HoldoutFigures {
   // RMS of residuals in log radiance over their predicted standard deviation
   // (predicted_deviation.h); below 0: the method states none.
   double standardised = -1;
+  Looks looks;
 };
 
 struct HoldoutEntry {
@@ -69,7 +73,7 @@ struct HoldoutResult {
   // Averaged over the sets: set "mean".
   std::vector<HoldoutEntry> Means() const;
   // One line a set and split: held-out log-L1 of every method, and of the last one also the fitted
-  // views'.
+  // views'. Below it how held-out renderings of the last method look, and in the mean the fitted.
   std::string Markdown() const;
   std::string Csv() const;
   Json ToJson() const;

@@ -54,6 +54,8 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
               "'2,6;7,8'");
   options.Add("shown", &fitted,
               "views to fit; all others are held out; numbers, names and groups as in --pairs");
+  options.AddRange("size", &experiment.size, 0, 16384,
+                   "texels across at which sets are imported; 0: as the images are");
   options.Add(
       "methods", &experiment.methods,
       "any of: start (the initial maps), classic, latent, refined, direct (the initial maps, "

@@ -3,11 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/errors/errors.h"
 #include "datasets/evaluation/predicted_deviation.h"
 #include "datasets/procedural/material.h"
 #include "datasets/synth/view_set.h"
 #include "pipeline/contract/manifest.h"
+#include "pipeline/images/image.h"
 #include "tests/support/process.h"
 
 namespace glint {
@@ -36,6 +40,9 @@ HoldoutEntry Entry(const std::string& set, double held_out) {
   entry.fitted.log_l1 = 0.25;
   entry.held_out.log_l1 = held_out;
   entry.held_out.standardised = 1;
+  entry.fitted.looks.ssim = 0.875;
+  entry.held_out.looks.ssim = held_out;
+  entry.held_out.looks.contrast[1] = 2 * held_out;
   return entry;
 }
 
@@ -47,6 +54,44 @@ TEST(HoldoutResult, TablesHoldEverySetAndTheMean) {
   EXPECT_THAT(result.Markdown(), HasSubstr("0.3000"));
   EXPECT_THAT(result.Csv(), HasSubstr("mean,\"0 fitted\",refined"));
   EXPECT_EQ(result.ToJson()["entries"].size(), 2u);
+}
+
+TEST(HoldoutResult, LooksAreInEveryTable) {
+  const HoldoutResult result{{Entry("a", 0.25), Entry("b", 0.5)}};
+  EXPECT_NEAR(result.Means()[0].held_out.looks.ssim, 0.375, 1e-12);
+  const std::string table = result.Markdown();
+  EXPECT_THAT(table, HasSubstr("looks of held-out views, refined"));
+  EXPECT_THAT(table, HasSubstr("0.250 |         – |\n"));
+  EXPECT_THAT(table, HasSubstr("mean of fitted views"));
+  EXPECT_THAT(table, HasSubstr("0.875 |"));
+  EXPECT_THAT(result.Csv(), HasSubstr(",fitted_ssim,held_out_ssim,"));
+  EXPECT_THAT(result.Csv(), HasSubstr(",0.875,0.375,,\n"));
+  const Json json = result.ToJson();
+  EXPECT_EQ(json["entries"][1]["held_out"]["contrast"][1], 1.0);
+  EXPECT_EQ(json["means"][0]["fitted"]["ssim"], 0.875);
+  EXPECT_TRUE(json["means"][0]["fitted"]["free"].is_null());
+}
+
+// The views of a capture as pictures with a list, which glint-import reads.
+void WriteImportableSet(const fs::path& capture, const fs::path& set) {
+  const RectifiedSet views = ReadRectifiedSet(capture / "glint/rectify/manifest.json");
+  Json list = {{"glint_views", 1},
+               {"size_mm", {views.plane.width_mm, views.plane.height_mm}},
+               {"light_power", "estimate"},
+               {"views", Json::array()}};
+  fs::create_directories(set);
+  for (const RectifiedView& view : views.views) {
+    const RectifiedImage from = ReadRectifiedImage(views, view);
+    Image picture(from.width, from.height, {"R", "G", "B"});
+    for (size_t i = 0; i < from.rgb.size(); ++i) {
+      picture.samples[i] = std::pow(std::clamp(from.rgb[i], 0.0f, 1.0f), 1 / 2.2f);
+    }
+    WritePng(set / (view.name + ".png"), picture);
+    list["views"].push_back({{"image", view.name + ".png"},
+                             {"camera_in_sample_mm", view.view.camera_in_sample_mm},
+                             {"light_in_sample_mm", view.view.light_in_sample_mm}});
+  }
+  test::WriteAll(set / "views.json", list.dump());
 }
 
 class HoldoutRuns : public testing::Test {
@@ -87,6 +132,8 @@ TEST_F(HoldoutRuns, WhatIsHeldOutIsNotFitted) {
   EXPECT_LT(refined.held_out.log_l1, start.held_out.log_l1);
   EXPECT_LT(start.held_out.standardised, 0);
   EXPECT_GT(refined.held_out.standardised, 0);
+  EXPECT_LT(refined.held_out.looks.free, start.held_out.looks.free);
+  EXPECT_GT(refined.fitted.looks.ssim, start.fitted.looks.ssim);
 }
 
 TEST_F(HoldoutRuns, GoesOnWhereItWas) {
@@ -104,6 +151,32 @@ TEST_F(HoldoutRuns, SplitsThatCannotBeAreUserErrors) {
   EXPECT_THROW(Run(), UserError);
   experiment_.splits.clear();
   EXPECT_THROW(Run(), UserError);
+}
+
+TEST_F(HoldoutRuns, RectifiedViewsHaveTheirSize) {
+  experiment_.size = 16;
+  try {
+    Run();
+    FAIL();
+  } catch (const UserError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("sample: size: found 16; its views are rectified already"));
+  }
+}
+
+// Pictures that glint-import reads.
+TEST_F(HoldoutRuns, SizesOfASetAreKeptApart) {
+  const fs::path set = folder_ / "pictures";
+  WriteImportableSet(folder_ / "sample", set);
+  experiment_.sets = {set};
+  experiment_.methods = {"start"};
+  const HoldoutResult whole = Run();
+  experiment_.size = 16;
+  const HoldoutResult small = Run();
+  for (const auto& [result, width] : {std::pair{&whole, 32}, {&small, 16}}) {
+    const HoldoutEntry& entry = result->entries[0];
+    EXPECT_EQ(ReadRectifiedSet(entry.views).plane.width, width);
+    EXPECT_EQ(ReadFittedMaps(entry.manifest).maps.width, width);
+  }
 }
 
 class StatedDeviationsTest : public testing::Test {
