@@ -22,7 +22,7 @@ constexpr StageKind kStages[] = {
      {0.15, 0, 0, 0, 1.7, 0, 136, 0, 190, 0, 3000}},
     {"report",
      "one HTML page showing the whole result",
-     {0.3, 0, 0, 0, 0.55, 0.05, 280, 0, 130, 3, 450}},
+     {0.3, 0, 0, 0, 0.55, 0.1, 280, 0, 130, 3, 520}},
 };
 
 }  // namespace

@@ -18,7 +18,7 @@
 
 namespace glint {
 
-inline constexpr int kReportVersion = 9;
+inline constexpr int kReportVersion = 10;
 
 struct ReportOptions {
   std::string from = "refine";  // stage whose maps are shown: refine, fit
@@ -56,7 +56,7 @@ ReportInput ReadReportInput(const std::filesystem::path& work, const std::string
 struct Report {
   std::string html;
   std::string thumbnail_jpeg;
-  Json metrics;  // for the report's manifest: errors of the views
+  Json metrics;  // for the report's manifest: errors and looks of the views
 };
 
 Report MakeReport(const ReportInput& input, const ReportOptions& options, int threads);

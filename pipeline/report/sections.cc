@@ -13,6 +13,7 @@
 #include "pipeline/report/figure.h"
 #include "pipeline/report/guidance_section.h"
 #include "pipeline/report/html.h"
+#include "pipeline/report/looks_table.h"
 #include "pipeline/report/metrics_html.h"
 #include "pipeline/report/picture.h"
 
@@ -107,8 +108,9 @@ std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
     figures += HeadFigure(std::string("mean RMSE, ") + label, own_metrics[name]["rmse"],
                           trace.Field("rmse"));
   }
+  figures += "</div>\n" + LooksTable(own_metrics, own, ComparedAt(input));
   figures +=
-      "</div>\n<p>Hover over a number to see the manifest and the field it comes "
+      "<p>Hover over a number to see the manifest and the field it comes "
       "from.</p>\n";
   return Section("Fit quality", "", figures);
 }
@@ -195,6 +197,7 @@ std::string ViewsSection(const ReportInput& input, const std::vector<ShownView>&
   struct Mean {
     double log_l1 = 0, rmse = 0;
     int count = 0;
+    std::vector<Looks> looks;
   } means[2];
   for (size_t i = 0; i < shown.size(); ++i) {
     const RectifiedView& view = input.set.views[i];
@@ -207,35 +210,39 @@ std::string ViewsSection(const ReportInput& input, const std::vector<ShownView>&
                      {"log_l1", error.log_l1},
                      {"rmse", error.rmse},
                      {"usable_texels", error.texels}});
+    views.back().update(ToJson(shown[i].looks));
     if (error.texels > 0) {
       Mean& mean = means[used ? 0 : 1];
       mean.log_l1 += error.log_l1;
       mean.rmse += error.rmse;
       ++mean.count;
+      mean.looks.push_back(shown[i].looks);
     }
     const Json& entry = views.back();
     rows += "<tr><td>" + HtmlText(view.name) + "<br><code>" + HtmlText(view.photo) + "</code>" +
             (used ? "" : "<br><span class=\"kept\">held out</span>") + "</td>" + shown[i].cells +
             "<td class=\"number\">" + FigureHtml(entry["log_l1"], trace.Field("log_l1")) +
             "</td><td class=\"number\">" + FigureHtml(entry["rmse"], trace.Field("rmse")) +
-            "</td></tr>\n";
+            "</td>" + LooksCells(entry, trace) + "</tr>\n";
   }
   (*own_metrics)["views"] = views;
   for (const int i : {0, 1}) {
     if (means[i].count == 0) continue;
-    (*own_metrics)[i == 0 ? "fitted" : "held_out"] = {{"photographs", means[i].count},
-                                                      {"log_l1", means[i].log_l1 / means[i].count},
-                                                      {"rmse", means[i].rmse / means[i].count}};
+    Json& mean = (*own_metrics)[i == 0 ? "fitted" : "held_out"];
+    mean = {{"photographs", means[i].count},
+            {"log_l1", means[i].log_l1 / means[i].count},
+            {"rmse", means[i].rmse / means[i].count}};
+    mean.update(ToJson(MeanLooks(means[i].looks)));
   }
   const std::string body =
       "<p>Rectified photographs, the maps rendered under the same camera and light, and four times "
       "the absolute difference; gamma 2.2. log-L1: mean of |log(I + 0.01) − log(R + 0.01)|; RMSE: "
-      "of linear radiance." +
+      "of linear radiance. The others as under Fit quality." +
       ComparedAt(input) +
       "</p>\n<div class=\"scroll\"><table class=\"views\">"
       "<tr><th>view</th><th>photograph</th><th>rendering</th><th>difference ×4</th>"
-      "<th class=\"number\">log-L1</th><th class=\"number\">RMSE</th></tr>\n" +
-      rows + "</table></div>\n";
+      "<th class=\"number\">log-L1</th><th class=\"number\">RMSE</th>" +
+      LooksHeadCells() + "</tr>\n" + rows + "</table></div>\n";
   return Section("Photographs and re-renderings", kOwnManifest, body);
 }
 

@@ -44,7 +44,7 @@ ShownView Show(const ReportInput& input, const ReportOptions& options, const Rec
     return "<td>" + ImageHtml(PictureUri(rgb, photograph, cell_px, gain), what + " " + view.name) +
            "</td>";
   };
-  return {CompareView(rendered, photograph, view.ldr),
+  return {CompareView(rendered, photograph, view.ldr), CompareLooks(rendered, photograph, view.ldr),
           PictureUri(photograph.rgb, photograph, options.picture_px),
           cell(photograph.rgb, "photograph", 1) + cell(rendered, "rendering", 1) +
               cell(Difference(photograph, rendered, view.ldr), "difference", kDifferenceGain)};

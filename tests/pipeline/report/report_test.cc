@@ -187,6 +187,22 @@ TEST_F(ReportTest, ViewsOfTheTruthHaveNoErrorAndHeldOutOnesAreMarked) {
   EXPECT_THAT(report.html, HasSubstr("held out"));
 }
 
+TEST_F(ReportTest, RenderingsAreComparedAsTheyLook) {
+  const Report report = Make();
+  const Json& view = report.metrics["views"][2];
+  EXPECT_NEAR(view["ssim"].get<double>(), 1, 1e-3);
+  EXPECT_NEAR(view["highlight"].get<double>(), 1, 0.01);
+  EXPECT_EQ(view["contrast"].size(), 4u);
+  EXPECT_TRUE(view["contrast"][0].is_null());  // 24 texels have no detail that fine
+  EXPECT_NEAR(report.metrics["held_out"]["correlation"][0].get<double>(), 1, 0.01);
+  EXPECT_LT(report.metrics["fitted"]["free"].get<double>(), 0.01);
+  EXPECT_THAT(report.html, HasSubstr("title=\"manifest.json: metrics.views[2].ssim\""));
+  EXPECT_THAT(report.html, HasSubstr("manifest.json: metrics.held_out.correlation[0]"));
+  EXPECT_THAT(report.html, HasSubstr("metrics.fitted.contrast[0]\">–<"));
+  EXPECT_THAT(report.html, HasSubstr("<b>highlight</b> how bright"));
+  EXPECT_THAT(report.html, Not(HasSubstr(">nan<")));
+}
+
 TEST_F(ReportTest, WrongMapsShowAsErrors) {
   SvbrdfMaps wrong = Maps();
   for (float& value : wrong.plane(kDiffuseG)) value *= 0.5f;
