@@ -1,0 +1,182 @@
+#include "calib/registration/register_sample.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel/parallel.h"
+#include "calib/registration/coarse_plane.h"
+#include "calib/registration/detail_pictures.h"
+#include "calib/registration/factor_analysis.h"
+#include "calib/registration/place_problem.h"
+#include "calib/registration/window_shifts.h"
+
+namespace glint {
+namespace {
+
+// First by pairs of views, in windows in parts of the sample's longer side.
+struct Round {
+  double window;
+  UnknownPlaces unknown;
+};
+constexpr Round kPairRounds[] = {{1.0 / 4, UnknownPlaces::kPlane},
+                                 {1.0 / 4, UnknownPlaces::kTranslations},
+                                 {3.0 / 16, UnknownPlaces::kPlaneAndAffine},
+                                 {1.0 / 8, UnknownPlaces::kPlaneAndHomographies}};
+// Photographs that are expected to be nearer their places than this, in pixels, need no pairs: what
+// views have in common reaches as far.
+constexpr double kNeedsPairs_px = 1;
+// Then by what all views have in common.
+constexpr int kCommonRounds = 3;  // or until nothing moves any more
+constexpr double kStill_px = 0.1;
+constexpr int kLeastHeights = 3;  // of windows, that tell a plane
+
+// Coarser structure than this is shading and highlights, in parts of the sample's longer side: 8
+// and 3 pixels of 512. The finer one tells more, of photographs that are nearly in place.
+constexpr double kCoarse = 1.0 / 64, kFine = 3.0 / 512;
+
+constexpr double kJudged = 1.0 / 4;  // windows by which photographs are said to be displaced
+
+// Further than this, in parts of the longer side, no displacement is believed: 10 of 512 pixels.
+constexpr double kLongestShift = 0.02;
+
+class Registration {
+ public:
+  Registration(const RegistrationProblem& problem, int threads)
+      : problem_(problem), pictures_(problem, kCoarse), fine_(problem, kFine), threads_(threads) {}
+
+  SampleRegistration Register() {
+    SampleRegistration result = Unregistered(problem_);
+    const bool fixed = problem_.height_sd_mm <= 0 && problem_.homography_sd_mm <= 0;
+    if (pictures_.views() < 2 || fixed) return result;
+    places_.unit_mm = 0.5 * std::max(problem_.sample_width_mm, problem_.sample_height_mm);
+    places_.homographies.resize(problem_.views.size());
+    places_.plane[0] = problem_.height_mm;
+    spreads_.fill(problem_.homography_sd_mm / places_.unit_mm);
+    result.displaced_before_mm = Displaced_mm(&result);
+    places_.plane = CoarsePlane(problem_, fine_, threads_);
+    const double reach_mm = kNeedsPairs_px * pictures_.PixelSide_mm(pictures_.OwnSize());
+    const bool few = FactorsOf(pictures_.views()) == 0;
+    if (few || problem_.homography_sd_mm > reach_mm) ComparePairs(&result);
+    for (int round = 0; round < kCommonRounds && !few; ++round) {
+      const SamplePlaces before = places_;
+      CompareInCommon(round > 0, &result);
+      if (Moved_mm(before) < kStill_px * pictures_.PixelSide_mm(pictures_.OwnSize())) break;
+    }
+    if (!result.told) return Unregistered(problem_);
+    result.displaced_after_mm = Displaced_mm(&result);
+    result.plane = places_.plane;
+    for (size_t i = 0; i < problem_.views.size(); ++i) {
+      result.homographies[i] = HomographyMatrix(places_.homographies[i], places_.unit_mm).inverse();
+    }
+    return result;
+  }
+
+ private:
+  void ComparePairs(SampleRegistration* result) {
+    const auto pairs = PairsOf(pictures_.views());
+    for (const Round& round : kPairRounds) {
+      const std::vector<WindowShift> shifts = Shifts(round.window, pairs, nullptr);
+      if (shifts.empty()) return;
+      result->told = true;
+      Take(SolvePlaces(problem_, pictures_, places_, spreads_, shifts, pictures_.OwnSize(),
+                       round.unknown),
+           result);
+    }
+  }
+
+  // Improves plane and homographies by what all views have in common.
+  void CompareInCommon(bool near, SampleRegistration* result) {
+    const cv::Size size = fine_.OwnSize();
+    if (problem_.height_sd_mm > 0) {
+      const std::vector<WindowHeight> heights = WindowHeights(fine_, places_, size, near, threads_);
+      result->told = std::ssize(heights) >= kLeastHeights;
+      if (result->told) {
+        const PlaceSolution plane = FitPlane(problem_, places_, spreads_, heights);
+        Take(plane, result);
+        if (LiesAsSaid(problem_, plane)) places_.plane = {problem_.height_mm, 0, 0};
+      }
+    }
+    if (problem_.homography_sd_mm <= 0 || (problem_.height_sd_mm > 0 && !result->told)) return;
+    const std::vector<PredictedShift> shifts = PredictedShifts(fine_, places_, size, threads_);
+    if (shifts.empty()) return;
+    result->told = true;
+    const PlaceSolution solution = FitHomographies(problem_, fine_, places_, spreads_, shifts);
+    places_ = solution.places;
+    spreads_ = solution.spreads;
+  }
+
+  // The most that a corner of the sample is elsewhere in a view.
+  double Moved_mm(const SamplePlaces& before) const {
+    double most = 0;
+    for (int view = 0; view < pictures_.views(); ++view) {
+      for (const double x : {-0.5, 0.5}) {
+        for (const double y : {-0.5, 0.5}) {
+          const Eigen::Vector2d corner(x * problem_.sample_width_mm, y * problem_.sample_height_mm);
+          most = std::max(most, (pictures_.AssumedPoint(view, places_, corner) -
+                                 pictures_.AssumedPoint(view, before, corner))
+                                    .norm());
+        }
+      }
+    }
+    return most;
+  }
+
+  void Take(const PlaceSolution& solution, SampleRegistration* result) {
+    places_ = solution.places;
+    spreads_ = solution.spreads;
+    result->plane_covariance = solution.plane_covariance;
+  }
+
+  std::vector<WindowShift> Shifts(double window, const std::vector<std::pair<int, int>>& pairs,
+                                  int* windows) const {
+    const cv::Size size = pictures_.OwnSize();
+    std::vector<cv::Mat> looked_up(problem_.views.size());
+    ForEachPiece(pictures_.views(), threads_, [&](int view) {
+      looked_up[static_cast<size_t>(view)] = pictures_.LookUp(view, places_, size);
+    });
+    const int longest_px = std::max(size.width, size.height);
+    const int window_px = 2 * static_cast<int>(std::lround(0.5 * window * longest_px));
+    return WindowShifts(looked_up, pairs, window_px, kLongestShift * longest_px, threads_, windows);
+  }
+
+  // Median over windows and neighbouring views; counts them.
+  double Displaced_mm(SampleRegistration* result) const {
+    std::vector<std::pair<int, int>> neighbours;
+    for (int i = 0; i + 1 < pictures_.views(); ++i) neighbours.emplace_back(i, i + 1);
+    std::vector<double> lengths;
+    for (const WindowShift& shift : Shifts(kJudged, neighbours, &result->windows)) {
+      lengths.push_back(std::hypot(shift.dx_px, shift.dy_px));
+    }
+    result->measured = static_cast<int>(lengths.size());
+    if (lengths.empty()) return 0;
+    const auto middle = lengths.begin() + std::ssize(lengths) / 2;
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    return *middle * pictures_.PixelSide_mm(pictures_.OwnSize());
+  }
+
+  const RegistrationProblem& problem_;
+  const DetailPictures pictures_, fine_;
+  const int threads_;
+  SamplePlaces places_;
+  HomographySpreads spreads_{};
+};
+
+}  // namespace
+
+double SampleRegistration::height_sd_mm() const { return std::sqrt(plane_covariance(0, 0)); }
+
+SampleRegistration Unregistered(const RegistrationProblem& problem) {
+  SampleRegistration prior;
+  prior.plane[0] = problem.height_mm;
+  const double height = problem.height_sd_mm, slope = height > 0 ? problem.slope_sd : 0;
+  prior.plane_covariance.diagonal() << height * height, slope * slope, slope * slope;
+  prior.homographies.assign(problem.views.size(), Eigen::Matrix3d::Identity());
+  return prior;
+}
+
+SampleRegistration RegisterSample(const RegistrationProblem& problem, int threads) {
+  if (problem.views.empty()) return Unregistered(problem);
+  return Registration(problem, threads).Register();
+}
+
+}  // namespace glint

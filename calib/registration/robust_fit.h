@@ -1,0 +1,69 @@
+// Small robust least-squares problems, as all fits of registration are.
+#pragma once
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace glint {
+
+// (value − expected) / σ of N numbers.
+template <size_t N>
+struct ExpectedValues {
+  std::array<double, N> value, sigma;
+  template <class T>
+  bool operator()(const T* x, T* residual) const {
+    for (size_t i = 0; i < N; ++i) residual[i] = (x[i] - T(value[i])) / T(sigma[i]);
+    return true;
+  }
+};
+
+template <size_t N>
+void AddPrior(const std::array<double, N>& value, const std::array<double, N>& sigma, double* block,
+              ceres::Problem* problem) {
+  problem->AddResidualBlock(
+      new ceres::AutoDiffCostFunction<ExpectedValues<N>, N, N>(new ExpectedValues<N>{value, sigma}),
+      nullptr, block);
+}
+
+// Cauchy's loss of residuals in σ, each counted `share` times.
+inline ceres::LossFunction* RobustLoss(double share) {
+  return new ceres::ScaledLoss(new ceres::CauchyLoss(1), share, ceres::TAKE_OWNERSHIP);
+}
+
+inline void SolveRobustly(ceres::Problem* problem) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.num_threads = 1;  // the same bits for the same input
+  options.max_num_iterations = 30;
+  options.function_tolerance = 1e-7;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, problem, &summary);
+}
+
+// Zero where it cannot be told.
+inline Eigen::Matrix3d CovarianceOfBlock(const double* block, ceres::Problem* problem) {
+  ceres::Covariance::Options options;
+  options.num_threads = 1;
+  ceres::Covariance covariance(options);
+  Eigen::Matrix<double, 3, 3, Eigen::RowMajor> result = Eigen::Matrix3d::Zero();
+  if (covariance.Compute(std::vector<std::pair<const double*, const double*>>{{block, block}},
+                         problem)) {
+    covariance.GetCovarianceBlock(block, block, result.data());
+  }
+  return result;
+}
+
+// The upper one of an even number; 0 of none.
+inline double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace glint

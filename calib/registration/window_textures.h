@@ -1,0 +1,26 @@
+// The views' textures in one window of the sample, looked up at given places.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calib/registration/detail_pictures.h"
+
+namespace glint {
+
+// Of windows in which textures are compared, in parts of the sample's longer side.
+inline constexpr double kTextureWindow = 1.0 / 8;
+
+// Windows of `width` pixels every `step` of them, of pictures of `size`.
+std::vector<cv::Rect> WindowsOf(const cv::Size& size, int width, int step);
+
+struct WindowTextures {
+  Eigen::MatrixXf values;     // a row a view: its pixels, less their weighted mean
+  Eigen::RowVectorXf weight;  // of the pixels, a Hann window; their sum is 1
+
+  Eigen::MatrixXd Covariance() const;  // of the views
+};
+WindowTextures TexturesOf(const DetailPictures& pictures, const SamplePlaces& places,
+                          const cv::Size& size, const cv::Rect& window);
+
+}  // namespace glint
