@@ -23,13 +23,13 @@ class PlaneFinder {
   // plane runs within the sample's noise: it has more points, and its features do not wander with
   // the flash, as those of relief and gloss do.
   void Find() {
-    std::vector<PlanePoint> all;
+    std::vector<CloudPoint> all;
     for (const ModelPoint& point : model_.points) all.push_back({point.position, point.weight});
     if (all.empty()) {
       throw UserError(model_.source, "points3D", "no points",
                       "give a model with points, or a [board]");
     }
-    const std::vector<PlanePoint> inside = PointsInside();
+    const std::vector<CloudPoint> inside = PointsInside();
     constexpr size_t kEnough = 50;
     FitTo(inside.size() >= kEnough ? inside : all);
     if (inside.size() < kEnough) return;
@@ -54,8 +54,8 @@ class PlaneFinder {
   }
 
   // Points that lie within the sample's corners; none where the corners are not told.
-  std::vector<PlanePoint> PointsInside() const {
-    std::vector<PlanePoint> inside;
+  std::vector<CloudPoint> PointsInside() const {
+    std::vector<CloudPoint> inside;
     if (capture_.poses.corners_px.empty()) return inside;
     for (const ModelPoint& point : model_.points) {
       if (InsideCorners(point.position)) inside.push_back({point.position, point.weight});
@@ -79,7 +79,7 @@ class PlaneFinder {
   }
 
   // Whether the present plane is that near to `own` wherever the latter's inliers lie.
-  bool RunsWithin(const PlaneFit& own, const std::vector<PlanePoint>& points,
+  bool RunsWithin(const PlaneFit& own, const std::vector<CloudPoint>& points,
                   double tolerance) const {
     for (size_t i = 0; i < points.size(); ++i) {
       if (!own.inlier[i]) continue;
@@ -89,11 +89,11 @@ class PlaneFinder {
     return true;
   }
 
-  void FitTo(const std::vector<PlanePoint>& candidates) {
+  void FitTo(const std::vector<CloudPoint>& candidates) {
     Vector3d middle;
     for (int k = 0; k < 3; ++k) {
       std::vector<double> values;
-      for (const PlanePoint& point : candidates) values.push_back(point.position[k]);
+      for (const CloudPoint& point : candidates) values.push_back(point.position[k]);
       middle[k] = MedianOf(values);
     }
     std::vector<double> distances;

@@ -33,9 +33,9 @@ class Draws {
 };
 
 // Every k-th point with weight, so that large models cost no more than small ones.
-std::vector<PlanePoint> Thinned(const std::vector<PlanePoint>& points) {
+std::vector<CloudPoint> Thinned(const std::vector<CloudPoint>& points) {
   const size_t step = (points.size() + kMostScored - 1) / kMostScored;
-  std::vector<PlanePoint> few;
+  std::vector<CloudPoint> few;
   for (size_t i = 0; i < points.size(); i += std::max<size_t>(step, 1)) {
     if (points[i].weight > 0) few.push_back(points[i]);
   }
@@ -43,16 +43,16 @@ std::vector<PlanePoint> Thinned(const std::vector<PlanePoint>& points) {
 }
 
 // MSAC: what lies near the plane counts the more the nearer.
-double Score(const std::vector<PlanePoint>& points, const PlaneFit& plane, double threshold) {
+double Score(const std::vector<CloudPoint>& points, const PlaneFit& plane, double threshold) {
   double score = 0;
-  for (const PlanePoint& point : points) {
+  for (const CloudPoint& point : points) {
     const double share = plane.Distance(point.position) / threshold;
     score += point.weight * std::max(0.0, 1 - share * share);
   }
   return score;
 }
 
-bool BestOfTrials(const std::vector<PlanePoint>& points, const PlaneOptions& options,
+bool BestOfTrials(const std::vector<CloudPoint>& points, const PlaneOptions& options,
                   PlaneFit* best) {
   Draws draws;
   double best_score = 0;
@@ -77,7 +77,7 @@ bool BestOfTrials(const std::vector<PlanePoint>& points, const PlaneOptions& opt
 
 // Weighted least squares of orthogonal distances; returns the eigenvalues of the scatter,
 // ascending.
-Vector3d LeastSquares(const std::vector<PlanePoint>& points, const std::vector<double>& weights,
+Vector3d LeastSquares(const std::vector<CloudPoint>& points, const std::vector<double>& weights,
                       PlaneFit* plane) {
   double sum = 0;
   Vector3d mean = Vector3d::Zero();
@@ -98,10 +98,10 @@ Vector3d LeastSquares(const std::vector<PlanePoint>& points, const std::vector<d
   return solver.eigenvalues();
 }
 
-double MedianOffset(const std::vector<PlanePoint>& points, const PlaneFit& plane,
+double MedianOffset(const std::vector<CloudPoint>& points, const PlaneFit& plane,
                     double threshold) {
   std::vector<double> offsets;
-  for (const PlanePoint& point : points) {
+  for (const CloudPoint& point : points) {
     const double offset = std::abs(plane.Distance(point.position));
     if (offset <= threshold && point.weight > 0) offsets.push_back(offset);
   }
@@ -112,7 +112,7 @@ double MedianOffset(const std::vector<PlanePoint>& points, const PlaneFit& plane
 }
 
 // Returns the eigenvalues of the last scatter.
-Vector3d Refine(const std::vector<PlanePoint>& points, double threshold, PlaneFit* plane) {
+Vector3d Refine(const std::vector<CloudPoint>& points, double threshold, PlaneFit* plane) {
   Vector3d eigenvalues = Vector3d::Zero();
   std::vector<double> weights(points.size());
   for (int i = 0; i < kRefinements; ++i) {
@@ -131,9 +131,9 @@ Vector3d Refine(const std::vector<PlanePoint>& points, double threshold, PlaneFi
   return eigenvalues;
 }
 
-void Judge(const std::vector<PlanePoint>& points, const PlaneOptions& options, PlaneFit* plane) {
+void Judge(const std::vector<CloudPoint>& points, const PlaneOptions& options, PlaneFit* plane) {
   double all = 0, on = 0, squares = 0;
-  for (const PlanePoint& point : points) {
+  for (const CloudPoint& point : points) {
     const double distance = plane->Distance(point.position);
     const bool inlier = point.weight > 0 && std::abs(distance) <= options.threshold;
     plane->inlier.push_back(inlier);
@@ -149,9 +149,9 @@ void Judge(const std::vector<PlanePoint>& points, const PlaneOptions& options, P
 
 }  // namespace
 
-PlaneFit FitPlane(const std::vector<PlanePoint>& points, const PlaneOptions& options) {
+PlaneFit FitPlane(const std::vector<CloudPoint>& points, const PlaneOptions& options) {
   PlaneFit plane;
-  const std::vector<PlanePoint> few = Thinned(points);
+  const std::vector<CloudPoint> few = Thinned(points);
   if (few.size() < std::max<size_t>(options.min_points, 3)) {
     plane.problem = fmt::format("only {} points; at least {} are needed", few.size(),
                                 std::max<size_t>(options.min_points, 3));

@@ -11,7 +11,7 @@
 
 namespace glint {
 
-struct PlanePoint {
+struct CloudPoint {
   Eigen::Vector3d position;
   double weight = 1;  // not negative
 };
@@ -36,6 +36,6 @@ struct PlaneFit {
   double Distance(const Eigen::Vector3d& x) const { return normal.dot(x) - offset; }
 };
 
-PlaneFit FitPlane(const std::vector<PlanePoint>& points, const PlaneOptions& options);
+PlaneFit FitPlane(const std::vector<CloudPoint>& points, const PlaneOptions& options);
 
 }  // namespace glint

@@ -32,7 +32,7 @@ PlaneOptions Options() {
 }
 
 TEST(FitPlane, FindsThePlaneAmongAsManyOutliers) {
-  std::vector<PlanePoint> points;
+  std::vector<CloudPoint> points;
   for (int i = 0; i < 400; ++i) points.push_back({i % 2 ? OnPlane() : Scattered(), 1});
   const PlaneFit plane = FitPlane(points, Options());
   ASSERT_EQ(plane.problem, "");
@@ -43,7 +43,7 @@ TEST(FitPlane, FindsThePlaneAmongAsManyOutliers) {
 }
 
 TEST(FitPlane, WeightsDecideBetweenTwoPlanes) {
-  std::vector<PlanePoint> points;
+  std::vector<CloudPoint> points;
   for (int i = 0; i < 300; ++i) points.push_back({Vector3d(Unit(), Unit(), 0), 1});
   for (int i = 0; i < 100; ++i) points.push_back({Vector3d(Unit(), 0.5, Unit()), 6});
   const PlaneFit plane = FitPlane(points, Options());
@@ -51,13 +51,13 @@ TEST(FitPlane, WeightsDecideBetweenTwoPlanes) {
 }
 
 TEST(FitPlane, TheSamePointsGiveTheSamePlane) {
-  std::vector<PlanePoint> points;
+  std::vector<CloudPoint> points;
   for (int i = 0; i < 200; ++i) points.push_back({i % 3 ? OnPlane() : Scattered(), 1});
   EXPECT_EQ(FitPlane(points, Options()).normal, FitPlane(points, Options()).normal);
 }
 
 TEST(FitPlane, SaysWhyThereIsNone) {
-  std::vector<PlanePoint> scattered, line, few;
+  std::vector<CloudPoint> scattered, line, few;
   for (int i = 0; i < 500; ++i) scattered.push_back({Scattered(), 1});
   for (int i = 0; i < 500; ++i) {
     line.push_back({Vector3d(Unit(), 0, 0) + 0.004 * Vector3d(Unit(), Unit(), Unit()), 1});
