@@ -8,6 +8,7 @@
 #include "calib/capture/calibrate_capture.h"
 #include "calib/capture/export_colmap.h"
 #include "calib/capture/guide_capture.h"
+#include "calib/capture/place_sample.h"
 #include "calib/capture/pose_source.h"
 #include "pipeline/contract/capture.h"
 #include "pipeline/contract/cost_model.h"
@@ -22,9 +23,11 @@ ProgramResult Check(const Capture& capture, const CalibOptions& options,
   const CalibSummary summary = CheckCapture(capture, options, common);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return {TextOf(summary.guidance) + fmt::format("checked in {:.1f} s\n", seconds),
+  return {PlacementText(summary) + TextOf(summary.guidance) +
+              fmt::format("checked in {:.1f} s\n", seconds),
           {{"capture", capture.folder.string()},
            {"seconds", seconds},
+           {"sample_plane", PlacementMetrics(summary)},
            {"guidance", ToJson(summary.guidance)}}};
 }
 

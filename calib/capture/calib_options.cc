@@ -129,6 +129,8 @@ CalibTask ResolveTask(const Capture& capture, const CalibOptions& options) {
   task.light_power.assign(capture.light_power.begin(), capture.light_power.end());
   task.ambient.assign(capture.ambient.begin(), capture.ambient.end());
   task.sample_mm.assign(capture.sample_size_mm.begin(), capture.sample_size_mm.end());
+  task.sample_height =
+      capture.sample_height_mm ? fmt::format("{}", *capture.sample_height_mm) : "auto";
   task.resolution_px.assign(capture.resolution_px.begin(), capture.resolution_px.end());
   return task;
 }
@@ -144,6 +146,7 @@ void AddTask(OptionSet* set, CalibTask* task) {
   set->Add("ambient", &task->ambient, "from [light]");
   set->Add("sample-mm", &task->sample_mm, "from [sample] size_mm");
   set->Add("resolution-px", &task->resolution_px, "from [sample]");
+  set->Add("sample-height", &task->sample_height, "from [sample] height_mm");
 }
 
 }  // namespace glint

@@ -45,6 +45,7 @@ struct CalibTask {
   std::string encoding;
   std::vector<double> light_offset_mm, light_power, ambient;
   std::vector<double> sample_mm, resolution_px;  // of the guidance
+  std::string sample_height;                     // auto, or millimetres
 };
 
 CalibTask ResolveTask(const Capture& capture, const CalibOptions& options);

@@ -17,6 +17,7 @@
 #include "calib/capture/colmap_poses.h"
 #include "calib/capture/guide_capture.h"
 #include "calib/capture/phone_library.h"
+#include "calib/capture/place_sample.h"
 #include "calib/capture/pose_source.h"
 #include "calib/capture/triage_photos.h"
 #include "calib/guidance/coverage_picture.h"
@@ -217,9 +218,10 @@ void WriteOutputs(const CalibSummary& summary, Stage* stage) {
 
 // What follows once poses are known.
 void FinishCapture(const Capture& capture, const CalibOptions& options, bool assumed_intrinsics,
-                   CalibSummary* summary) {
+                   int threads, CalibSummary* summary) {
   FillPhotos(capture, summary);
   FillLight(capture, options, summary);
+  PlaceSample(capture, options, threads, summary);
   summary->guidance = Judge(GuidanceInputOf(capture, *summary, assumed_intrinsics));
 }
 
@@ -258,17 +260,17 @@ CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, 
 }
 
 void SolveCapture(const Capture& capture, const CalibOptions& options,
-                  const std::vector<Camera>& assumed, CalibSummary* summary) {
+                  const std::vector<Camera>& assumed, int threads, CalibSummary* summary) {
   summary->photo_index.clear();
   BundleProblem problem = MakeProblem(summary->photos, summary->groups, &summary->photo_index);
   for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
   Adjust(capture, options, problem, summary);
   WarnOfUncertainty(summary->bundle);
   if (assumed.empty()) WarnOfToldFocal(problem, summary->bundle);
-  FinishCapture(capture, options, !assumed.empty(), summary);
+  FinishCapture(capture, options, !assumed.empty(), threads, summary);
 }
 
-void SolveWithAssumedCameras(const Capture& capture, const CalibOptions& options,
+void SolveWithAssumedCameras(const Capture& capture, const CalibOptions& options, int threads,
                              CalibSummary* summary) {
   const CameraModel model = CameraModelFromName(options.model).value_or(CameraModel::kOpenCv);
   std::vector<Camera> assumed;
@@ -277,16 +279,16 @@ void SolveWithAssumedCameras(const Capture& capture, const CalibOptions& options
   }
   summary->calibration = Calibration();
   summary->rejected.clear();
-  SolveCapture(capture, options, assumed, summary);
+  SolveCapture(capture, options, assumed, threads, summary);
 }
 
 namespace {
 
 // One photograph seldom determines the focal length: it then comes from EXIF, or is that of phones.
-void SolveOnePhotograph(const Capture& capture, const CalibOptions& options,
+void SolveOnePhotograph(const Capture& capture, const CalibOptions& options, int threads,
                         CalibSummary* summary) {
   try {
-    SolveCapture(capture, options, {}, summary);
+    SolveCapture(capture, options, {}, threads, summary);
   } catch (const Error& error) {
     const CameraGroup& group = summary->groups.groups[0];
     spdlog::warn(
@@ -296,7 +298,7 @@ void SolveOnePhotograph(const Capture& capture, const CalibOptions& options,
             ? "EXIF's 35 mm equivalent"
             : "that of a phone's main camera (26 mm equivalent)");
     spdlog::debug("{}", error.what());
-    SolveWithAssumedCameras(capture, options, summary);
+    SolveWithAssumedCameras(capture, options, threads, summary);
   }
 }
 
@@ -310,18 +312,18 @@ CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& option
     summary = DetectCapture(capture, options, common.threads);
     const bool given = !options.fix_intrinsics.empty() || !options.library.empty();
     if (summary.photos.size() == 1 && !given) {
-      SolveOnePhotograph(capture, options, &summary);
+      SolveOnePhotograph(capture, options, common.threads, &summary);
     } else {
-      SolveCapture(capture, options, {}, &summary);
+      SolveCapture(capture, options, {}, common.threads, &summary);
     }
   } else if (source == PoseSource::kAbove) {
     summary.photos = DetectPhotos(capture, options, common.threads);
     PoseFromAbove(capture, options, &summary);
-    FinishCapture(capture, options, true, &summary);
+    FinishCapture(capture, options, true, common.threads, &summary);
   } else {
     summary.photos = DetectPhotos(capture, options, common.threads);
     PosesFromColmap(capture, options, common, stage, &summary);
-    FinishCapture(capture, options, false, &summary);
+    FinishCapture(capture, options, false, common.threads, &summary);
   }
   WriteOutputs(summary, stage);
   stage->Commit(ToJson(summary.calibration), MetricsOf(summary));

@@ -12,6 +12,7 @@
 #include "calib/guidance/verdict.h"
 #include "calib/light/light.h"
 #include "calib/light/power.h"
+#include "calib/registration/register_sample.h"
 #include "calib/triage/triage.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/program.h"
@@ -19,7 +20,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 13;
+inline constexpr int kCalibVersion = 14;
 
 struct RejectedPhoto {
   std::string name, reason;
@@ -37,7 +38,8 @@ struct CalibSummary {
   Json poses;           // of COLMAP: what is known of its model and the sample's plane; else null
   LightEstimate light;  // photos as calibration.photos; known: the board told it
   PowerEstimate power;  // otherwise; photo_power as calibration.photos
-  std::string power_source;  // "capture.toml", "board", "board, light at the lens" or "guess"
+  std::string power_source;      // "capture.toml", "board", "board, light at the lens" or "guess"
+  SampleRegistration placement;  // of the sample above or below the board; see place_sample.h
   Verdict guidance;
 
   bool from_board() const { return poses.is_null(); }
@@ -57,9 +59,9 @@ CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& option
 // they are, one per camera, or none at all.
 CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, int threads);
 void SolveCapture(const Capture& capture, const CalibOptions& options,
-                  const std::vector<Camera>& assumed, CalibSummary* summary);
+                  const std::vector<Camera>& assumed, int threads, CalibSummary* summary);
 // With intrinsics as assumed_camera.h has them, after a detection or a failed SolveCapture.
-void SolveWithAssumedCameras(const Capture& capture, const CalibOptions& options,
+void SolveWithAssumedCameras(const Capture& capture, const CalibOptions& options, int threads,
                              CalibSummary* summary);
 
 // report.cc

@@ -19,6 +19,9 @@ namespace {
 // From a reduced copy to the photograph itself.
 void Enlarge(int reduction, std::pair<int, int> size, DetectedPhoto* photo) {
   std::tie(photo->width_px, photo->height_px) = size;
+  photo->picture.left_px *= reduction;
+  photo->picture.top_px *= reduction;
+  photo->picture.scale /= reduction;
   for (CornerObservation& corner : photo->detection.corners) {
     corner.point_px *= reduction;
     corner.sigma_px *= reduction;
@@ -47,7 +50,11 @@ DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
   detected.camera_model = photo.camera_model;
   detected.clips = !photo.is_float();
   detected.exposure = photo.exposure();
-  if (!capture.has_board) return detected;
+  const Encoding encoding = ResolveEncoding(capture.resolved_encoding(), file, photo.bits);
+  if (!capture.has_board) {
+    detected.picture = SamplePictureOf(photo, encoding, {}, capture.sample_size_mm);
+    return detected;
+  }
   DetectorOptions detector;
   detector.longest_px = options.detect_px;
   detector.min_corners = options.min_corners;
@@ -56,10 +63,13 @@ DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
   detected.measures = MeasurePhoto(name, photo, gray, detected.detection);
   detected.measures.flash_photo = !board_photo;
   if (!board_photo && !detected.detection.corners.empty()) {
-    const Encoding encoding = ResolveEncoding(capture.resolved_encoding(), file, photo.bits);
     detected.paper = SamplePaper(photo, encoding, capture.board, spots, detected.detection.corners);
     detected.sample_clipped_share =
         ClippedShareOfSample(photo, detected.detection.corners, capture.sample_size_mm);
+  }
+  if (!board_photo) {
+    detected.picture =
+        SamplePictureOf(photo, encoding, detected.detection.corners, capture.sample_size_mm);
   }
   if (reduction > 1) Enlarge(reduction, PhotoSize(file), &detected);
   return detected;

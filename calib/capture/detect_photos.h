@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/capture/calib_options.h"
+#include "calib/capture/sample_picture.h"
 #include "calib/corners/detector.h"
 #include "calib/light/paper.h"
 #include "calib/triage/measure.h"
@@ -25,6 +26,7 @@ struct DetectedPhoto {
   std::vector<PaperSample> paper;   // of flash photographs
   double sample_clipped_share = 0;  // see guidance/clipping.h
   PhotoMeasures measures;           // what triage goes by
+  SamplePicture picture;            // of flash photographs
 };
 
 // In the capture's order, flash photographs first. At most `threads` photographs are in memory at a

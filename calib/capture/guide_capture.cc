@@ -53,13 +53,13 @@ CalibSummary CheckCapture(const Capture& capture, const CalibOptions& given,
   options.quick_px = kQuick_px;
   CalibSummary summary = DetectCapture(capture, options, common.threads);
   try {
-    SolveCapture(capture, options, {}, &summary);
+    SolveCapture(capture, options, {}, common.threads, &summary);
     return summary;
   } catch (const Error& error) {
     if (!options.fix_intrinsics.empty()) throw;
     spdlog::debug("assuming the focal length: {}", error.what());
   }
-  SolveWithAssumedCameras(capture, options, &summary);
+  SolveWithAssumedCameras(capture, options, common.threads, &summary);
   return summary;
 }
 

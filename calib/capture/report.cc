@@ -5,6 +5,7 @@
 
 #include "calib/capture/calibrate_capture.h"
 #include "calib/capture/capture_light.h"
+#include "calib/capture/place_sample.h"
 
 namespace glint {
 namespace {
@@ -94,6 +95,7 @@ Json MetricsOf(const CalibSummary& summary) {
   if (summary.from_board()) AddTrustMetrics(summary.bundle, summary.trust, &metrics);
   metrics["triage"] = TriageOf(summary);
   metrics["light"] = LightMetrics(summary);
+  metrics["sample_plane"] = PlacementMetrics(summary);
   metrics["guidance"] = ToJson(summary.guidance);
   if (!summary.poses.is_null()) metrics["poses"] = summary.poses;
   return metrics;
@@ -152,7 +154,7 @@ std::string TextOf(const CalibSummary& summary) {
     text += fmt::format("  left out: {}: {}\n", photo.name, photo.reason);
   }
   if (summary.from_board()) text += TextOf(summary.bundle, summary.trust);
-  return text + LightText(summary) + TextOf(summary.guidance);
+  return text + LightText(summary) + PlacementText(summary) + TextOf(summary.guidance);
 }
 
 std::string BriefTextOf(const CalibSummary& summary) {
@@ -163,7 +165,7 @@ std::string BriefTextOf(const CalibSummary& summary) {
   for (const RejectedPhoto& photo : summary.rejected) {
     text += fmt::format("\n  left out: {}: {}", photo.name, photo.reason);
   }
-  std::string guidance = TextOf(summary.guidance);
+  std::string guidance = PlacementText(summary) + TextOf(summary.guidance);
   if (guidance.ends_with("\n")) guidance.pop_back();
   return text + "\n  " + guidance;
 }

@@ -11,6 +11,32 @@ namespace {
 
 std::vector<double> List(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
+std::vector<double> RowMajor(const Eigen::Matrix3d& matrix) {
+  std::vector<double> values(9);
+  for (int i = 0; i < 9; ++i) values[static_cast<size_t>(i)] = matrix(i / 3, i % 3);
+  return values;
+}
+
+Eigen::Matrix3d FromRowMajor(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
+}
+
+Json ToJson(const Rigid3& pose) {
+  return {{"rotation", RowMajor(pose.rotation)}, {"translation_mm", List(pose.translation)}};
+}
+
+Rigid3 ReadPose(const std::filesystem::path& file, const Json& json, const std::string& name) {
+  Rigid3 pose;
+  pose.rotation = FromRowMajor(RequireNumbers(file, json, name, "rotation", 9));
+  const auto translation = RequireNumbers(file, json, name, "translation_mm", 3);
+  pose.translation = Eigen::Map<const Eigen::Vector3d>(translation.data());
+  const auto& r = pose.rotation;
+  if (!(r * r.transpose()).isIdentity(1e-6) || r.determinant() < 0) {
+    throw UserError(file, name + ".rotation", "a matrix that is not a rotation", "run calib again");
+  }
+  return pose;
+}
+
 Camera ReadCamera(const std::filesystem::path& file, const Json& json, const std::string& name) {
   Camera camera;
   const std::string model = RequireString(file, json, name, "model");
@@ -45,17 +71,10 @@ CalibratedPhoto ReadPhoto(const std::filesystem::path& file, const Json& json,
                     "no such camera; run calib again");
   }
   photo.camera = static_cast<int>(camera);
-  const Json& pose = RequireField(file, json, name, "camera_from_sample");
-  const auto rotation = RequireNumbers(file, pose, name + ".camera_from_sample", "rotation", 9);
-  const auto translation =
-      RequireNumbers(file, pose, name + ".camera_from_sample", "translation_mm", 3);
-  photo.camera_from_sample.rotation =
-      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data());
-  photo.camera_from_sample.translation = Eigen::Map<const Eigen::Vector3d>(translation.data());
-  const auto& r = photo.camera_from_sample.rotation;
-  if (!(r * r.transpose()).isIdentity(1e-6) || r.determinant() < 0) {
-    throw UserError(file, name + ".camera_from_sample.rotation", "a matrix that is not a rotation",
-                    "run calib again");
+  photo.camera_from_sample = ReadPose(file, RequireField(file, json, name, "camera_from_sample"),
+                                      name + ".camera_from_sample");
+  if (json.contains("registration")) {
+    photo.registration = FromRowMajor(RequireNumbers(file, json, name, "registration", 9));
   }
   const auto light = RequireNumbers(file, json, name, "light_in_camera_mm", 3);
   photo.light_in_camera_mm = Eigen::Map<const Eigen::Vector3d>(light.data());
@@ -88,21 +107,17 @@ Json ToJson(const Calibration& calibration) {
   data["light_power_known"] = calibration.light_power_known;
   if (calibration.light_sd_mm) data["light_sd_mm"] = *calibration.light_sd_mm;
   if (calibration.ambient_rgb) data["ambient_rgb"] = List(*calibration.ambient_rgb);
+  data["board_from_sample"] = ToJson(calibration.board_from_sample);
   data["photos"] = Json::array();
   for (const CalibratedPhoto& photo : calibration.photos) {
-    std::vector<double> rotation(9);
-    for (int i = 0; i < 9; ++i) {
-      rotation[static_cast<size_t>(i)] = photo.camera_from_sample.rotation(i / 3, i % 3);
-    }
-    data["photos"].push_back(
-        {{"photo", photo.photo},
-         {"camera", photo.camera},
-         {"camera_from_sample",
-          {{"rotation", rotation}, {"translation_mm", List(photo.camera_from_sample.translation)}}},
-         {"light_in_camera_mm", List(photo.light_in_camera_mm)},
-         {"rms_px", photo.rms_px},
-         {"corners", photo.corners},
-         {"inliers", photo.inliers}});
+    data["photos"].push_back({{"photo", photo.photo},
+                              {"camera", photo.camera},
+                              {"camera_from_sample", ToJson(photo.camera_from_sample)},
+                              {"registration", RowMajor(photo.registration)},
+                              {"light_in_camera_mm", List(photo.light_in_camera_mm)},
+                              {"rms_px", photo.rms_px},
+                              {"corners", photo.corners},
+                              {"inliers", photo.inliers}});
     if (photo.exposure > 0) data["photos"].back()["exposure"] = photo.exposure;
   }
   return data;
@@ -144,6 +159,10 @@ Calibration ReadCalibration(const std::filesystem::path& manifest_file) {
   if (manifest.data.contains("ambient_rgb")) {
     const auto ambient = RequireNumbers(manifest_file, manifest.data, "data", "ambient_rgb", 3);
     calibration.ambient_rgb = Eigen::Map<const Eigen::Vector3d>(ambient.data());
+  }
+  if (manifest.data.contains("board_from_sample")) {
+    calibration.board_from_sample =
+        ReadPose(manifest_file, manifest.data["board_from_sample"], "data.board_from_sample");
   }
   const Json& photos = RequireList(manifest_file, manifest.data, "photos");
   for (size_t i = 0; i < photos.size(); ++i) {

@@ -21,6 +21,9 @@ struct CalibratedPhoto {
   double exposure = 0;                          // relative to the first photo's; 0: not estimated
   double rms_px = 0;                            // reprojection error of its inlier corners
   int corners = 0, inliers = 0;
+  // The sample's point (x, y) is shown where the pose puts the plane's point registration ·
+  // (x, y, 1), millimetres: what pose and lens leave of its place.
+  Eigen::Matrix3d registration = Eigen::Matrix3d::Identity();
 };
 
 struct Calibration {
@@ -30,6 +33,9 @@ struct Calibration {
   bool light_power_known = false;      // false: light_rgb is a first guess
   // Standard deviation of the flash's position, where it was estimated: its least certain axis.
   std::optional<double> light_sd_mm;
+  // The sample's frame in the board's: the sample may lie higher or lower, and tilted. Poses are
+  // the sample's already.
+  Rigid3 board_from_sample;
   // Irradiance of the room, times the exposure of the first photo; nullopt: not told.
   std::optional<Eigen::Vector3d> ambient_rgb;
 };

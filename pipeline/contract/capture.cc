@@ -278,6 +278,16 @@ void ReadSample(const fs::path& file, const toml::table& document, Capture* capt
   const auto centre = table.Numbers("centre_mm", 2, false, "give [x, y] in millimetres");
   if (!centre.empty()) capture->board.board_centre_in_sample_mm = {-centre[0], -centre[1]};
 
+  const toml::node* height = table.Find("height_mm");
+  if (height != nullptr && !(height->is_string() && height->as_string()->get() == "auto")) {
+    if (!height->is_number()) {
+      table.Reject(*height, "height_mm",
+                   "give \"auto\", or by how many millimetres the sample's surface lies above the "
+                   "board's (below 0: under it; 0: exactly in its plane)");
+    }
+    capture->sample_height_mm = table.Number("height_mm", 0, -100, 100, " from -100 to 100");
+  }
+
   const std::string remedy = "give a width in texels, or [width, height], from 8 to 16384";
   const toml::node* node = table.Find("resolution_px");
   if (node == nullptr) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,7 +45,9 @@ struct Capture {
   PosesTable poses;
 
   std::array<double, 2> sample_size_mm{0, 0};  // [sample] size_mm = [width, height]
-  std::array<int, 2> resolution_px{0, 0};      // [sample] resolution_px = width, or [width, height]
+  // [sample] height_mm: of the sample's surface above the board's; nullopt: "auto", to be found.
+  std::optional<double> sample_height_mm;
+  std::array<int, 2> resolution_px{0, 0};  // [sample] resolution_px = width, or [width, height]
 
   // [radiometry] encoding: auto, srgb, gamma2.2, linear, or a response curve's file (.json),
   // relative to the folder.

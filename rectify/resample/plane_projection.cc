@@ -48,6 +48,12 @@ std::optional<Eigen::Vector2d> HomographyProjection::ImageFromPlane(double x_mm,
   return Eigen::Vector2d(point.x() / point.z(), point.y() / point.z());
 }
 
+std::optional<Eigen::Vector2d> MovedProjection::ImageFromPlane(double x_mm, double y_mm) const {
+  const Eigen::Vector3d point = plane_from_plane_ * Eigen::Vector3d(x_mm, y_mm, 1);
+  if (!(point.z() > 0)) return std::nullopt;
+  return projection_.ImageFromPlane(point.x() / point.z(), point.y() / point.z());
+}
+
 HomographyProjection TopViewProjection(const SamplePlane& plane, int width_px, int height_px) {
   // Corner to corner: the extent runs from the centre of the first pixel to that of the last.
   const bool corners = plane.sampling == TexelSampling::kCornerToCorner;

@@ -42,6 +42,20 @@ class HomographyProjection : public PlaneProjection {
   Eigen::Matrix3d image_from_plane_;
 };
 
+// A projection whose plane is moved by a homography of its points first: `plane_from_plane` ·
+// (x_mm, y_mm, 1) is where the other says what is seen. What registration finds of a photograph.
+class MovedProjection : public PlaneProjection {
+ public:
+  // `projection` must outlive this.
+  MovedProjection(const PlaneProjection& projection, const Eigen::Matrix3d& plane_from_plane)
+      : projection_(projection), plane_from_plane_(plane_from_plane) {}
+  std::optional<Eigen::Vector2d> ImageFromPlane(double x_mm, double y_mm) const override;
+
+ private:
+  const PlaneProjection& projection_;
+  Eigen::Matrix3d plane_from_plane_;
+};
+
 // A picture that shows the plane already from the top: a rectified view of width_px × height_px
 // that fills the plane's extent, sampled as the plane says.
 HomographyProjection TopViewProjection(const SamplePlane& plane, int width_px, int height_px);

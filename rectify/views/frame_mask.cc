@@ -10,6 +10,7 @@ class Frame {
 
   // Whether the ray from the texel at (x, y) to `to` meets the frame.
   bool Stops(double x_mm, double y_mm, const Vec3d& to_mm) const {
+    if (height_mm_ <= 0) return false;
     const double t = height_mm_ / to_mm[2];
     if (t >= 1) return true;  // light or camera lower than the frame's top
     return Covers(x_mm + (to_mm[0] - x_mm) * t, y_mm + (to_mm[1] - y_mm) * t);

@@ -13,7 +13,7 @@ namespace glint {
 // a sheet of thickness `height_mm` with its top that far above the sample's plane; it is in the way
 // where the texel itself, or the point at that height on the ray to light or camera, lies outside
 // of the opening (OpeningInSample) made smaller by `margin_mm`. With height_mm = 0 only what lies
-// under the frame is masked.
+// under the frame is masked; below 0, of a sample that rises above the frame, likewise.
 std::vector<TexelStatus> MaskFrame(const SamplePlane& plane, const BoardRectangle& opening,
                                    double height_mm, double margin_mm, const View& view);
 

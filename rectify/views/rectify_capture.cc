@@ -31,12 +31,14 @@ void CheckSize(const fs::path& file, const Camera& camera) {
 }
 
 // Of the frame that the view shows; none without a frame. `task` and `view` must outlive it.
-FrameStatus FrameOf(const RectifyTask& task, const RectifyOptions& options, const View& view) {
+FrameStatus FrameOf(const RectifyTask& task, const RectifyOptions& options,
+                    const Rigid3& board_from_sample, const View& view) {
   if (task.board_opening_mm.empty()) return {};
   const BoardRectangle opening{task.board_opening_mm[0], task.board_opening_mm[1],
                                task.board_opening_mm[2], task.board_opening_mm[3]};
-  return [opening, &options, &view](const SamplePlane& rows) {
-    return MaskFrame(rows, opening, options.frame_height_mm, options.frame_margin_mm, view);
+  const double frame_above_sample_mm = options.frame_height_mm - board_from_sample.translation.z();
+  return [opening, frame_above_sample_mm, &options, &view](const SamplePlane& rows) {
+    return MaskFrame(rows, opening, frame_above_sample_mm, options.frame_margin_mm, view);
   };
 }
 
@@ -124,14 +126,16 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     view.view =
         ViewOf(calibration, calibrated, task.ambient, capture.work() / "calib" / "manifest.json");
     const Camera& camera = calibration.cameras[static_cast<size_t>(calibrated.camera)];
-    const CameraProjection projection(camera, calibrated.camera_from_sample);
+    const CameraProjection posed(camera, calibrated.camera_from_sample);
+    const MovedProjection projection(posed, calibrated.registration);
     ResampleOptions resample = ResampleOptionsOf(options, common.threads);
     if (camera.vignetting != std::array<double, 3>{}) resample.vignetting = camera;
     RectifiedWriter writer(stage->Output(view.file), set, view);
     guess.BeginView();
     const ViewCounts counts =
         RectifyByRows(photo.photo, projection, set.plane, resample,
-                      FrameOf(task, options, view.view), files[i], [&](const RectifiedImage& rows) {
+                      FrameOf(task, options, calibration.board_from_sample, view.view), files[i],
+                      [&](const RectifiedImage& rows) {
                         writer.Write(rows);
                         guess.AddRows(rows);
                       });

@@ -1,0 +1,174 @@
+#include "calib/capture/place_sample.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "base/parallel/parallel.h"
+#include "calib/capture/pose_source.h"
+
+namespace glint {
+namespace {
+
+// Of a sample whose height nobody measured: in the board's window or under its frame, up to some
+// 25 mm. Where it was measured it is so to a tenth, or half a millimetre.
+constexpr double kHeightSpread_mm = 10;
+constexpr double kMeasuredShare = 0.1, kMeasured_mm = 0.5;
+// A plane through a COLMAP model's points, by the sample's longer side.
+constexpr double kPlaneThroughPoints = 0.005;
+// What calibrated poses and lenses leave, by the sample's longer side: 0.2 texels of 1024.
+constexpr double kPlaceSpread = 2e-4;
+
+double Longest_mm(const Capture& capture) {
+  return std::max(capture.sample_size_mm[0], capture.sample_size_mm[1]);
+}
+
+const SamplePicture& PictureOf(const CalibSummary& summary, const CalibratedPhoto& photo) {
+  return std::find_if(summary.photos.begin(), summary.photos.end(),
+                      [&](const DetectedPhoto& p) { return p.name == photo.photo; })
+      ->picture;
+}
+
+// Where the top view's pixels lie in the picture. Of every kStep-th pixel, and between them by
+// interpolation: lenses bend little.
+class LookUpMap {
+ public:
+  LookUpMap(const Camera& camera, const Rigid3& camera_from_board, const SamplePicture& picture)
+      : camera_(camera), camera_from_board_(camera_from_board), picture_(picture) {}
+
+  void Fill(const cv::Size& size, double pixel_mm, cv::Mat* columns, cv::Mat* rows) const {
+    const cv::Size coarse(size.width / kStep + 2, size.height / kStep + 2);
+    cv::Mat x(coarse, CV_32F), y(coarse, CV_32F);
+    for (int row = 0; row < coarse.height; ++row) {
+      for (int column = 0; column < coarse.width; ++column) {
+        const Eigen::Vector2d at = InPicture(((column * kStep + 0.5) - 0.5 * size.width) * pixel_mm,
+                                             (0.5 * size.height - (row * kStep + 0.5)) * pixel_mm);
+        x.at<float>(row, column) = static_cast<float>(at.x());
+        y.at<float>(row, column) = static_cast<float>(at.y());
+      }
+    }
+    const cv::Matx23d enlarge(1.0 / kStep, 0, 0, 0, 1.0 / kStep, 0);
+    const int how = cv::INTER_LINEAR | cv::WARP_INVERSE_MAP;
+    cv::warpAffine(x, *columns, enlarge, size, how, cv::BORDER_REPLICATE);
+    cv::warpAffine(y, *rows, enlarge, size, how, cv::BORDER_REPLICATE);
+  }
+
+ private:
+  static constexpr int kStep = 8;
+
+  // Pixel centres at whole numbers; far outside where there is no image.
+  Eigen::Vector2d InPicture(double x_mm, double y_mm) const {
+    const Eigen::Vector3d point = camera_from_board_ * Eigen::Vector3d(x_mm, y_mm, 0);
+    if (!(point.z() > 0)) return {-1e6, -1e6};
+    const Eigen::Vector2d at = ImageFromCamera(camera_, point);
+    return {(at.x() - picture_.left_px) * picture_.scale - 0.5,
+            (at.y() - picture_.top_px) * picture_.scale - 0.5};
+  }
+
+  const Camera& camera_;
+  const Rigid3& camera_from_board_;
+  const SamplePicture& picture_;
+};
+
+TopView TopViewOf(const CalibSummary& summary, const CalibratedPhoto& photo, const cv::Size& size,
+                  double pixel_mm) {
+  const SamplePicture& picture = PictureOf(summary, photo);
+  const Camera& camera = summary.calibration.cameras[static_cast<size_t>(photo.camera)];
+  cv::Mat columns, rows, found;
+  LookUpMap(camera, photo.camera_from_sample, picture).Fill(size, pixel_mm, &columns, &rows);
+  const cv::Mat values(picture.height, picture.width, CV_16U,
+                       const_cast<std::uint16_t*>(picture.values.data()));
+  cv::remap(values, found, columns, rows, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  TopView view{size.width, size.height, {}, Inverse(photo.camera_from_sample).translation};
+  view.radiance.resize(found.total());
+  for (size_t i = 0; i < view.radiance.size(); ++i) {
+    const float root = static_cast<float>(found.ptr<std::uint16_t>()[i]) / 65535;
+    view.radiance[i] = root * root;
+  }
+  return view;
+}
+
+void FillPriors(const Capture& capture, const CalibOptions& options, RegistrationProblem* problem) {
+  problem->homography_sd_mm = kPlaceSpread * Longest_mm(capture);
+  const bool board = PoseSourceOf(options) == PoseSource::kBoard;
+  problem->height_sd_mm = board ? kHeightSpread_mm : kPlaneThroughPoints * Longest_mm(capture);
+  if (!capture.sample_height_mm) return;
+  problem->height_mm = *capture.sample_height_mm;
+  problem->height_sd_mm =
+      problem->height_mm == 0
+          ? 0
+          : std::max(kMeasured_mm, kMeasuredShare * std::abs(problem->height_mm));
+}
+
+void MoveToSample(const SampleRegistration& registration, Calibration* calibration) {
+  const Rigid3 board_from_sample = AssumedFromSample(registration.plane);
+  calibration->board_from_sample = board_from_sample;
+  for (size_t i = 0; i < calibration->photos.size(); ++i) {
+    CalibratedPhoto& photo = calibration->photos[i];
+    photo.camera_from_sample = photo.camera_from_sample * board_from_sample;
+    photo.registration = registration.homographies[i];
+  }
+}
+
+double Tilt_deg(const PlaneValues& plane) {
+  return std::atan(std::hypot(plane[1], plane[2])) * 180 / std::numbers::pi;
+}
+
+}  // namespace
+
+void PlaceSample(const Capture& capture, const CalibOptions& options, int threads,
+                 CalibSummary* summary) {
+  RegistrationProblem problem;
+  FillPriors(capture, options, &problem);
+  problem.sample_width_mm = capture.sample_size_mm[0];
+  problem.sample_height_mm = capture.sample_size_mm[1];
+  problem.margin = kSampleMargin;
+  const std::vector<CalibratedPhoto>& photos = summary->calibration.photos;
+  const double pixel_mm = Longest_mm(capture) / kRegistrationSide_px;
+  const cv::Size size(
+      static_cast<int>(std::lround(kSampleMargin * problem.sample_width_mm / pixel_mm)),
+      static_cast<int>(std::lround(kSampleMargin * problem.sample_height_mm / pixel_mm)));
+  problem.views.resize(photos.size());
+  ForEachPiece(static_cast<int>(photos.size()), threads, [&](int piece) {
+    const auto i = static_cast<size_t>(piece);
+    problem.views[i] = TopViewOf(*summary, photos[i], size, pixel_mm);
+  });
+  summary->placement = photos.size() < 2 ? Unregistered(problem) : RegisterSample(problem, threads);
+  MoveToSample(summary->placement, &summary->calibration);
+}
+
+Json PlacementMetrics(const CalibSummary& summary) {
+  const SampleRegistration& placement = summary.placement;
+  const auto sigma = [&](int i) { return std::sqrt(placement.plane_covariance(i, i)); };
+  return {{"height_mm", placement.plane[0]},
+          {"height_sd_mm", sigma(0)},
+          {"slope", {placement.plane[1], placement.plane[2]}},
+          {"slope_sd", {sigma(1), sigma(2)}},
+          {"tilt_deg", Tilt_deg(placement.plane)},
+          {"told_by_texture", placement.told},
+          {"windows", placement.windows},
+          {"measured", placement.measured},
+          {"displaced_before_mm", placement.displaced_before_mm},
+          {"displaced_after_mm", placement.displaced_after_mm}};
+}
+
+std::string PlacementText(const CalibSummary& summary) {
+  const SampleRegistration& placement = summary.placement;
+  if (summary.calibration.photos.size() < 2) return "";
+  const std::string plane = summary.from_board() ? "the board" : "the plane of the model's points";
+  if (!placement.told) {
+    return fmt::format(
+        "sample taken to lie {:.2g} mm above {}: it has no texture by which photographs could "
+        "tell; "
+        "measure its thickness and give [sample] height_mm\n",
+        placement.plane[0], plane);
+  }
+  return fmt::format("sample lies {:.2f} ± {:.2f} mm {} {}, tilted by {:.1f}°\n",
+                     std::abs(placement.plane[0]), placement.height_sd_mm(),
+                     placement.plane[0] < 0 ? "below" : "above", plane, Tilt_deg(placement.plane));
+}
+
+}  // namespace glint
