@@ -30,6 +30,11 @@ struct ForeignSet {
   ReflectanceConvention convention;
   bool light_power_known = true;  // false: the views' light_rgb are a first guess
   bool light_power_given = true;  // false: there is no light_rgb at all
+  // Height of the sample above the plane that the images were rectified for, where it is known.
+  std::optional<double> plane_mm;
+
+  // Renderings of the paper's synthetic geometry are in place.
+  bool photographs() const { return convention != ReflectanceConvention::Dir2019(); }
 };
 
 // `source` is a folder or a file:

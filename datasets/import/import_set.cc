@@ -7,8 +7,9 @@
 #include <stdexcept>
 
 #include "base/errors/errors.h"
+#include "datasets/import/read_image.h"
+#include "datasets/import/register_set.h"
 #include "pipeline/contract/progress.h"
-#include "rectify/linearize/encoding.h"
 #include "rectify/linearize/light_guess.h"
 #include "rectify/views/rectify_photo.h"
 
@@ -37,19 +38,6 @@ Vec3d ParsePower(const std::string& text) {
                   "'; use estimate, a number above 0, or three as r,g,b (radiance·mm²)");
 }
 
-struct PixelSize {
-  int width, height;
-};
-
-PixelSize Cropped(PixelSize image, const ForeignSet& set, const fs::path& file) {
-  if (set.crop_px == 0) return image;
-  if (set.crop_px > image.width || set.crop_px > image.height) {
-    throw UserError(file, "size", fmt::format("{}x{}", image.width, image.height),
-                    fmt::format("the central {0}x{0} pixels are wanted; see --crop", set.crop_px));
-  }
-  return {set.crop_px, set.crop_px};
-}
-
 // One pixel a texel: the values as they are.
 ResampledView CopyCentre(const LinearPhoto& photo, const SamplePlane& plane) {
   const size_t texels = static_cast<size_t>(plane.width) * plane.height;
@@ -70,10 +58,13 @@ ResampledView CopyCentre(const LinearPhoto& photo, const SamplePlane& plane) {
   return view;
 }
 
-// The image resampled to the plane; what lies beside the sample in it serves the filter at the rim.
+// The image resampled to the sample's plane, `rectified_from_sample` on the one that it was
+// rectified for; what lies beside the sample in it serves the filter at the rim.
 RectifiedImage ToPlane(const LinearPhoto& photo, const SamplePlane& plane, PixelSize sample,
-                       int threads, const fs::path& file, ViewCounts* counts) {
-  if (sample.width == plane.width && sample.height == plane.height) {
+                       const Eigen::Matrix3d& rectified_from_sample, int threads,
+                       const fs::path& file, ViewCounts* counts) {
+  const bool moved = !rectified_from_sample.isIdentity(0);
+  if (!moved && sample.width == plane.width && sample.height == plane.height) {
     RectifiedImage image = MaskView(CopyCentre(photo, plane), file, counts);
     counts->pixels_per_texel = 1;
     return image;
@@ -87,19 +78,9 @@ RectifiedImage ToPlane(const LinearPhoto& photo, const SamplePlane& plane, Pixel
   if (plane.sampling == TexelSampling::kCornerToCorner) {
     options.border_px = static_cast<double>(sample.width) / plane.width;
   }
-  return RectifyPhoto(photo, TopViewProjection(whole, photo.width(), photo.height()), plane,
-                      options, {}, file, counts);
-}
-
-LinearPhoto ReadLinear(const ForeignView& view, const std::string& encoding_name,
-                       const ImportOptions& options, bool* ldr) {
-  Photo photo = ReadPhoto(view.image);
-  *ldr = view.ldr.value_or(!photo.is_float());
-  SaturationRule rule;
-  rule.stored_level = options.saturation_level;
-  if (options.float_saturation_level > 0) rule.float_level = options.float_saturation_level;
-  const Encoding encoding = ResolveEncoding(encoding_name, view.image, photo.bits);
-  return LinearPhoto(std::move(photo), encoding, rule);
+  const HomographyProjection picture = TopViewProjection(whole, photo.width(), photo.height());
+  return RectifyPhoto(photo, MovedProjection(picture, rectified_from_sample), plane, options, {},
+                      file, counts);
 }
 
 void RequireSize(const LinearPhoto& photo, const ForeignView& view, PixelSize wanted,
@@ -118,6 +99,9 @@ void AddImportOptions(OptionSet* set, ImportOptions* options) {
   set->AddRange(
       "crop", &options->crop, 0, kLargest_px,
       "the sample is the central square with sides of this many pixels; 0: use the layout's");
+  set->AddChoice("registration", &options->registration, {"auto", "none"},
+                 "auto: find the sample's plane and bring photographs into one frame; none: take "
+                 "the views as they are, as is always done with renderings (convention dir2019)");
   set->Add("convention", &options->convention,
            "reflectance convention: photograph, dir2019, materialgan, or keywords as in "
            "docs/views.md; if omitted, the source's");
@@ -159,9 +143,7 @@ std::vector<fs::path> ImportInputs(const ForeignSet& set) {
 }
 
 SamplePlane ImportedPlane(const ForeignSet& set, const ImportOptions& options) {
-  const fs::path& first = set.views[0].image;
-  const auto [image_width, image_height] = PhotoSize(first);
-  const PixelSize sample = Cropped({image_width, image_height}, set, first);
+  const PixelSize sample = SampleSize(set);
   const double aspect = (set.width_mm / sample.width) / (set.height_mm / sample.height);
   if (std::abs(aspect - 1) > kSquareTexels) {
     throw UserError(set.description[0], "size_mm",
@@ -199,7 +181,9 @@ ImportSummary ImportSet(const ForeignSet& foreign, const ImportOptions& options,
   summary.metrics["views"] = Json::array();
   const fs::path& first = foreign.views[0].image;
   const auto [image_width, image_height] = PhotoSize(first);
-  const PixelSize size{image_width, image_height};
+  const PixelSize size{image_width, image_height}, sample = SampleSize(foreign);
+  const SampleRegistration registration = RegisterSet(foreign, options, set.plane, common.threads);
+  summary.metrics["registration"] = RegistrationMetrics(registration, set.plane);
   LightGuess guess(set.plane, set.convention.falloff);
   Progress progress("import", static_cast<int64_t>(foreign.views.size()));
   for (size_t i = 0; i < foreign.views.size(); ++i) {
@@ -208,12 +192,14 @@ ImportSummary ImportSet(const ForeignSet& foreign, const ImportOptions& options,
     view.name = ViewName(i);
     view.file = view.name + ".exr";
     view.photo = source.name;
-    view.view = source.view;
-    const LinearPhoto photo = ReadLinear(source, foreign.encoding, options, &view.ldr);
+    view.view = InSampleFrame(source.view, registration.plane);
+    const LinearPhoto photo = ReadLinear(source, foreign.encoding, options);
+    view.ldr = source.ldr.value_or(!photo.is_float());
     RequireSize(photo, source, size, first);
     ViewCounts counts;
-    const RectifiedImage image = ToPlane(photo, set.plane, Cropped(size, foreign, first),
-                                         common.threads, source.image, &counts);
+    const RectifiedImage image =
+        ToPlane(photo, set.plane, sample, RectifiedFromSample(registration, source.view, i),
+                common.threads, source.image, &counts);
     WriteRectifiedImage(stage->Output(view.file), image, set, view);
     guess.Add(image);
     Json metrics = {{"name", view.name}};

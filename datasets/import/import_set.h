@@ -13,11 +13,12 @@
 namespace glint {
 
 struct ImportOptions {
-  int size = 0;             // width of the views in texels; 0: as the images are
-  int crop = 0;             // the sample is the central crop × crop pixels; 0: as the layout says
-  std::string convention;   // empty: as the source says
-  std::string light_power;  // "estimate", a number, "r,g,b"; empty: as the source says
-  std::string encoding;     // empty: as the source says
+  int size = 0;  // width of the views in texels; 0: as the images are
+  int crop = 0;  // the sample is the central crop × crop pixels; 0: as the layout says
+  std::string registration = "auto";  // or none
+  std::string convention;             // empty: as the source says
+  std::string light_power;            // "estimate", a number, "r,g,b"; empty: as the source says
+  std::string encoding;               // empty: as the source says
   double saturation_level = 0.995;  // stored value from which 8 and 16 bit images count as clipped
   double float_saturation_level = 0;  // the same for floats; 0: they never clip
 };

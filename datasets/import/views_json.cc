@@ -100,6 +100,10 @@ ForeignSet ReadViewsJson(const fs::path& file) {
   if (const Json* ambient = fields.Find("ambient")) {
     common.ambient_rgb = Vec(fields.Numbers("ambient", *ambient, 3, true, 0));
   }
+  if (const Json* plane = fields.Find("plane_mm")) {
+    if (!plane->is_number()) fields.Reject("plane_mm", *plane, "a number is expected");
+    set.plane_mm = plane->get<double>();
+  }
   const Json& views = fields.Require("views", "give a list with an object for each image");
   if (!views.is_array() || views.empty() || views.size() > kMaxViews) {
     fields.Reject("views", views, "a list of 1 to 10000 objects is expected");
