@@ -77,13 +77,14 @@ TopView TopViewOf(const CalibSummary& summary, const CalibratedPhoto& photo, con
                   double pixel_mm) {
   const SamplePicture& picture = PictureOf(summary, photo);
   const Camera& camera = summary.calibration.cameras[static_cast<size_t>(photo.camera)];
+  TopView view{size.width, size.height, {}, Inverse(photo.camera_from_sample).translation};
+  view.radiance.resize(static_cast<size_t>(size.area()));
+  if (picture.values.empty()) return view;  // it does not show the sample
   cv::Mat columns, rows, found;
   LookUpMap(camera, photo.camera_from_sample, picture).Fill(size, pixel_mm, &columns, &rows);
   const cv::Mat values(picture.height, picture.width, CV_16U,
                        const_cast<std::uint16_t*>(picture.values.data()));
   cv::remap(values, found, columns, rows, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  TopView view{size.width, size.height, {}, Inverse(photo.camera_from_sample).translation};
-  view.radiance.resize(found.total());
   for (size_t i = 0; i < view.radiance.size(); ++i) {
     const float root = static_cast<float>(found.ptr<std::uint16_t>()[i]) / 65535;
     view.radiance[i] = root * root;

@@ -21,7 +21,7 @@ std::vector<cv::Rect> SomeWindows(const cv::Size& size) {
       static_cast<int>(std::lround(kTextureWindow * std::max(size.width, size.height)));
   std::vector<cv::Rect> some;
   for (const cv::Rect& window : WindowsOf(size, width, width)) {
-    const bool inside = window.x / width % kEveryOther == 1 && window.y / width % kEveryOther == 1;
+    const bool inside = window.x / width % kEveryOther == 0 && window.y / width % kEveryOther == 0;
     if (inside) some.push_back(window);
   }
   return some;

@@ -45,6 +45,12 @@ FactorModel Scaled(const Eigen::MatrixXd& model, const Eigen::MatrixXd& sample,
 
 }  // namespace
 
+int FactorsOf(const Eigen::MatrixXd& sample) {
+  constexpr double kLeastTexture = 1e-4;  // of the largest variance
+  const double least = kLeastTexture * sample.diagonal().maxCoeff();
+  return FactorsOf(static_cast<int>((sample.diagonal().array() > least).count()));
+}
+
 FactorModel FitFactors(const Eigen::MatrixXd& sample, int factors) {
   const Eigen::MatrixXd correlation = CorrelationOf(sample);
   Eigen::VectorXd noise = Eigen::VectorXd::Constant(sample.rows(), kFirstNoise);

@@ -22,6 +22,8 @@ struct FactorModel {
 // The factors that so many views can tell, at most three: (views − factors)² > views + factors
 // (Lawley & Maxwell 1971). 0: none.
 int FactorsOf(int views);
+// Of those that show any texture, more than a hundredth of the most.
+int FactorsOf(const Eigen::MatrixXd& sample);
 
 // Maximum likelihood by the principal-factor iteration (Lawley & Maxwell), in a number of steps
 // that is fixed. `sample` is the covariance of the views' values; views without any are left as

@@ -25,6 +25,9 @@ constexpr Round kPairRounds[] = {{1.0 / 4, UnknownPlaces::kPlane},
 // Photographs that are expected to be nearer their places than this, in pixels, need no pairs: what
 // views have in common reaches as far.
 constexpr double kNeedsPairs_px = 1;
+// What shading that moves with the light makes pairs say of a plane, by the longer side: synthetic
+// leather seems to lie so much too low.
+constexpr double kPairsHeight = 0.005;
 // Then by what all views have in common.
 constexpr int kCommonRounds = 3;  // or until nothing moves any more
 constexpr double kStill_px = 0.1;
@@ -56,7 +59,7 @@ class Registration {
     places_.plane = CoarsePlane(problem_, fine_, threads_);
     const double reach_mm = kNeedsPairs_px * pictures_.PixelSide_mm(pictures_.OwnSize());
     const bool few = FactorsOf(pictures_.views()) == 0;
-    if (few || problem_.homography_sd_mm > reach_mm) ComparePairs(&result);
+    if (few || problem_.homography_sd_mm > reach_mm) ComparePairs(few, &result);
     for (int round = 0; round < kCommonRounds && !few; ++round) {
       const SamplePlaces before = places_;
       CompareInCommon(round > 0, &result);
@@ -72,15 +75,24 @@ class Registration {
   }
 
  private:
-  void ComparePairs(SampleRegistration* result) {
+  // Of few views the plane alone, as far as shading lets pairs tell it.
+  void ComparePairs(bool few, SampleRegistration* result) {
     const auto pairs = PairsOf(pictures_.views());
     for (const Round& round : kPairRounds) {
+      if (few && round.unknown != UnknownPlaces::kPlane) break;
       const std::vector<WindowShift> shifts = Shifts(round.window, pairs, nullptr);
       if (shifts.empty()) return;
       result->told = true;
       Take(SolvePlaces(problem_, pictures_, places_, spreads_, shifts, pictures_.OwnSize(),
                        round.unknown),
            result);
+    }
+    if (!few || problem_.height_sd_mm <= 0) return;
+    const double longest_mm = std::max(problem_.sample_width_mm, problem_.sample_height_mm);
+    const Eigen::Vector3d shading(kPairsHeight * longest_mm, kPairsHeight, kPairsHeight);
+    result->plane_covariance.diagonal() += shading.cwiseAbs2();
+    if (LiesAsSaid(problem_, {places_, spreads_, result->plane_covariance})) {
+      places_.plane = {problem_.height_mm, 0, 0};
     }
   }
 

@@ -27,14 +27,17 @@ std::vector<double> Steps(double centre, double step, int each_way) {
 Eigen::MatrixXd HeightMisfits(const DetailPictures& pictures, const SamplePlaces& places,
                               const cv::Size& size, const std::vector<cv::Rect>& windows,
                               const std::vector<double>& heights, int threads) {
-  const int factors = std::max(1, FactorsOf(pictures.views()));
-  Eigen::MatrixXd misfits(heights.size(), windows.size());
+  const int least = FactorsOf(pictures.views()) == 0 ? 1 : 0;
+  Eigen::MatrixXd misfits = Eigen::MatrixXd::Zero(heights.size(), windows.size());
   ForEachPiece(static_cast<int>(windows.size()), threads, [&](int window) {
     SamplePlaces at = places;
+    int factors = 0;
     for (size_t i = 0; i < heights.size(); ++i) {
       at.plane[0] = places.plane[0] + heights[i];
       const Eigen::MatrixXd covariance =
           TexturesOf(pictures, at, size, windows[static_cast<size_t>(window)]).Covariance();
+      if (i == 0) factors = std::max(least, FactorsOf(covariance));
+      if (factors == 0) return;
       misfits(static_cast<Eigen::Index>(i), window) = FitFactors(covariance, factors).misfit;
     }
   });

@@ -27,7 +27,7 @@ inline constexpr double kPixelsPerSample = 8;
 
 // How little likely what is seen in windows (columns) is at heights (rows) above the places' plane:
 // −2 log likelihood of a texel, up to a constant, by factor analysis with as many factors as the
-// views can tell, and at least one.
+// views can tell, or one where all views are too few for any. 0 where too few show texture.
 Eigen::MatrixXd HeightMisfits(const DetailPictures& pictures, const SamplePlaces& places,
                               const cv::Size& size, const std::vector<cv::Rect>& windows,
                               const std::vector<double>& heights, int threads);

@@ -1,13 +1,23 @@
 #include "calib/registration/window_textures.h"
 
+#include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 namespace glint {
+namespace {
+
+constexpr double kRim = 1.0 / 32;  // of the sample's longer side: 16 pixels of 512
+
+}  // namespace
 
 std::vector<cv::Rect> WindowsOf(const cv::Size& size, int width, int step) {
   std::vector<cv::Rect> windows;
-  for (int y = 0; y + width <= size.height; y += step) {
-    for (int x = 0; x + width <= size.width; x += step) windows.emplace_back(x, y, width, width);
+  const int rim = static_cast<int>(std::lround(kRim * std::max(size.width, size.height)));
+  for (int y = rim; y + width + rim <= size.height; y += step) {
+    for (int x = rim; x + width + rim <= size.width; x += step) {
+      windows.emplace_back(x, y, width, width);
+    }
   }
   return windows;
 }

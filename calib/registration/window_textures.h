@@ -11,7 +11,8 @@ namespace glint {
 // Of windows in which textures are compared, in parts of the sample's longer side.
 inline constexpr double kTextureWindow = 1.0 / 8;
 
-// Windows of `width` pixels every `step` of them, of pictures of `size`.
+// Windows of `width` pixels every `step` of them, of pictures of `size`, away from the rim: what is
+// beside the sample reaches a little into its high-passed detail.
 std::vector<cv::Rect> WindowsOf(const cv::Size& size, int width, int step);
 
 struct WindowTextures {
