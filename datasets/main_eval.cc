@@ -186,7 +186,7 @@ int RunViews(int argc, char** argv, const ProgramInfo& info) {
       Json json = {{"name", view.name}, {"photo", view.photo}};
       json.update(JsonOf(lines.back()));
       result.json["views"].push_back(json);
-      if (!pairs.empty()) WritePair(pairs / (view.name + ".png"), photograph, rendered);
+      if (!pairs.empty()) WritePair(pairs / (view.name + ".png"), photograph, view.ldr, rendered);
     }
     lines.push_back(MeanOf(lines));
     result.text = ErrorsText(lines) + LooksTableText(lines);

@@ -4,6 +4,7 @@
 #include "base/errors/errors.h"
 #include "calib/guidance/rectified_guidance.h"
 #include "datasets/import/import_set.h"
+#include "datasets/import/register_set.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/files/files.h"
 #include "rectify/views/rectify_capture.h"
@@ -33,6 +34,7 @@ ProgramResult Summarise(const fs::path& folder, const ForeignSet& foreign,
   result.text +=
       fmt::format("  light power {:.6g}, {:.6g}, {:.6g} ({})\n", power[0], power[1], power[2],
                   set.light_power_known ? "known" : "a first guess, fitted with the maps");
+  result.text += RegistrationText(summary.metrics["registration"]);
   for (size_t i = 0; i < set.views.size(); ++i) {
     const Json& metrics = summary.metrics["views"][i];
     result.text +=

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "datasets/evaluation/view_error.h"
 #include "datasets/statistics/distance.h"
 #include "fitting/photographs/photographs.h"
 #include "fitting/reflectance/log_radiance.h"
@@ -38,16 +39,6 @@ ValueTable LogTable() {
   ValueTable table = RadianceTable();
   for (double& value : table) value = std::log(value + kLogOffset);
   return table;
-}
-
-// Texels that the photograph says something of.
-std::vector<bool> ToldTexels(const RectifiedImage& photograph, bool ldr) {
-  const Photograph asked{{}, ldr, photograph.rgb, photograph.mask};
-  std::vector<bool> told(photograph.mask.size());
-  for (size_t i = 0; i < told.size(); ++i) {
-    told[i] = photograph.mask[i] >= 0.5f || ReachesLimit(asked, i);
-  }
-  return told;
 }
 
 // What a screen shows of radiance, by a table: a power for every sample takes as long as all else.

@@ -62,6 +62,15 @@ ViewError CompareView(std::span<const float> rendered, const RectifiedImage& pho
   return error;
 }
 
+std::vector<bool> ToldTexels(const RectifiedImage& photograph, bool ldr) {
+  const Photograph asked{{}, ldr, photograph.rgb, photograph.mask};
+  std::vector<bool> told(photograph.mask.size());
+  for (size_t i = 0; i < told.size(); ++i) {
+    told[i] = photograph.mask[i] >= 0.5f || ReachesLimit(asked, i);
+  }
+  return told;
+}
+
 std::vector<float> LogResiduals(std::span<const float> rendered, const RectifiedImage& photograph,
                                 bool ldr) {
   const size_t texels = photograph.mask.size();
@@ -169,17 +178,19 @@ std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
   return rendered;
 }
 
-void WritePair(const fs::path& file, const RectifiedImage& photograph,
+void WritePair(const fs::path& file, const RectifiedImage& photograph, bool ldr,
                std::span<const float> rendered) {
   constexpr float kDifferenceGain = 4;
   const int width = photograph.width;
   const size_t texels = photograph.mask.size();
+  const std::vector<bool> told = ToldTexels(photograph, ldr);
   Image image(3 * width, photograph.height, {"R", "G", "B"});
   for (int c = 0; c < 3; ++c) {
     for (size_t i = 0; i < texels; ++i) {
       const size_t row = i / width, column = i % width;
       float* out = image.channel(c).data() + row * image.width + column;
-      const float photo = std::clamp(photograph.rgb[c * texels + i], 0.0f, 1.0f);
+      const float seen = told[i] ? photograph.rgb[c * texels + i] : rendered[c * texels + i];
+      const float photo = std::clamp(seen, 0.0f, 1.0f);
       const float render = std::clamp(rendered[c * texels + i], 0.0f, 1.0f);
       const float values[3] = {photo, render, kDifferenceGain * std::abs(photo - render)};
       for (int panel = 0; panel < 3; ++panel) {

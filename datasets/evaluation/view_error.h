@@ -28,6 +28,10 @@ struct ViewError {
 // differ.
 ViewError CompareView(std::span<const float> rendered, const RectifiedImage& photograph, bool ldr);
 
+// Texels that the photograph says something of: usable ones, and those that are not for being
+// clipped (ReachesLimit).
+std::vector<bool> ToldTexels(const RectifiedImage& photograph, bool ldr);
+
 // log(I + 0.01) − log(R + 0.01) [3·H·W] of the photograph and the rendering, NaN where the mask is
 // below 0.5. Sizes and `ldr` as in CompareView.
 std::vector<float> LogResiduals(std::span<const float> rendered, const RectifiedImage& photograph,
@@ -64,8 +68,9 @@ std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
                              const RectifiedView& view, int threads);
 
 // Writes FOLDER/NAME.png: photograph, rendering and four times their absolute difference, side by
-// side, each clipped to [0, 1], gamma 2.2.
-void WritePair(const std::filesystem::path& file, const RectifiedImage& photograph,
+// side, each clipped to [0, 1], gamma 2.2. Where the photograph says nothing, the rendering stands
+// in its place, as in CompareLooks().
+void WritePair(const std::filesystem::path& file, const RectifiedImage& photograph, bool ldr,
                std::span<const float> rendered);
 
 }  // namespace glint

@@ -1,5 +1,7 @@
 #include "datasets/import/register_set.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -95,7 +97,8 @@ View InSampleFrame(View view, const PlaneValues& sample_plane) {
 Json RegistrationMetrics(const SampleRegistration& registration, const SamplePlane& plane) {
   const double texel_mm = plane.width_mm / plane.width;
   const auto sigma = [&](int i) { return std::sqrt(registration.plane_covariance(i, i)); };
-  return {{"height_mm", registration.plane[0]},
+  return {{"told_by_texture", registration.told},
+          {"height_mm", registration.plane[0]},
           {"height_sd_mm", sigma(0)},
           {"slope", {registration.plane[1], registration.plane[2]}},
           {"slope_sd", {sigma(1), sigma(2)}},
@@ -103,6 +106,16 @@ Json RegistrationMetrics(const SampleRegistration& registration, const SamplePla
           {"measured", registration.measured},
           {"displaced_before_texel", registration.displaced_before_mm / texel_mm},
           {"displaced_after_texel", registration.displaced_after_mm / texel_mm}};
+}
+
+std::string RegistrationText(const Json& metrics) {
+  if (!metrics["told_by_texture"].get<bool>()) return "";
+  return fmt::format(
+      "  sample {:.2f} ± {:.2f} mm above its plane; photographs displaced by {:.2f} texels, after "
+      "registration {:.2f}\n",
+      metrics["height_mm"].get<double>(), metrics["height_sd_mm"].get<double>(),
+      metrics["displaced_before_texel"].get<double>(),
+      metrics["displaced_after_texel"].get<double>());
 }
 
 }  // namespace glint

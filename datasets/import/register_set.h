@@ -1,6 +1,8 @@
 // Where the sample lies in rectified views of another program, and what brings them into one frame.
 #pragma once
 
+#include <string>
+
 #include "calib/registration/register_sample.h"
 #include "datasets/import/import_set.h"
 
@@ -21,5 +23,7 @@ View InSampleFrame(View view, const PlaneValues& sample_plane);
 
 // For the manifest. Displacements are in texels of the views.
 Json RegistrationMetrics(const SampleRegistration& registration, const SamplePlane& plane);
+// A line of it for people; "" where nothing was sought or told.
+std::string RegistrationText(const Json& metrics);
 
 }  // namespace glint
