@@ -54,6 +54,20 @@ struct SeenAt {
   }
 };
 
+// By how much a plane seems higher where photographs are out of place by one millimetre each.
+double HeightOfDisplacement(const RegistrationProblem& problem) {
+  const auto count = static_cast<double>(problem.views.size());
+  Eigen::Vector2d mean(0, 0);
+  double squares = 0;
+  for (const TopView& view : problem.views) {
+    const Eigen::Vector2d tangents = view.camera_mm.head<2>() / view.camera_mm.z();
+    mean += tangents / count;
+    squares += tangents.squaredNorm();
+  }
+  // Least squares over the tangents' two components.
+  return 1 / std::sqrt(std::max(squares - count * mean.squaredNorm(), 1e-12));
+}
+
 double Longest_mm(const RegistrationProblem& problem) {
   return std::max(problem.sample_width_mm, problem.sample_height_mm);
 }
@@ -114,7 +128,8 @@ PlaceSolution FitPlane(const RegistrationProblem& problem, const SamplePlaces& s
     }
     solution.plane_covariance = CovarianceOfBlock(plane, &fit);
   }
-  const double common_mm = kCommonHeight * Longest_mm(problem);
+  const double displaced_mm = spreads[0] * start.unit_mm * HeightOfDisplacement(problem);
+  const double common_mm = std::hypot(kCommonHeight * Longest_mm(problem), displaced_mm);
   const double common_slope = common_mm / Longest_mm(problem);
   const Eigen::Vector3d common(common_mm, common_slope, common_slope);
   solution.plane_covariance.diagonal() += common.cwiseAbs2();
@@ -122,6 +137,7 @@ PlaceSolution FitPlane(const RegistrationProblem& problem, const SamplePlaces& s
 }
 
 bool LiesAsSaid(const RegistrationProblem& problem, const PlaceSolution& found) {
+  if (!problem.often_as_said) return false;
   const Eigen::Vector3d off(found.places.plane[0] - problem.height_mm, found.places.plane[1],
                             found.places.plane[2]);
   const Eigen::LLT<Eigen::Matrix3d> root(found.plane_covariance);

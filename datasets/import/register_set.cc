@@ -66,6 +66,7 @@ SampleRegistration RegisterSet(const ForeignSet& set, const ImportOptions& optio
   const bool wanted = options.registration == "auto" && set.photographs() && set.views.size() > 1;
   problem.height_mm = set.plane_mm.value_or(0);
   problem.height_sd_mm = !wanted || set.plane_mm ? 0 : kHeightSpread * longest_mm;
+  problem.often_as_said = false;
   problem.homography_sd_mm = wanted ? kPlaceSpread * longest_mm : 0;
   if (!wanted) return Unregistered(problem);
   const PixelSize sample = SampleSize(set);

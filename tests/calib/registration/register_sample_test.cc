@@ -172,6 +172,7 @@ TEST(RegisterSample, PhotographsOutOfPlaceAreBroughtTogether) {
   RegistrationProblem problem = ProblemOf(scene);
   problem.height_sd_mm = 2;
   problem.homography_sd_mm = 0.4;
+  problem.often_as_said = false;
   const SampleRegistration found = RegisterSample(problem, 2);
   // Where a view shows the sample's centre, less where it is: the same in all views.
   Eigen::Vector2d mean(0, 0);
