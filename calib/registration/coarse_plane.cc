@@ -16,11 +16,11 @@ constexpr int kEveryOther = 2;   // windows along each axis
 constexpr double kReach_sd = 3;  // of the prior
 constexpr int kMostEachWay = 100;
 
-std::vector<cv::Rect> SomeWindows(const cv::Size& size) {
+std::vector<cv::Rect> SomeWindows(const DetailPictures& pictures, const cv::Size& size) {
   const int width =
       static_cast<int>(std::lround(kTextureWindow * std::max(size.width, size.height)));
   std::vector<cv::Rect> some;
-  for (const cv::Rect& window : WindowsOf(size, width, width)) {
+  for (const cv::Rect& window : WindowsOf(pictures, size, width, width)) {
     const bool inside = window.x / width % kEveryOther == 0 && window.y / width % kEveryOther == 0;
     if (inside) some.push_back(window);
   }
@@ -33,7 +33,7 @@ PlaneValues CoarsePlane(const RegistrationProblem& problem, const DetailPictures
                         int threads) {
   const PlaneValues expected = {problem.height_mm, 0, 0};
   const cv::Size size = pictures.SizeOf(kSide_px);
-  const std::vector<cv::Rect> windows = SomeWindows(size);
+  const std::vector<cv::Rect> windows = SomeWindows(pictures, size);
   const double parallax = LargestParallax(pictures);
   if (problem.height_sd_mm <= 0 || windows.empty() || !(parallax > 0)) return expected;
   const double step_mm = pictures.PixelSide_mm(size) / parallax;

@@ -24,6 +24,8 @@ class DetailPictures {
   DetailPictures(const RegistrationProblem& problem, double coarse);
 
   int views() const { return static_cast<int>(details_.size()); }
+  // Whether the views show what is beside the sample.
+  bool surrounded() const { return problem_.margin > 1; }
   const Eigen::Vector3d& camera_mm(int view) const {
     return problem_.views[static_cast<size_t>(view)].camera_mm;
   }

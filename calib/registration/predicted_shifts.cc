@@ -99,7 +99,7 @@ std::vector<PredictedShift> PredictedShifts(const DetailPictures& pictures,
   if (pictures.views() < 3) return {};
   const int width =
       2 * static_cast<int>(std::lround(0.5 * kTextureWindow * std::max(size.width, size.height)));
-  const std::vector<cv::Rect> rects = WindowsOf(size, width, width / 2);
+  const std::vector<cv::Rect> rects = WindowsOf(pictures, size, width, width / 2);
   std::vector<std::vector<PredictedShift>> by_window(rects.size());
   ForEachPiece(static_cast<int>(rects.size()), threads, [&](int piece) {
     const auto i = static_cast<size_t>(piece);

@@ -34,8 +34,8 @@ struct RegistrationProblem {
   // Gaussian priors. `height_sd_mm` 0: the plane is held at `height_mm`, without slopes.
   double height_mm = 0, height_sd_mm = 1;
   double slope_sd = 0.02;
-  // Whether samples that lie exactly in the plane z = height_mm are as usual as all others: those on
-  // a board are, pictures that somebody rectified are not.
+  // Whether samples that lie exactly in the plane z = height_mm are as usual as all others: those
+  // on a board are, pictures that somebody rectified are not.
   bool often_as_said = true;
   // Displacement of a photograph's corners beside the plane; 0: none.
   double homography_sd_mm = 0;

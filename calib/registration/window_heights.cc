@@ -63,7 +63,7 @@ std::vector<WindowHeight> WindowHeights(const DetailPictures& pictures, const Sa
   const int width =
       static_cast<int>(std::lround(kTextureWindow * std::max(size.width, size.height)));
   std::vector<cv::Rect> windows;
-  for (const cv::Rect& window : WindowsOf(size, width, width)) {
+  for (const cv::Rect& window : WindowsOf(pictures, size, width, width)) {
     // Every other one, like a chessboard's white squares.
     if ((window.x / width + window.y / width) % 2 == 0) windows.push_back(window);
   }

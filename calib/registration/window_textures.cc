@@ -11,9 +11,12 @@ constexpr double kRim = 1.0 / 32;  // of the sample's longer side: 16 pixels of 
 
 }  // namespace
 
-std::vector<cv::Rect> WindowsOf(const cv::Size& size, int width, int step) {
+std::vector<cv::Rect> WindowsOf(const DetailPictures& pictures, const cv::Size& size, int width,
+                                int step) {
   std::vector<cv::Rect> windows;
-  const int rim = static_cast<int>(std::lround(kRim * std::max(size.width, size.height)));
+  const int rim = pictures.surrounded()
+                      ? static_cast<int>(std::lround(kRim * std::max(size.width, size.height)))
+                      : 0;
   for (int y = rim; y + width + rim <= size.height; y += step) {
     for (int x = rim; x + width + rim <= size.width; x += step) {
       windows.emplace_back(x, y, width, width);
