@@ -22,9 +22,9 @@ constexpr Round kPairRounds[] = {{1.0 / 4, UnknownPlaces::kPlane},
                                  {1.0 / 4, UnknownPlaces::kTranslations},
                                  {3.0 / 16, UnknownPlaces::kPlaneAndAffine},
                                  {1.0 / 8, UnknownPlaces::kPlaneAndHomographies}};
-// Photographs that are expected to be nearer their places than this, in pixels, need no pairs: what
-// views have in common reaches as far.
-constexpr double kNeedsPairs_px = 1;
+// Photographs that are expected to be nearer their places than this, in parts of the longer side,
+// need no pairs: what views have in common reaches as far, a pixel of 512.
+constexpr double kNeedsPairs = 1.0 / 512;
 // What shading that moves with the light makes pairs say of a plane, by the longer side: synthetic
 // leather seems to lie so much too low.
 constexpr double kPairsHeight = 0.005;
@@ -57,9 +57,11 @@ class Registration {
     spreads_.fill(problem_.homography_sd_mm / places_.unit_mm);
     result.displaced_before_mm = Displaced_mm(&result);
     places_.plane = CoarsePlane(problem_, fine_, threads_);
-    const double reach_mm = kNeedsPairs_px * pictures_.PixelSide_mm(pictures_.OwnSize());
+    const double reach_mm = kNeedsPairs * 2 * places_.unit_mm;
     const bool few = FactorsOf(pictures_.views()) == 0;
-    if (few || problem_.homography_sd_mm > reach_mm) ComparePairs(few, &result);
+    const bool loose = problem_.homography_sd_mm > reach_mm;
+    if (few && loose) return result;  // of two or three, all could be displaced by anything
+    if (few || loose) ComparePairs(few, &result);
     for (int round = 0; round < kCommonRounds && !few; ++round) {
       const SamplePlaces before = places_;
       CompareInCommon(round > 0, &result);

@@ -128,6 +128,34 @@ TEST_F(ImportProgram, ViewsJsonBecomesARectifiedSet) {
   }
 }
 
+TEST_F(ImportProgram, AKnownPlaneIsTakenAndCamerasAreInItsFrame) {
+  Json json = ViewsJson();
+  json["plane_mm"] = 2;
+  WriteViews(json);
+  ASSERT_EQ(Import().code, 0);
+  const double stated_mm = json["views"][0]["camera_in_sample_mm"][2].get<double>();
+  EXPECT_NEAR(Set().views[0].view.camera_in_sample_mm[2], stated_mm - 2, 1e-9);
+  const Manifest manifest = ReadManifest(views() / "manifest.json");
+  EXPECT_EQ(manifest.metrics["registration"]["height_mm"].get<double>(), 2);
+}
+
+TEST_F(ImportProgram, WithoutRegistrationImagesStayAsTheyAre) {
+  WriteViews(ViewsJson());
+  ASSERT_EQ(Import({"--registration", "none"}).code, 0);
+  const RectifiedSet set = Set();
+  const RectifiedImage image = ReadRectifiedImage(set, set.views[1]);
+  for (const int row : {0, 20, 47}) {
+    const double expected = std::pow((Stored(1, row, 17) + 0.055) / 1.055, 2.4);
+    EXPECT_NEAR(image.rgb[static_cast<size_t>(row) * kSide + 17], expected, 1e-4);
+  }
+}
+
+TEST_F(ImportProgram, APlaneThatIsNoNumberIsRefused) {
+  Json json = ViewsJson();
+  json["plane_mm"] = "thick";
+  ExpectViewsRejected(json, HasSubstr("plane_mm"));
+}
+
 TEST_F(ImportProgram, TheCaptureCanBeReadAndHasNoPhotosOrBoard) {
   WriteViews(ViewsJson());
   ASSERT_EQ(Import({"--size", "24"}).code, 0);
