@@ -17,6 +17,7 @@ cv::Rect PartOf(const Photo& photo, const std::vector<CornerObservation>& corner
                 const std::array<double, 2>& sample_size_mm) {
   const cv::Rect all(0, 0, photo.image.width, photo.image.height);
   std::vector<PlanePoint> points;
+  points.reserve(corners.size());
   for (const CornerObservation& corner : corners) {
     points.push_back({corner.position_in_sample_mm, corner.point_px});
   }

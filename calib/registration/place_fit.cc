@@ -105,11 +105,12 @@ PlaceSolution FitPlane(const RegistrationProblem& problem, const SamplePlaces& s
   const double least_mm = kLeastHeightSigma * Longest_mm(problem);
   double sigma_mm = 0;
   std::vector<double> off;
+  off.reserve(heights.size());
   for (const WindowHeight& window : heights) off.push_back(std::abs(window.height_mm));
   for (int pass = 0; pass < 3; ++pass) {
     sigma_mm = std::max(least_mm, Median(off) / kMedianOfNormal);
-    ceres::Problem fit;
-    auto* loss = RobustLoss(1);
+    const auto loss = RobustLoss(1);
+    ceres::Problem fit(SharingLosses());
     double* plane = solution.places.plane.data();
     off.clear();
     for (const WindowHeight& window : heights) {
@@ -119,7 +120,7 @@ PlaceSolution FitPlane(const RegistrationProblem& problem, const SamplePlaces& s
                                start.plane[2] * window.point_mm.y();
       fit.AddResidualBlock(new ceres::AutoDiffCostFunction<HeightAt, 1, 3>(
                                new HeightAt{window.point_mm, height_mm, sigma_mm}),
-                           loss, plane);
+                           loss.get(), plane);
     }
     AddPrior<3>({problem.height_mm, 0, 0},
                 {problem.height_sd_mm, problem.slope_sd, problem.slope_sd}, plane, &fit);
@@ -176,12 +177,13 @@ PlaceSolution FitHomographies(const RegistrationProblem& problem, const DetailPi
     }
     const double scale = std::sqrt(
         std::max(Median(squares) / kMedianOfSquaredPair, std::numeric_limits<double>::min()));
-    ceres::Problem fit;
-    auto* loss = RobustLoss(1 / kTimesCounted);
+    const auto loss = RobustLoss(1 / kTimesCounted);
+    ceres::Problem fit(SharingLosses());
     for (size_t i = 0; i < seen.size(); ++i) {
       SeenAt* at = new SeenAt(seen[i]);
       at->root /= scale;
-      fit.AddResidualBlock(new ceres::AutoDiffCostFunction<SeenAt, 2, 8>(at), loss, homography(i));
+      fit.AddResidualBlock(new ceres::AutoDiffCostFunction<SeenAt, 2, 8>(at), loss.get(),
+                           homography(i));
     }
     for (HomographyValues& values : solution.places.homographies) {
       if (!fit.HasParameterBlock(values.data())) continue;

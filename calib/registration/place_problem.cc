@@ -146,15 +146,15 @@ class PlaceProblem {
   double* Homography(int view) { return places_.homographies[static_cast<size_t>(view)].data(); }
 
   void Run(double sigma_mm, bool with_covariance) {
-    ceres::Problem problem;
+    const auto loss = RobustLoss(share_);
+    ceres::Problem problem(SharingLosses());
     // A displacement counts by its response, and so that what is
     // counted several times has the weight of once.
-    auto* loss = RobustLoss(share_);
     for (const WindowShift& shift : shifts_) {
       const double weight = std::sqrt(shift.response / mean_response_) / sigma_mm;
       const double* const start[] = {places_.plane.data(), Homography(shift.first),
                                      Homography(shift.second)};
-      problem.AddResidualBlock(new LinearSamePoint(CostOf(shift), start, weight), loss,
+      problem.AddResidualBlock(new LinearSamePoint(CostOf(shift), start, weight), loss.get(),
                                places_.plane.data(), Homography(shift.first),
                                Homography(shift.second));
     }

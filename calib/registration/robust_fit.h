@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 namespace glint {
@@ -29,9 +30,15 @@ void AddPrior(const std::array<double, N>& value, const std::array<double, N>& s
       nullptr, block);
 }
 
-// Cauchy's loss of residuals in σ, each counted `share` times.
-inline ceres::LossFunction* RobustLoss(double share) {
-  return new ceres::ScaledLoss(new ceres::CauchyLoss(1), share, ceres::TAKE_OWNERSHIP);
+// Cauchy's loss of residuals in σ, each counted `share` times. Problems leave it to its owner.
+inline std::unique_ptr<ceres::LossFunction> RobustLoss(double share) {
+  return std::make_unique<ceres::ScaledLoss>(new ceres::CauchyLoss(1), share,
+                                             ceres::TAKE_OWNERSHIP);
+}
+inline ceres::Problem::Options SharingLosses() {
+  ceres::Problem::Options options;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  return options;
 }
 
 inline void SolveRobustly(ceres::Problem* problem) {

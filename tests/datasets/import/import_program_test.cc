@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "base/errors/errors.h"
 #include "datasets/import/import_set.h"
@@ -76,7 +77,7 @@ class ImportProgram : public testing::Test {
   // Runs, expects exit code 2 and a message, and that nothing was written.
   void ExpectRejected(const testing::Matcher<std::string>& message,
                       std::vector<std::string> options = {}) {
-    const test::Outcome outcome = Import(options);
+    const test::Outcome outcome = Import(std::move(options));
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, message);
     EXPECT_FALSE(fs::exists(capture() / "capture.toml"));
