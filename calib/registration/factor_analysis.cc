@@ -12,7 +12,6 @@ constexpr int kMostFactors = 3;  // albedo and two slopes
 constexpr int kSteps = 10;       // misfits change by less than theirs from place to place after it
 constexpr double kLeastNoise = 0.003;  // of a view's variance: JPEG and resampling
 constexpr double kFirstNoise = 0.5;
-constexpr int kMixedSteps = 20;
 
 }  // namespace
 
@@ -33,14 +32,6 @@ Eigen::MatrixXd CorrelationOf(const Eigen::MatrixXd& sample) {
   Eigen::MatrixXd correlation = inverse.asDiagonal() * sample * inverse.asDiagonal();
   correlation.diagonal().setOnes();  // of views that show nothing too
   return correlation;
-}
-
-// `model` and `sample` with unit variances.
-FactorModel Scaled(const Eigen::MatrixXd& model, const Eigen::MatrixXd& sample,
-                   const Eigen::VectorXd& deviations) {
-  const Eigen::LLT<Eigen::MatrixXd> root(model);
-  return {deviations.asDiagonal() * model * deviations.asDiagonal(),
-          2 * root.matrixLLT().diagonal().array().log().sum() + root.solve(sample).trace()};
 }
 
 }  // namespace
@@ -65,31 +56,10 @@ FactorModel FitFactors(const Eigen::MatrixXd& sample, int factors) {
   }
   Eigen::MatrixXd model = loadings * loadings.transpose();
   model.diagonal() += noise;
-  return Scaled(model, correlation, DeviationsOf(sample));
-}
-
-FactorModel FitMixedFactors(const Eigen::MatrixXd& sample, const Eigen::MatrixXd& mixing) {
-  const Eigen::Index factors = mixing.cols();
-  const Eigen::VectorXd deviations = DeviationsOf(sample), variance = deviations.cwiseAbs2();
-  Eigen::VectorXd noise = kFirstNoise * variance;
-  Eigen::MatrixXd between = kFirstNoise * variance.mean() *
-                            Eigen::MatrixXd::Identity(factors, factors);  // the factors' covariance
-  for (int step = 0; step < kMixedSteps; ++step) {
-    const Eigen::MatrixXd scaled = noise.cwiseInverse().asDiagonal() * mixing;
-    const Eigen::MatrixXd left =
-        (between.inverse() + mixing.transpose() * scaled).inverse();  // of factors, views seen
-    const Eigen::MatrixXd by_views = left * scaled.transpose();
-    const Eigen::MatrixXd by_sample = by_views * sample;
-    between = left + by_sample * by_views.transpose();
-    noise = sample.diagonal() - 2 * (mixing * by_sample).diagonal() +
-            (mixing * between * mixing.transpose()).diagonal();
-    noise = noise.cwiseMax(kLeastNoise * variance);
-  }
-  Eigen::MatrixXd model = mixing * between * mixing.transpose();
-  model.diagonal() += noise;
-  const Eigen::VectorXd inverse = deviations.cwiseInverse();
-  return Scaled(inverse.asDiagonal() * model * inverse.asDiagonal(), CorrelationOf(sample),
-                deviations);
+  const Eigen::LLT<Eigen::MatrixXd> root(model);
+  const Eigen::VectorXd deviations = DeviationsOf(sample);
+  return {deviations.asDiagonal() * model * deviations.asDiagonal(),
+          2 * root.matrixLLT().diagonal().array().log().sum() + root.solve(correlation).trace()};
 }
 
 }  // namespace glint

@@ -30,9 +30,4 @@ int FactorsOf(const Eigen::MatrixXd& sample);
 // noise.
 FactorModel FitFactors(const Eigen::MatrixXd& sample, int factors);
 
-// The same where it is known how views mix the factors: `mixing` has a row a view and a column a
-// factor, and the factors' covariance Φ is estimated in Λ Λᵀ's place, mixing Φ mixingᵀ. By
-// expectation maximisation, in a number of steps that is fixed.
-FactorModel FitMixedFactors(const Eigen::MatrixXd& sample, const Eigen::MatrixXd& mixing);
-
 }  // namespace glint

@@ -45,18 +45,6 @@ class Window {
         Eigen::MatrixXd::Identity(pictures.views(), pictures.views()));
   }
 
-  // Of albedo and two slopes: a Lambertian texel's log radiance is linear in the tangents of the
-  // light's direction, which is the camera's nearly.
-  Eigen::MatrixXd Mixing(const DetailPictures& pictures) const {
-    Eigen::MatrixXd mixing(pictures.views(), 3);
-    for (int view = 0; view < pictures.views(); ++view) {
-      const Eigen::Vector3d& camera = pictures.camera_mm(view);
-      mixing.row(view) << 1, (camera.x() - centre_mm_.x()) / camera.z(),
-          (camera.y() - centre_mm_.y()) / camera.z();
-    }
-    return mixing;
-  }
-
   // False where the others say nothing of this view's texture.
   bool Shift(int view, PredictedShift* found) const {
     Eigen::RowVectorXf weights = -(precision_.row(view) / precision_(view, view)).cast<float>();
@@ -96,7 +84,7 @@ class Window {
 std::vector<PredictedShift> PredictedShifts(const DetailPictures& pictures,
                                             const SamplePlaces& places, const cv::Size& size,
                                             int threads) {
-  if (pictures.views() < 3) return {};
+  if (FactorsOf(pictures.views()) == 0) return {};
   const int width =
       2 * static_cast<int>(std::lround(0.5 * kTextureWindow * std::max(size.width, size.height)));
   const std::vector<cv::Rect> rects = WindowsOf(pictures, size, width, width / 2);

@@ -3,10 +3,11 @@
 //
 // Photographs that are rectified on a wrong plane are displaced against each other by parallax,
 // p + z (p − c) / h of a camera at height h over c, which a height and two slopes explain; what
-// poses and lenses have wrong is a small homography a photograph, with a Gaussian prior. Both are
-// the most probable ones for displacements of windows between pairs of photographs (phase
-// correlation of high-passed log radiance), in one least-squares problem with Cauchy's loss, in
-// three rounds of ever smaller windows.
+// poses and lenses have wrong is a small homography a photograph, with a Gaussian prior. The plane
+// is the one on which windows' textures have most in common (window_heights.h), homographies take
+// each photograph to where the others predict it (predicted_shifts.h), in turns; photographs that
+// may be further out of place are first brought near by pairs (place_problem.h). docs/model.md,
+// "Where photographs lie".
 //
 // What all photographs are displaced by together is the sample's own place and stays as it is.
 #pragma once
@@ -65,7 +66,8 @@ inline constexpr int kRegistrationSide_px = 512;
 // Nothing but the prior: the photographs as they are, on its plane.
 SampleRegistration Unregistered(const RegistrationProblem& problem);
 
-// With fewer than two views, or without texture, the result is the prior. The same for any number
+// With fewer than two views, with fewer than four whose homographies are free by more than a pixel
+// of 512, or without texture, the result is the prior. The same for any number
 // of threads. Throws std::invalid_argument: views of different sizes, cameras below the plane.
 SampleRegistration RegisterSample(const RegistrationProblem& problem, int threads);
 
