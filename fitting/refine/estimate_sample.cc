@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
 #include "fitting/refine/gather.h"
@@ -85,6 +86,21 @@ BatchGram GramOf(const BatchObservations& observed, std::span<const TexelValues>
   return gram;
 }
 
+ViewDifferences DifferencesOf(const BatchResiduals& residuals, const BatchObservations& observed,
+                              int lane) {
+  ViewDifferences differences;
+  for (int view = 0; view < observed.views(); ++view) {
+    std::optional<std::array<float, 3>>& of = differences.emplace_back();
+    if (!observed.sees(view, lane)) continue;
+    of.emplace();
+    for (int c = 0; c < 3; ++c) {
+      (*of)[static_cast<size_t>(c)] =
+          static_cast<float>(residuals.at(view, c, BatchResiduals::kDifference, lane));
+    }
+  }
+  return differences;
+}
+
 // Solves sampled texels for the model, with views as the model says.
 class Estimator {
  public:
@@ -139,14 +155,16 @@ void Estimator::Run() {
     }
   };
   solver.predict = [&](std::span<const size_t> texels, std::span<const TexelValues> values,
-                       std::span<const int> views, int worker, std::span<double> squares) {
+                       std::span<const int> views, int worker,
+                       std::span<ViewDifferences> differences) {
     RefineWorker* w = workers_[static_cast<size_t>(worker)].get();
     for (size_t first = 0; first < texels.size(); first += kBatch) {
       const size_t count = std::min<size_t>(kBatch, texels.size() - first);
-      const BatchGram gram = GramOf(gathered_.Of(texels.subspan(first, count), views, &w->observed),
-                                    values.subspan(first, count), w);
-      for (int lane = 0; lane < static_cast<int>(count); ++lane) {
-        squares[first + static_cast<size_t>(lane)] = gram.Squares(lane);
+      const BatchObservations& observed =
+          gathered_.Of(texels.subspan(first, count), views, &w->observed);
+      GramOf(observed, values.subspan(first, count), w, &w->residuals);
+      for (size_t i = 0; i < count; ++i) {
+        differences[first + i] = DifferencesOf(w->residuals, observed, static_cast<int>(i));
       }
     }
   };

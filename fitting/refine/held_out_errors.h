@@ -9,12 +9,27 @@
 // few highlights decide. The energy of the worse one is 2 L²/v, as of a composite likelihood with
 // Godambe's information for Fisher's (Pauli, Racugno and Ventura 2011): of two points δ apart, one
 // of them the best, L = ½Hδ² and v = Jδ², so that ½ (H²/J) δ² = 2 L²/v.
+//
+// How bright a held-out photograph was in all is not what maps could know where exposures are not
+// known: they are compared after each photograph's best factor.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace glint {
+
+// log(R + 0.01) − log(I + 0.01) of one texel, by view and channel; nothing: the view does not show
+// it.
+using ViewDifferences = std::vector<std::optional<std::array<float, 3>>>;
+
+// Squared residuals g² (texel/batch_kernel.h) of each texel, summed over views and channels.
+// `free_exposures`: after the factor on each view's photograph that makes its sum least.
+std::vector<double> SquaresOf(std::span<const ViewDifferences> texels, double robust_scale,
+                              bool free_exposures);
 
 // Sums of squared residuals g². Two that are compared have the same folds and places.
 class HeldOutErrors {

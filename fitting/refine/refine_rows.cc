@@ -262,7 +262,7 @@ void PartRefiner::ConcludeTexel(size_t texel, int lane, const BatchGram& photogr
     const int view = static_cast<int>(v);
     if (!worker.observed.sees(view, lane)) continue;
     for (int c = 0; c < 3; ++c) {
-      sum[1 + v] += worker.residuals.at(view, c, BatchResiduals::kDifference, lane);
+      sum[1 + v] += std::abs(worker.residuals.at(view, c, BatchResiduals::kDifference, lane));
     }
     sum[1 + views + v] += 3.0;
   }

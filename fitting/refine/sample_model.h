@@ -54,9 +54,10 @@ struct SampleSolver {
   std::function<void(std::span<const SampleTask> tasks, const SampleRequest& request, int worker,
                      std::span<SampledTexel> solved)>
       solve;
-  // Each texel's squared residuals g² in those views.
+  // By what each texel's rendering differs from its photographs in those views.
   std::function<void(std::span<const size_t> texels, std::span<const TexelValues> values,
-                     std::span<const int> views, int worker, std::span<double> squares)>
+                     std::span<const int> views, int worker,
+                     std::span<ViewDifferences> differences)>
       predict;
   // From now on views deviate so from what is said of them.
   std::function<void(const ViewDeviations& deviations)> deviate;
@@ -130,6 +131,7 @@ class SampleModel {
   // views held out, one fold after the other.
   template <class Visit>
   void ForEachFold(const Sampling& sampling, const Visit& visit) const;
+  std::vector<double> HeldOutSquares(std::span<const ViewDifferences> differences) const;
   HeldOutErrors CrossValidate(const Sampling& sampling) const;
   SampleModel ScaledBy(const SpreadFactors& factors) const;
   void ChooseSpreads(const Sampling& sampling);

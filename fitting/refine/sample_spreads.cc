@@ -44,18 +44,26 @@ void SampleModel::ForEachFold(const Sampling& sampling, const Visit& visit) cons
   }
 }
 
+// Where exposures deviate, a photograph held out says nothing of its own but how well maps predict
+// it after its best factor.
+std::vector<double> SampleModel::HeldOutSquares(
+    std::span<const ViewDifferences> differences) const {
+  return SquaresOf(differences, options_.robust_scale, deviations_.spreads()[kLogExposure] > 0);
+}
+
 HeldOutErrors SampleModel::CrossValidate(const Sampling& sampling) const {
   HeldOutErrors errors(sampling.place_count);
-  std::vector<double> squares(sampling.texels.size());
+  std::vector<ViewDifferences> differences(sampling.texels.size());
   ForEachFold(sampling, [&](const SampleModel&, const Sampling& part, const std::vector<int>&,
                             const std::vector<int>& held_out) {
-    ForEachSampleBlock(squares.size(), part.threads, [&](size_t first, size_t count, int worker) {
+    ForEachSampleBlock(differences.size(), part.threads, [&](size_t first, size_t count, int worker) {
       std::vector<TexelValues> values;
       for (size_t k = first; k < first + count; ++k) values.push_back(part.solved[k].values);
       part.solver->predict(std::span(part.texels).subspan(first, count), values, held_out, worker,
-                           std::span(squares).subspan(first, count));
+                           std::span(differences).subspan(first, count));
     });
     errors.BeginFold();
+    const std::vector<double> squares = HeldOutSquares(differences);
     for (size_t k = 0; k < squares.size(); ++k) errors.Add(part.places[k], squares[k]);
   });
   return errors;
@@ -100,7 +108,8 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
     std::vector<SampleModel> tried(count, model);
     for (size_t f = 0; f < count; ++f) tried[f].neighbour_spread_ *= kNeighbourFactors[f];
     const size_t crosses_count = centres.size() - 1;
-    std::vector<std::vector<double>> squares(count, std::vector<double>(crosses_count));
+    std::vector<std::vector<ViewDifferences>> differences(
+        count, std::vector<ViewDifferences>(crosses_count));
     ForEachSampleBlock(crosses_count, threads, [&](size_t first, size_t block, int worker) {
       for (size_t f = 0; f < count; ++f) {
         const SampleModel& one = tried[f];
@@ -124,13 +133,14 @@ void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver,
         values.reserve(block);
         for (const SampledTexel& texel : solved) values.push_back(texel.values);
         solver.predict(middles_texels, values, held_out, worker,
-                       std::span(squares[f]).subspan(first, block));
+                       std::span(differences[f]).subspan(first, block));
       }
     });
     for (size_t f = 0; f < count; ++f) {
       errors[f].BeginFold();
+      const std::vector<double> squares = HeldOutSquares(differences[f]);
       for (size_t k = 0; k < crosses_count; ++k) {
-        errors[f].Add(part.places[centres[k]], squares[f][k]);
+        errors[f].Add(part.places[centres[k]], squares[k]);
       }
     }
   });

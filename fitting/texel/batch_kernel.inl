@@ -219,7 +219,7 @@ GLINT_INLINE Normal EvaluateProducts(const KernelOptions& options, const BatchVi
         const Floats all[BatchResiduals::kRows] = {
             slope * d,  slope * s,  slope * r,
             slope * px, slope * py, Where(by_both > 0.0f, by_error / slope, Floats{}),
-            Abs(error)};
+            error};
         BatchRow* row = residuals + (3 * v + c) * BatchResiduals::kRows;
         for (int i = 0; i < BatchResiduals::kRows; ++i) Put(all[i], first, row + i);
       }

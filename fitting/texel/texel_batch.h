@@ -133,7 +133,7 @@ class BatchResiduals {
     kBySlopeX,
     kBySlopeY,
     kResidual,
-    kDifference,  // |log(R + 0.01) − log(I + 0.01)|, 0 where a clipped pixel is satisfied
+    kDifference,  // log(R + 0.01) − log(I + 0.01), 0 where a clipped pixel is satisfied
     kRows
   };
   explicit BatchResiduals(int most_views) : rows_(static_cast<size_t>(3 * most_views) * kRows) {}
