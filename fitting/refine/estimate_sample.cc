@@ -267,7 +267,7 @@ std::vector<DeviationProducts> Estimator::OfViews(size_t texel, int lane,
 
 SampleEstimate Estimator::Estimate(std::vector<int> order) const {
   SampleEstimate estimate{std::move(order),   said_,  ViewsOf(problem_),
-                          part_.substances(), model_, {}};
+                          part_.known(), model_, {}};
   RefineSummary& summary = estimate.summary;
   model_.Describe(&summary);
   summary.shared_light = shared_light_;

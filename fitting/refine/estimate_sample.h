@@ -13,7 +13,7 @@ struct SampleEstimate {
   // same sums whatever the order of the photographs. What follows is in this order.
   std::vector<int> order;
   std::vector<View> said, found;  // views as said, and with their deviations
-  Substances substances;
+  SampleSubstances substances;
   SampleModel model;      // to be put On() a part
   RefineSummary summary;  // what it says of the whole sample
 

@@ -475,8 +475,7 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
   learns_normals_ = false;
   if (all_views_.size() < kLeastValidatedViews) return;
   FreezeViews(kExpectedDiffuseSpread, sampling);
-  ChooseSpreads(Sample(kSampled, solver, threads));
-  ChooseNeighbourSpread(kSampled, solver, threads);
+  ChooseSpreads(SampleBlocks(kSampled, solver, threads));
   if (deviations_.any()) {
     // Views are found while nothing is known of how far diffuse albedo departs from its substances:
     // its departures are alike in neighbouring texels, and views would be moved to make them even.

@@ -109,11 +109,13 @@ class SampleModel {
     int threads = 1;
   };
   Sampling Sample(size_t most, const SampleSolver& solver, int threads) const;
+  Sampling SampleBlocks(size_t most, const SampleSolver& solver, int threads) const;
   Sampling SamplingOf(std::vector<size_t> texels, const SampleSolver& solver, int threads) const;
   using HalfVectorCell = std::pair<int, int>;
   HalfVectorCell CellOf(size_t texel, size_t view) const;
   void TellHalfVectorsApart(Sampling* sampling) const;
   void Solve(const SampleRequest& request, Sampling* sampling) const;
+  void SolveFromNeighbours(const SampleRequest& request, size_t half, Sampling* sampling) const;
   // Rounds of solving the sampled texels by all views and of updating what is being learned:
   // substances and the residuals' variance, and scatter of normals and views' deviations.
   void Fit(Sampling* sampling);
@@ -135,8 +137,6 @@ class SampleModel {
   HeldOutErrors CrossValidate(const Sampling& sampling) const;
   SampleModel ScaledBy(const SpreadFactors& factors) const;
   void ChooseSpreads(const Sampling& sampling);
-  // Of texels and their neighbours, about `most` in all.
-  void ChooseNeighbourSpread(size_t most, const SampleSolver& solver, int threads);
 
   // What is known of a texel by itself; what its substance and a level surface say; both.
   TexelGaussian Initialisation(size_t texel) const;

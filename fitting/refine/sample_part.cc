@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "base/parallel/parallel.h"
 #include "fitting/refine/gather.h"
@@ -63,16 +64,23 @@ std::vector<float> MedianColour(const RefineProblem& problem, const SvbrdfMaps& 
 
 }  // namespace
 
-SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
-                       const std::optional<Substances>& known, int most, int threads)
-    : SamplePart(problem, initial, MedianColour(problem, initial, threads), known, most) {}
+SamplePart::Found SamplePart::Find(const RefineProblem& problem, const SvbrdfMaps& initial,
+                                   const std::optional<SampleSubstances>& known, int most,
+                                   int threads) {
+  const SampleLook look = known ? known->look : SampleLook(problem, threads);
+  const TexelLooks looks{MedianColour(problem, initial, threads), look.GlossOf(problem, threads)};
+  const Substances substances = known ? known->substances : Substances(looks, most);
+  return {{look, substances}, substances.SharesOf(looks)};
+}
 
 SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
-                       const std::vector<float>& colour, const std::optional<Substances>& known,
-                       int most)
+                       const std::optional<SampleSubstances>& known, int most, int threads)
+    : SamplePart(problem, initial, Find(problem, initial, known, most, threads)) {}
+
+SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial, Found found)
     : problem_(problem),
       initial_(initial),
-      substances_(known ? *known : Substances(colour, most)),
-      shares_(substances_.SharesOf(colour)) {}
+      known_(std::move(found.known)),
+      shares_(std::move(found.shares)) {}
 
 }  // namespace glint

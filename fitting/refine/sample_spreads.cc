@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,12 +16,70 @@ namespace glint {
 namespace {
 
 constexpr int kMostFolds = 7;
-constexpr size_t kCross = 5;  // a texel and its neighbours
-
-// By which what neighbours differ by is tried.
-constexpr std::array<double, 4> kNeighbourFactors = {0.25, 0.5, 1.0, 2.0};
+constexpr int kBlockSide = 4;  // of texels that are each other's neighbours
+constexpr int kHalves = 2;     // of a checkerboard
 
 }  // namespace
+
+// Blocks on a lattice over the sample, about `most` texels of them.
+SampleModel::Sampling SampleModel::SampleBlocks(size_t most, const SampleSolver& solver,
+                                                int threads) const {
+  const int width = part_->initial().width, height = part_->initial().height;
+  const int across = std::min(kBlockSide, width), down = std::min(kBlockSide, height);
+  const double wanted = static_cast<double>(most) / (across * down);
+  const auto count = [](double blocks, int of, int side) {
+    return std::clamp(static_cast<int>(std::lround(blocks)), 1, of / side);
+  };
+  const int columns = count(std::sqrt(wanted * width / height), width, across);
+  const int rows = count(wanted / columns, height, down);
+  // The first of a block's texels, of as many blocks as there can be along that axis.
+  const auto begin = [](int block, int blocks, int of, int side) {
+    return (2 * block + 1) * (of / side) / (2 * blocks) * side;
+  };
+  std::vector<size_t> texels;
+  for (int block = 0; block < rows * columns; ++block) {
+    const int row = begin(block / columns, rows, height, down);
+    const int column = begin(block % columns, columns, width, across);
+    for (int i = 0; i < across * down; ++i) {
+      texels.push_back(static_cast<size_t>(row + i / across) * static_cast<size_t>(width) +
+                       static_cast<size_t>(column + i % across));
+    }
+  }
+  return SamplingOf(std::move(texels), solver, threads);
+}
+
+// One colour of the checkerboard anew, by those of their neighbours that are sampled too.
+void SampleModel::SolveFromNeighbours(const SampleRequest& request, size_t half,
+                                      Sampling* sampling) const {
+  const int width = part_->initial().width, height = part_->initial().height;
+  std::map<size_t, size_t> sampled;  // its place, by the texel
+  std::vector<size_t> moved;
+  for (size_t k = 0; k < sampling->texels.size(); ++k) {
+    const size_t texel = sampling->texels[k], across = static_cast<size_t>(width);
+    sampled.emplace(texel, k);
+    if ((texel / across + texel % across) % kHalves == half) moved.push_back(k);
+  }
+  ForEachSampleBlock(moved.size(), sampling->threads, [&](size_t first, size_t block, int worker) {
+    std::vector<SampleTask> tasks;
+    for (size_t i = first; i < first + block; ++i) {
+      const size_t texel = sampling->texels[moved[i]];
+      std::vector<Neighbour> neighbours;
+      ForEachNeighbour(texel, width, height, [&](size_t neighbour) {
+        const auto found = sampled.find(neighbour);
+        if (found == sampled.end()) return;
+        neighbours.push_back({neighbour, sampling->solved[found->second].values});
+      });
+      TexelGaussian gaussian = Knowledge(texel);
+      MultiplyNeighbours(texel, neighbours, &gaussian);
+      tasks.push_back({texel, Scaled(gaussian, residuals_), sampling->solved[moved[i]].values});
+    }
+    std::vector<SampledTexel> solved(block);
+    sampling->solver->solve(tasks, request, worker, solved);
+    for (size_t i = 0; i < block; ++i) {
+      sampling->solved[moved[first + i]].values = solved[i].values;
+    }
+  });
+}
 
 template <class Visit>
 void SampleModel::ForEachFold(const Sampling& sampling, const Visit& visit) const {
@@ -37,9 +96,10 @@ void SampleModel::ForEachFold(const Sampling& sampling, const Visit& visit) cons
     const double explained = std::sqrt(residuals_.variance());
     model.Solve({.views = fitted, .explained_sigma = explained}, &part);
     model.UpdateSubstances(part);
-    model.Solve(
-        {.views = fitted, .near_minimum = true, .explained_sigma = explained, .values_alone = true},
-        &part);
+    const SampleRequest again = {
+        .views = fitted, .near_minimum = true, .explained_sigma = explained, .values_alone = true};
+    model.Solve(again, &part);
+    for (size_t half = 0; half < kHalves; ++half) model.SolveFromNeighbours(again, half, &part);
     visit(model, part, fitted, held_out);
   }
 }
@@ -76,6 +136,7 @@ SampleModel SampleModel::ScaledBy(const SpreadFactors& factors) const {
   model.means_.diffuse_spread *= factors[kDiffuseSpread];
   for (double& spread : model.normal_spreads_) spread *= factors[kNormalSpread];
   model.initial_errors_.Scale(factors[kInitialisationError]);
+  model.neighbour_spread_ *= factors[kNeighbourSpread];
   return model;
 }
 
@@ -86,66 +147,6 @@ void SampleModel::ChooseSpreads(const Sampling& sampling) {
     return ScaledBy(factors).CrossValidate(sampling);
   });
   *this = ScaledBy(ProbableFactors(tried));
-}
-
-// Texels are solved once without their neighbours, and the one in the middle of each cross by them
-// once more.
-void SampleModel::ChooseNeighbourSpread(size_t most, const SampleSolver& solver, int threads) {
-  const Sampling middles = Sample(most / kCross, solver, threads);
-  std::vector<size_t> texels, centres;  // of texels, each followed by its neighbours
-  for (const size_t texel : middles.texels) {
-    centres.push_back(texels.size());
-    texels.push_back(texel);
-    ForEachNeighbour(texel, part_->initial().width, part_->initial().height,
-                     [&](size_t neighbour) { texels.push_back(neighbour); });
-  }
-  centres.push_back(texels.size());
-  const Sampling crosses = SamplingOf(std::move(texels), solver, threads);
-  const size_t count = kNeighbourFactors.size();
-  std::vector<HeldOutErrors> errors(count, HeldOutErrors(crosses.place_count));
-  ForEachFold(crosses, [&](const SampleModel& model, const Sampling& part,
-                           const std::vector<int>& fitted, const std::vector<int>& held_out) {
-    std::vector<SampleModel> tried(count, model);
-    for (size_t f = 0; f < count; ++f) tried[f].neighbour_spread_ *= kNeighbourFactors[f];
-    const size_t crosses_count = centres.size() - 1;
-    std::vector<std::vector<ViewDifferences>> differences(
-        count, std::vector<ViewDifferences>(crosses_count));
-    ForEachSampleBlock(crosses_count, threads, [&](size_t first, size_t block, int worker) {
-      for (size_t f = 0; f < count; ++f) {
-        const SampleModel& one = tried[f];
-        std::vector<SampleTask> tasks;
-        std::vector<size_t> middles_texels;
-        for (size_t k = first; k < first + block; ++k) {
-          const size_t texel = part.texels[centres[k]];
-          std::vector<Neighbour> neighbours;
-          for (size_t n = centres[k] + 1; n < centres[k + 1]; ++n) {
-            neighbours.push_back({part.texels[n], part.solved[n].values});
-          }
-          TexelGaussian gaussian = one.Knowledge(texel);
-          one.MultiplyNeighbours(texel, neighbours, &gaussian);
-          tasks.push_back(
-              {texel, one.Scaled(gaussian, residuals_), part.solved[centres[k]].values});
-          middles_texels.push_back(texel);
-        }
-        std::vector<SampledTexel> solved(block);
-        solver.solve(tasks, {.views = fitted, .near_minimum = true}, worker, solved);
-        std::vector<TexelValues> values;
-        values.reserve(block);
-        for (const SampledTexel& texel : solved) values.push_back(texel.values);
-        solver.predict(middles_texels, values, held_out, worker,
-                       std::span(differences[f]).subspan(first, block));
-      }
-    });
-    for (size_t f = 0; f < count; ++f) {
-      errors[f].BeginFold();
-      const std::vector<double> squares = HeldOutSquares(differences[f]);
-      for (size_t k = 0; k < crosses_count; ++k) {
-        errors[f].Add(part.places[centres[k]], squares[k]);
-      }
-    }
-  });
-  // Information beside all else that is known of a texel is taken at its mean.
-  neighbour_spread_ *= FactorOfMeanPrecision(kNeighbourFactors, errors);
 }
 
 }  // namespace glint

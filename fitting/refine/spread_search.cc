@@ -12,13 +12,18 @@ namespace {
 // As far as each may go, in the order of SpreadKind. Specular albedo's reaches further down than
 // roughness's, with which it is scaled first and then alone. The initialisation has seen the
 // photographs that are held out, so that its errors would be thought smaller than they are.
-constexpr SpreadPowers kLeast = {-2, -4, -2, -3, 0}, kMost = {1, 2, 1, 1, 4};
+constexpr SpreadPowers kLeast = {-2, -4, -2, -3, 0, -2}, kMost = {2, 2, 1, 1, 4, 1};
 // Standard deviation of log₂ of the factor on the initialisation's errors. Photographs that hardly
 // tell a rough specular lobe from diffuse light say nothing of it, and what is said of them does.
 constexpr double kInitialisationOctaves = 1;
 // Roughness varies within many substances whose specular albedo does not.
-constexpr std::array<SpreadPowers, 5> kDirections = {
-    {{1, 1, 0, 0, 0}, {0, 0, 1, 0, 0}, {0, 1, 0, 0, 0}, {0, 0, 0, 1, 0}, {0, 0, 0, 0, 1}}};
+constexpr std::array<SpreadPowers, 7> kDirections = {{{1, 1, 0, 0, 0, 0},
+                                                     {0, 0, 1, 0, 0, 0},
+                                                     {0, 1, 0, 0, 0, 0},
+                                                     {0, 0, 0, 1, 0, 0},
+                                                     {0, 0, 0, 0, 1, 0},
+                                                     {0, 0, 0, 0, 0, 1},
+                                                     {1, 1, 0, 0, 0, -1}}};
 // Difference of negative logarithms: of what lies beyond, less than e⁻³ = 5 % is left out.
 constexpr double kImprobable = 3;
 
@@ -149,21 +154,6 @@ SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried) {
         std::inner_product(alternatives.begin(), alternatives.end(), probabilities.begin(), 0.0);
   }
   return factors;
-}
-
-double FactorOfMeanPrecision(std::span<const double> factors,
-                             std::span<const HeldOutErrors> errors) {
-  const auto best = std::min_element(
-      errors.begin(), errors.end(),
-      [](const HeldOutErrors& a, const HeldOutErrors& b) { return a.sum() < b.sum(); });
-  std::vector<double> energies;
-  for (const HeldOutErrors& one : errors) energies.push_back(one.EnergyAgainst(*best));
-  const std::vector<double> probabilities = Probabilities(energies);
-  double precision = 0;
-  for (size_t i = 0; i < factors.size(); ++i) {
-    precision += probabilities[i] / (factors[i] * factors[i]);
-  }
-  return 1 / std::sqrt(precision);
 }
 
 }  // namespace glint

@@ -19,6 +19,7 @@ enum SpreadKind : size_t {
   kNormalSpread,
   kDiffuseSpread,
   kInitialisationError,
+  kNeighbourSpread,
   kSpreadKinds
 };
 using SpreadPowers = std::array<int, kSpreadKinds>;  // log₂ of the factors
@@ -40,9 +41,5 @@ std::vector<TriedSpreads> SearchSpreads(
 // Of each kind the mean along the axis through the best, by how probable each factor is: what
 // predicts nearly as well as the best is nearly as probable. `tried`: of SearchSpreads().
 SpreadFactors ProbableFactors(const std::vector<TriedSpreads>& tried);
-
-// The factor at its mean precision; `errors[i]` were found with factors[i].
-double FactorOfMeanPrecision(std::span<const double> factors,
-                             std::span<const HeldOutErrors> errors);
 
 }  // namespace glint

@@ -13,7 +13,7 @@ namespace glint {
 namespace {
 
 // Chroma tells substances apart better than brightness, which shading changes too.
-constexpr float kBrightnessWeight = 0.5f, kChromaWeight = 2.0f;
+constexpr float kBrightnessWeight = 0.5f, kChromaWeight = 2.0f, kGlossWeight = 1.0f;
 constexpr float kAlbedoOffset = 0.01f;
 constexpr float kMembershipWidth = 0.2f;  // of the features, for soft shares
 constexpr float kLeastShare = 1e-3f;      // a texel that has less of a substance has nothing of it
@@ -24,23 +24,23 @@ constexpr size_t kClustered = 8192;
 constexpr double kChroma = 0.6;
 constexpr double kMostMeanStep = 0.5;  // of a mean, in one round, relative
 
-using Feature = std::array<float, 3>;
+using Feature = std::array<float, 4>;
 
-Feature FeatureOf(const std::vector<float>& colour, size_t texel) {
-  Feature logs;
+Feature FeatureOf(const TexelLooks& looks, size_t texel) {
+  std::array<float, 3> logs;
   float mean = 0;
   for (size_t c = 0; c < 3; ++c) {
-    const float d = colour[c * colour.size() / 3 + texel];
+    const float d = looks.colour[c * looks.gloss.size() + texel];
     logs[c] = std::log(std::max(0.0f, d) + kAlbedoOffset);
     mean += logs[c] / 3;
   }
   return {kBrightnessWeight * mean, kChromaWeight * (logs[0] - mean),
-          kChromaWeight * (logs[2] - mean)};
+          kChromaWeight * (logs[2] - mean), kGlossWeight * looks.gloss[texel]};
 }
 
 float Distance2(const Feature& a, const Feature& b) {
   float sum = 0;
-  for (size_t i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
   return sum;
 }
 
@@ -56,9 +56,9 @@ size_t Nearest(const std::vector<Feature>& centres, const Feature& x) {
 
 // Farthest-point initialisation from the feature nearest the mean, then Lloyd's iterations.
 std::vector<Feature> Centres(const std::vector<Feature>& features, int count) {
-  Feature mean{0, 0, 0};
+  Feature mean{};
   for (const Feature& x : features) {
-    for (size_t i = 0; i < 3; ++i) mean[i] += x[i] / static_cast<float>(features.size());
+    for (size_t i = 0; i < mean.size(); ++i) mean[i] += x[i] / static_cast<float>(features.size());
   }
   std::vector<Feature> centres = {features[Nearest(features, mean)]};
   while (static_cast<int>(centres.size()) < count) {
@@ -72,15 +72,18 @@ std::vector<Feature> Centres(const std::vector<Feature>& features, int count) {
     centres.push_back(features[farthest]);
   }
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    std::vector<std::array<double, 4>> sums(centres.size(), {0, 0, 0, 0});
+    std::vector<std::array<double, 4>> sums(centres.size());
+    std::vector<double> counts(centres.size());
     for (const Feature& x : features) {
-      auto& sum = sums[Nearest(centres, x)];
-      for (size_t i = 0; i < 3; ++i) sum[i] += x[i];
-      sum[3] += 1;
+      const size_t nearest = Nearest(centres, x);
+      for (size_t i = 0; i < x.size(); ++i) sums[nearest][i] += x[i];
+      counts[nearest] += 1;
     }
     for (size_t k = 0; k < centres.size(); ++k) {
-      if (sums[k][3] == 0) continue;
-      for (size_t i = 0; i < 3; ++i) centres[k][i] = static_cast<float>(sums[k][i] / sums[k][3]);
+      if (counts[k] == 0) continue;
+      for (size_t i = 0; i < sums[k].size(); ++i) {
+        centres[k][i] = static_cast<float>(sums[k][i] / counts[k]);
+      }
     }
   }
   return centres;
@@ -88,19 +91,19 @@ std::vector<Feature> Centres(const std::vector<Feature>& features, int count) {
 
 }  // namespace
 
-Substances::Substances(const std::vector<float>& colour, int substances) {
-  const size_t texels = colour.size() / 3, step = std::max<size_t>(1, texels / kClustered);
+Substances::Substances(const TexelLooks& looks, int substances) {
+  const size_t texels = looks.gloss.size(), step = std::max<size_t>(1, texels / kClustered);
   std::vector<Feature> sampled;
-  for (size_t i = step / 2; i < texels; i += step) sampled.push_back(FeatureOf(colour, i));
-  if (sampled.empty()) sampled.push_back(FeatureOf(colour, 0));
+  for (size_t i = step / 2; i < texels; i += step) sampled.push_back(FeatureOf(looks, i));
+  if (sampled.empty()) sampled.push_back(FeatureOf(looks, 0));
   centres_ = Centres(sampled, substances);
 }
 
-std::vector<float> Substances::SharesOf(const std::vector<float>& colour) const {
-  const size_t texels = colour.size() / 3;
+std::vector<float> Substances::SharesOf(const TexelLooks& looks) const {
+  const size_t texels = looks.gloss.size();
   std::vector<float> all(texels * centres_.size());
   for (size_t t = 0; t < texels; ++t) {
-    const Feature x = FeatureOf(colour, t);
+    const Feature x = FeatureOf(looks, t);
     const float least = Distance2(centres_[Nearest(centres_, x)], x);
     float sum = 0;
     float* shares = all.data() + t * centres_.size();

@@ -1,7 +1,7 @@
 // Substances: places of one reflectance, wherever they lie in the sample (docs/model.md,
 // "What is known of a texel beforehand").
 //
-// A texel belongs to a few substances, by its colour. Its roughness and albedos are those of its
+// A texel belongs to a few substances, by its colour and its gloss. Its roughness and albedos are those of its
 // substances, in the mean, and depart from them by a spread that all substances share. Means are
 // found from sampled texels by type-II maximum likelihood.
 #pragma once
@@ -25,19 +25,24 @@ inline constexpr std::array<int, kShared> kSharedParameters = {
 using SharedValues = std::array<double, kShared>;
 using SharedCovariance = std::array<double, kShared * kShared>;  // row-major
 
-// Which substances there are, by colour.
+// What texels are told apart by.
+struct TexelLooks {
+  std::vector<float> colour;  // 3 planes: what each texel reflects away from its highlight
+  std::vector<float> gloss;   // 1 plane: sample_look.h
+};
+
+// Which substances there are, by colour and gloss.
 class Substances {
  public:
-  // `colour`: 3 planes of what each texel reflects away from its highlight. k-means on the
-  // logarithms of brightness and chroma; deterministic.
-  Substances(const std::vector<float>& colour, int substances);
+  // k-means on the logarithms of brightness and chroma, and on gloss; deterministic.
+  Substances(const TexelLooks& looks, int substances);
 
   int count() const { return static_cast<int>(centres_.size()); }
-  // Shares of each texel of such colours, `count()` of them one after the other, sum 1.
-  std::vector<float> SharesOf(const std::vector<float>& colour) const;
+  // Shares of each such texel, `count()` of them one after the other, sum 1.
+  std::vector<float> SharesOf(const TexelLooks& looks) const;
 
  private:
-  std::vector<std::array<float, 3>> centres_;  // in the space of features
+  std::vector<std::array<float, 4>> centres_;  // in the space of features
 };
 
 inline constexpr double kExpectedRoughnessSpread = 0.1, kExpectedSpecularSpread = 0.8;
