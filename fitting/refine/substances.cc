@@ -13,16 +13,34 @@ namespace glint {
 namespace {
 
 // Chroma tells substances apart better than brightness, which shading changes too.
-constexpr float kBrightnessWeight = 0.5f, kChromaWeight = 2.0f, kGlossWeight = 1.0f;
+constexpr float kBrightnessWeight = 0.5f, kChromaWeight = 2.0f, kGlossWeight = 2.0f;
 constexpr float kAlbedoOffset = 0.01f;
 constexpr float kMembershipWidth = 0.2f;  // of the features, for soft shares
 constexpr float kLeastShare = 1e-3f;      // a texel that has less of a substance has nothing of it
 constexpr int kIterations = 40;
 constexpr size_t kClustered = 8192;
 
-// Substances are expected to differ in specular albedo by channel, relative: metals are coloured.
-constexpr double kChroma = 0.6;
+// A substance is a dielectric or a metal. Dielectrics reflect 2 to 8 % (two standard deviations
+// would be 0.35 of the logarithm; 0.6 for light whose power is known within a half) and have no
+// colour; metals reflect a half, or a third to all, in a colour of their own.
+struct Kind {
+  double share, log_specular, log_spread;
+  double chroma;  // standard deviation of channels about their mean, relative
+};
+const Kind kDielectric{0.9, std::log(0.04), 0.6, 0.05}, kMetal{0.1, std::log(0.5), 0.5, 0.6};
+constexpr double kLeastSpecular = 1e-4;
 constexpr double kMostMeanStep = 0.5;  // of a mean, in one round, relative
+
+double DensityOf(const Kind& kind, double specular) {
+  const double off = (std::log(specular) - kind.log_specular) / kind.log_spread;
+  return kind.share * std::exp(-0.5 * off * off) / kind.log_spread;
+}
+
+// How probable it is that something of this specular albedo is a dielectric.
+double DielectricShare(double specular) {
+  const double dielectric = DensityOf(kDielectric, specular);
+  return dielectric / (dielectric + DensityOf(kMetal, specular));
+}
 
 using Feature = std::array<float, 4>;
 
@@ -219,12 +237,16 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, const SampleWorth&
   for (Eigen::Index k = 0; k < count; ++k) {
     const SharedValues& m = means->mean[static_cast<size_t>(k)];
     const double grey = (m[0] + m[1] + m[2]) / 3;
-    const double width = kChroma * (grey + kSpecularOffset);
+    const double size = (grey + kSpecularOffset) * (grey + kSpecularOffset);
+    const double dielectric = DielectricShare(grey + kLeastSpecular);
+    const double chroma = (dielectric / (kDielectric.chroma * kDielectric.chroma) +
+                           (1 - dielectric) / (kMetal.chroma * kMetal.chroma)) /
+                          size;
     for (Eigen::Index p = 0; p < 3; ++p) {
       for (Eigen::Index q = 0; q < 3; ++q) {
-        information(kN * k + p, kN * k + q) += ((p == q ? 1.0 : 0.0) - 1.0 / 3) / (width * width);
+        information(kN * k + p, kN * k + q) += ((p == q ? 1.0 : 0.0) - 1.0 / 3) * chroma;
       }
-      gradient[kN * k + p] += (grey - m[static_cast<size_t>(p)]) / (width * width);
+      gradient[kN * k + p] += (grey - m[static_cast<size_t>(p)]) * chroma;
     }
   }
   Eigen::VectorXd least(kN * count), most(kN * count);
