@@ -26,20 +26,30 @@ constexpr size_t kClustered = 8192;
 struct Kind {
   double share, log_specular, log_spread;
   double chroma;  // standard deviation of channels about their mean, relative
+
+  // Of a substance of this specular albedo and these squared relative departures of its channels,
+  // of which two are free.
+  double Density(double specular, double departures) const {
+    const double off = (std::log(specular) - log_specular) / log_spread;
+    return share / (log_spread * chroma * chroma) *
+           std::exp(-0.5 * (off * off + departures / (chroma * chroma)));
+  }
 };
 const Kind kDielectric{0.9, std::log(0.04), 0.6, 0.05}, kMetal{0.1, std::log(0.5), 0.5, 0.6};
 constexpr double kLeastSpecular = 1e-4;
 constexpr double kMostMeanStep = 0.5;  // of a mean, in one round, relative
 
-double DensityOf(const Kind& kind, double specular) {
-  const double off = (std::log(specular) - kind.log_specular) / kind.log_spread;
-  return kind.share * std::exp(-0.5 * off * off) / kind.log_spread;
-}
-
-// How probable it is that something of this specular albedo is a dielectric.
-double DielectricShare(double specular) {
-  const double dielectric = DensityOf(kDielectric, specular);
-  return dielectric / (dielectric + DensityOf(kMetal, specular));
+// Of a channel's departure from the mean, relative, in a substance of which it is known how
+// probably it is a dielectric: expectation maximisation.
+double ChromaPrecision(const SharedValues& mean) {
+  const double grey = (mean[0] + mean[1] + mean[2]) / 3, size = grey + kSpecularOffset;
+  double departures = 0;
+  for (size_t p = 0; p < 3; ++p) departures += (mean[p] - grey) * (mean[p] - grey) / (size * size);
+  const double dielectric = kDielectric.Density(grey + kLeastSpecular, departures);
+  const double metal = kMetal.Density(grey + kLeastSpecular, departures);
+  return (dielectric / (kDielectric.chroma * kDielectric.chroma) +
+          metal / (kMetal.chroma * kMetal.chroma)) /
+         (dielectric + metal);
 }
 
 using Feature = std::array<float, 4>;
@@ -237,11 +247,8 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, const SampleWorth&
   for (Eigen::Index k = 0; k < count; ++k) {
     const SharedValues& m = means->mean[static_cast<size_t>(k)];
     const double grey = (m[0] + m[1] + m[2]) / 3;
-    const double size = (grey + kSpecularOffset) * (grey + kSpecularOffset);
-    const double dielectric = DielectricShare(grey + kLeastSpecular);
-    const double chroma = (dielectric / (kDielectric.chroma * kDielectric.chroma) +
-                           (1 - dielectric) / (kMetal.chroma * kMetal.chroma)) /
-                          size;
+    const double size = grey + kSpecularOffset;
+    const double chroma = ChromaPrecision(m) / (size * size);
     for (Eigen::Index p = 0; p < 3; ++p) {
       for (Eigen::Index q = 0; q < 3; ++q) {
         information(kN * k + p, kN * k + q) += ((p == q ? 1.0 : 0.0) - 1.0 / 3) * chroma;

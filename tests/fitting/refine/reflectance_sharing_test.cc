@@ -38,7 +38,8 @@ TEST(Refine, OneSubstanceBecomesNearlyHomogeneous) {
 // One level substance; roughness and specular albedo of texel t: .3 + roughness(t), .05 · (1 +
 // specular(t)).
 template <class Roughness, class Specular>
-RefineSummary SummaryOf(const Roughness& roughness, const Specular& specular) {
+RefineSummary SummaryOf(const Roughness& roughness, const Specular& specular,
+                        const RefineOptions& options = {}) {
   SvbrdfMaps truth(32, 32);
   for (size_t t = 0; t < truth.texels(); ++t) {
     truth.plane(kNormalZ)[t] = 1;
@@ -53,7 +54,7 @@ RefineSummary SummaryOf(const Roughness& roughness, const Specular& specular) {
     start.plane(kRoughness)[t] = 0.35f;
     for (int c = 0; c < 3; ++c) start.plane(kSpecularR + c)[t] = 0.06f;
   }
-  return Refine(Photograph(truth, 10, 8).Problem(), start, {}, 1).summary;
+  return Refine(Photograph(truth, 10, 8).Problem(), start, options, 1).summary;
 }
 
 double Wave(size_t texel) {
@@ -63,12 +64,20 @@ double Wave(size_t texel) {
 double Scatter(size_t texel) { return Wave(texel * 7919 % 1024); }  // the same values elsewhere
 double Nothing(size_t) { return 0; }
 
-// What neighbours tell of a texel is estimated, not assumed.
+// What neighbours tell of a texel is estimated, not assumed. (Several substances would be told
+// apart by their gloss, and departures from them tell nothing of each other.)
 TEST(Refine, NeighboursAgreeAsFarAsTheSamplesDo) {
+  RefineOptions one;
+  one.substances = 1;
   const auto smooth = [](size_t t) { return 0.1 * Wave(t); };
   const auto rough = [](size_t t) { return 0.1 * Scatter(t); };
-  EXPECT_LT(SummaryOf(smooth, Nothing).neighbour_spread,
-            0.6 * SummaryOf(rough, Nothing).neighbour_spread);
+  const auto between_neighbours = [&](const auto& roughness) {
+    const RefineSummary s = SummaryOf(roughness, Nothing, one);
+    return s.neighbour_spread * s.roughness_spread;
+  };
+  const double of_rough = between_neighbours(rough);
+  EXPECT_GT(of_rough, 0.05);
+  EXPECT_LT(between_neighbours(smooth), 0.6 * of_rough);
 }
 
 // Roughness may vary within a substance where specular albedo does not, and is then no reason to

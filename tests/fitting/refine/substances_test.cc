@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -19,10 +22,15 @@ std::vector<float> Stripes(size_t texels) {
   return colour;
 }
 
+TexelLooks Looks(std::vector<float> colour) {
+  const size_t texels = colour.size() / 3;
+  return {std::move(colour), std::vector<float>(texels, 0.0f)};
+}
+
 TEST(Substances, TexelsOfOneColourAreOneSubstanceWhereverTheyLie) {
-  const Substances substances(Stripes(1000), 4);
+  const Substances substances(Looks(Stripes(1000)), 4);
   ASSERT_EQ(substances.count(), 2);  // no more colours than there are
-  const std::vector<float> shares = substances.SharesOf(Stripes(1000));
+  const std::vector<float> shares = substances.SharesOf(Looks(Stripes(1000)));
   for (const size_t t : {10u, 503u, 990u}) {
     for (size_t k = 0; k < 2; ++k) {
       EXPECT_FLOAT_EQ(shares[2 * t + k], shares[(t % 10 < 5 ? 0 : 10) + k]);
@@ -33,10 +41,10 @@ TEST(Substances, TexelsOfOneColourAreOneSubstanceWhereverTheyLie) {
 
 TEST(Substances, SharesSumToOneAndDoNotChangeWithBrightnessOfLight) {
   std::vector<float> colour = Stripes(1000);
-  const Substances substances_before(colour, 4);
-  const std::vector<float> before = substances_before.SharesOf(colour);
+  const Substances substances_before(Looks(colour), 4);
+  const std::vector<float> before = substances_before.SharesOf(Looks(colour));
   for (float& c : colour) c *= 1.5f;
-  const std::vector<float> after = Substances(colour, 4).SharesOf(colour);
+  const std::vector<float> after = Substances(Looks(colour), 4).SharesOf(Looks(colour));
   const auto count = static_cast<size_t>(substances_before.count());
   for (size_t t = 0; t < 1000; ++t) {
     float sum = 0;
@@ -49,6 +57,47 @@ TEST(Substances, SharesSumToOneAndDoNotChangeWithBrightnessOfLight) {
     EXPECT_NEAR(sum, 1, 1e-5f);
     EXPECT_NEAR(alike_before, alike_after, 1e-3f);
   }
+}
+
+TEST(Substances, TexelsOfOneColourAndAnotherGlossAreAnother) {
+  TexelLooks looks{std::vector<float>(3 * 1000, 0.2f), {}};
+  for (int t = 0; t < 1000; ++t) looks.gloss.push_back(t % 10 == 0 ? -0.5f : 0.05f);
+  const Substances substances(looks, 4);
+  ASSERT_EQ(substances.count(), 2);
+  const std::vector<float> shares = substances.SharesOf(looks);
+  EXPECT_GT(std::abs(shares[0] - shares[2]), 0.9f);
+  EXPECT_EQ(shares[0], shares[20]);
+}
+
+// Dielectrics have no colour, however little photographs say of it; metals have one.
+TEST(UpdateMeans, SubstancesThatReflectFewPerCentAreExpectedToBeColourless) {
+  const std::vector<float> shares(1000, 1.0f);
+  const auto chroma = [&](double grey) {
+    SubstanceMeans means;
+    const SharedValues seen = {1.2 * grey, grey, 0.8 * grey, 0.3, 0.2, 0.2, 0.2};
+    means.mean.assign(1, seen);
+    for (int round = 0; round < 20; ++round) {
+      std::vector<SubstanceSample> samples;
+      for (size_t t = 0; t < shares.size(); ++t) {
+        SubstanceSample sample;
+        sample.shares = &shares[t];
+        // Photographs say a tenth of what the substance does.
+        sample.value = means.mean[0];
+        const SharedValues variances = means.Variances(sample.value);
+        for (size_t p = 0; p < kShared; ++p) {
+          if (!std::isfinite(variances[p])) continue;
+          sample.covariance[(kShared + 1) * p] = 0.9 * variances[p];
+          sample.value[p] += 0.1 * (seen[p] - sample.value[p]);
+        }
+        samples.push_back(sample);
+      }
+      UpdateMeans(samples, {0.1, 0.1}, &means);
+    }
+    const SharedValues& m = means.mean[0];
+    return (m[0] - m[2]) / (m[0] + m[1] + m[2]);
+  };
+  EXPECT_LT(chroma(0.04), 0.05);
+  EXPECT_GT(chroma(0.6), 0.1);
 }
 
 // Texels that know their values to `noise`, of two substances.
@@ -78,7 +127,7 @@ std::vector<SubstanceSample> Samples(const std::vector<float>& shares, double no
 }
 
 TEST(UpdateMeans, FindsEachSubstanceHoweverLittleATexelKnows) {
-  const std::vector<float> shares = Substances(Stripes(1000), 2).SharesOf(Stripes(1000));
+  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2).SharesOf(Looks(Stripes(1000)));
   for (const double noise : {0.02, 0.3}) {
     SubstanceMeans means;
     means.diffuse_spread = kExpectedDiffuseSpread;
@@ -98,7 +147,7 @@ TEST(UpdateMeans, FindsEachSubstanceHoweverLittleATexelKnows) {
 }
 
 TEST(UpdateMeans, SubstancesThatLittleIsKnownOfStayTogether) {
-  const std::vector<float> shares = Substances(Stripes(1000), 2).SharesOf(Stripes(1000));
+  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2).SharesOf(Looks(Stripes(1000)));
   SubstanceMeans means;
   means.mean.assign(2, {0.1, 0.1, 0.1, 0.45});
   for (int round = 0; round < 12; ++round) {
@@ -139,7 +188,7 @@ TEST(UpdateMeans, WhereOneIsHeldAtItsBoundTheOtherMakesUpForIt) {
 }
 
 TEST(UpdateMeans, MeansAreOffByAsMuchAsTheirCovarianceSays) {
-  const std::vector<float> shares = Substances(Stripes(1000), 2).SharesOf(Stripes(1000));
+  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2).SharesOf(Looks(Stripes(1000)));
   double squares = 0;
   constexpr int kSeeds = 100;
   for (int seed = 1; seed <= kSeeds; ++seed) {
