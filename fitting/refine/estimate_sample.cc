@@ -113,8 +113,11 @@ class Estimator {
         threads_(threads),
         workers_(RefineWorkers(problem, options, threads)),
         gathered_(problem_, start),
-        part_(problem_, start, std::nullopt, options.substances, threads),
-        model_(part_, options) {
+        look_(problem_, threads),
+        looks_(LooksOf(problem_, start, look_, threads)),
+        by_colour_(problem_, start, {look_, Substances(looks_, options.substances, false)}, looks_),
+        by_gloss_(problem_, start, {look_, Substances(looks_, options.substances, true)}, looks_),
+        model_(by_colour_, options) {
     shared_light_.distance_mm = MeanLightDistance_mm(said_);
   }
   void Run();
@@ -138,7 +141,9 @@ class Estimator {
   const int threads_;
   std::vector<std::unique_ptr<RefineWorker>> workers_;
   GatheredObservations gathered_;
-  const SamplePart part_;
+  const SampleLook look_;
+  const TexelLooks looks_;
+  const SamplePart by_colour_, by_gloss_;
   SampleModel model_;
   SharedLight shared_light_;
 };
@@ -171,7 +176,7 @@ void Estimator::Run() {
   solver.deviate = [&](const ViewDeviations& deviations) { SetViews(deviations); };
   if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);
   SetViews(model_.deviations());
-  model_.Estimate(solver, threads_);
+  model_.Estimate(look_.tells() ? &by_gloss_ : nullptr, solver, threads_);
 }
 
 void Estimator::Solve(std::span<const SampleTask> tasks, const SampleRequest& request,
@@ -267,7 +272,7 @@ std::vector<DeviationProducts> Estimator::OfViews(size_t texel, int lane,
 
 SampleEstimate Estimator::Estimate(std::vector<int> order) const {
   SampleEstimate estimate{std::move(order),   said_,  ViewsOf(problem_),
-                          part_.known(), model_, {}};
+                          model_.part().known(), model_, {}};
   RefineSummary& summary = estimate.summary;
   model_.Describe(&summary);
   summary.shared_light = shared_light_;

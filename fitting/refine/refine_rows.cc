@@ -107,7 +107,7 @@ PartRefiner::PartRefiner(const SampleEstimate& estimate, const RefineProblem& sa
                          const SvbrdfMaps& start, const RefineOptions& options, int above,
                          int below, int threads, std::function<void(int row)> count)
     : all_views_(said.views.size()),
-      part_(said, start, estimate.substances, options.substances, threads),
+      part_(said, start, estimate.substances, threads),
       model_(estimate.model.On(part_)),
       problem_(WithViews(said, estimate.found)),
       blurred_rows_(BlurredRows(said, options)),

@@ -23,6 +23,9 @@ class SampleLook {
   // `problem`: texels that stand for the sample, or all.
   SampleLook(const RefineProblem& problem, int threads);
 
+  // Whether gloss varies over the sample.
+  bool tells() const { return variance_ > 0; }
+
   // Of each texel of `problem`, which has the same views: β. 0 of what two photographs or fewer
   // show. Does not depend on the number of threads.
   std::vector<float> GlossOf(const RefineProblem& problem, int threads) const;

@@ -25,6 +25,8 @@ constexpr double kSeenAlready = 3;
 // Scatter of normals to begin with; cross-validation changes it. Of what initial maps say of it a
 // part is what fitting made of its photographs.
 constexpr double kExpectedNormalSpread = 0.05;
+constexpr double kImprobableSubstances = 3;  // energy from which on something is not believed
+constexpr int kOtherRounds = 4;  // of other substances' means, from texels that are solved
 constexpr double kNormalTexels = 20;  // that this belief is worth, of a substance
 
 using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
@@ -468,13 +470,14 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
   sampling.solver->deviate(deviations_);
 }
 
-void SampleModel::Estimate(const SampleSolver& solver, int threads) {
+void SampleModel::Estimate(const SamplePart* other, const SampleSolver& solver, int threads) {
   Sampling sampling = Sample(kSampled, solver, threads);
   learns_normals_ = has_sample_priors_;
   Fit(&sampling);
   learns_normals_ = false;
   if (all_views_.size() < kLeastValidatedViews) return;
   FreezeViews(kExpectedDiffuseSpread, sampling);
+  ChooseSubstances(other, sampling);
   ChooseSpreads(SampleBlocks(kSampled, solver, threads));
   if (deviations_.any()) {
     // Views are found while nothing is known of how far diffuse albedo departs from its substances:
@@ -485,6 +488,32 @@ void SampleModel::Estimate(const SampleSolver& solver, int threads) {
     FreezeViews(chosen, sampling);
   }
   Fit(&sampling);
+}
+
+void SampleModel::ChooseSubstances(const SamplePart* other, const Sampling& sampling) {
+  if (other == nullptr) return;
+  SampleModel model(*this);
+  model.part_ = other;
+  model.BeginSubstances(sampling);
+  Sampling solved = sampling;
+  for (int round = 0; round < kOtherRounds; ++round) {
+    model.Solve({.views = all_views_, .near_minimum = true}, &solved);
+    model.UpdateSubstances(solved);
+  }
+  const Sampling blocks = SampleBlocks(kSampled, *sampling.solver, sampling.threads);
+  if (model.CrossValidate(blocks).EnergyAgainst(CrossValidate(blocks)) < kImprobableSubstances) *this = model;
+}
+
+void SampleModel::BeginSubstances(const Sampling& sampling) {
+  MeanBySubstance mean(InitialMeans(*part_));
+  for (size_t k = 0; k < sampling.texels.size(); ++k) {
+    if (sampling.solved[k].views == 0) continue;
+    mean.Add(part_->shares(sampling.texels[k]), sampling.solved[k].values);
+  }
+  means_.mean = mean.means();
+  means_.covariance.clear();
+  normal_spreads_.assign(means_.mean.size(), kExpectedNormalSpread);
+  UpdateNormalSpreads(sampling);
 }
 
 void SampleModel::FreezeViews(double diffuse_spread, const Sampling& sampling) {

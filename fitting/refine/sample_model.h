@@ -71,10 +71,12 @@ class SampleModel {
   SampleModel On(const SamplePart& part) const;
 
   // From sampled texels: substances' means and the residuals' variance by type-II maximum
-  // likelihood; spreads by cross-validation over the photographs, from three on. The same for any
-  // number of threads.
-  void Estimate(const SampleSolver& solver, int threads);
+  // likelihood; spreads by cross-validation over the photographs, from three on, and of `other`
+  // substances (may be null; must outlive this) and those of the part the ones that predict better.
+  // The same for any number of threads.
+  void Estimate(const SamplePart* other, const SampleSolver& solver, int threads);
 
+  const SamplePart& part() const { return *part_; }
   const ResidualModel& residuals() const { return residuals_; }
   // The same as they were measured, without the belief beside them: what deviations are stated by.
   const ResidualModel& measured_residuals() const { return measured_residuals_; }
@@ -124,6 +126,10 @@ class SampleModel {
   void UpdateNormalSpreads(const Sampling& sampling);
   double NormalPrecision(size_t texel) const;
   void UpdateDeviations(const Sampling& sampling);
+  // Takes other substances where photographs held out are predicted better by them.
+  void ChooseSubstances(const SamplePart* other, const Sampling& sampling);
+  // What is believed of the part's substances, from texels solved.
+  void BeginSubstances(const Sampling& sampling);
   // From now on views stay as they are, the residuals' variance is measured rather than believed,
   // and diffuse albedo is shared too, from what was found of it without.
   void FreezeViews(double diffuse_spread, const Sampling& sampling);

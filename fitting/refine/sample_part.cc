@@ -64,23 +64,20 @@ std::vector<float> MedianColour(const RefineProblem& problem, const SvbrdfMaps& 
 
 }  // namespace
 
-SamplePart::Found SamplePart::Find(const RefineProblem& problem, const SvbrdfMaps& initial,
-                                   const std::optional<SampleSubstances>& known, int most,
-                                   int threads) {
-  const SampleLook look = known ? known->look : SampleLook(problem, threads);
-  const TexelLooks looks{MedianColour(problem, initial, threads), look.GlossOf(problem, threads)};
-  const Substances substances = known ? known->substances : Substances(looks, most);
-  return {{look, substances}, substances.SharesOf(looks)};
+TexelLooks LooksOf(const RefineProblem& problem, const SvbrdfMaps& initial, const SampleLook& look,
+                   int threads) {
+  return {MedianColour(problem, initial, threads), look.GlossOf(problem, threads)};
 }
 
 SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
-                       const std::optional<SampleSubstances>& known, int most, int threads)
-    : SamplePart(problem, initial, Find(problem, initial, known, most, threads)) {}
-
-SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial, Found found)
+                       SampleSubstances known, const TexelLooks& looks)
     : problem_(problem),
       initial_(initial),
-      known_(std::move(found.known)),
-      shares_(std::move(found.shares)) {}
+      known_(std::move(known)),
+      shares_(known_.substances.SharesOf(looks)) {}
+
+SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
+                       const SampleSubstances& known, int threads)
+    : SamplePart(problem, initial, known, LooksOf(problem, initial, known.look, threads)) {}
 
 }  // namespace glint

@@ -2,7 +2,6 @@
 // or every so many-th.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "fitting/refine/refine.h"
@@ -11,18 +10,23 @@
 
 namespace glint {
 
-// What a sample is made of, and what of.
+// What a sample is made of, and by what that is told of a texel.
 struct SampleSubstances {
   SampleLook look;
   Substances substances;
 };
 
+// Of the problem's texels, views as they are said to be.
+TexelLooks LooksOf(const RefineProblem& problem, const SvbrdfMaps& initial, const SampleLook& look,
+                   int threads);
+
 class SamplePart {
  public:
-  // `problem` and `initial` must outlive this, views as they are said to be. `known`: the sample's
-  // substances; none: they are found among these texels, at most `most`.
-  SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
-             const std::optional<SampleSubstances>& known, int most, int threads);
+  // `problem` and `initial` must outlive this. `looks`: of LooksOf().
+  SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial, SampleSubstances known,
+             const TexelLooks& looks);
+  SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial, const SampleSubstances& known,
+             int threads);
 
   const RefineProblem& problem() const { return problem_; }
   const SvbrdfMaps& initial() const { return initial_; }
@@ -35,14 +39,6 @@ class SamplePart {
   }
 
  private:
-  struct Found {
-    SampleSubstances known;
-    std::vector<float> shares;
-  };
-  static Found Find(const RefineProblem& problem, const SvbrdfMaps& initial,
-                    const std::optional<SampleSubstances>& known, int most, int threads);
-  SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial, Found found);
-
   const RefineProblem& problem_;
   const SvbrdfMaps& initial_;
   SampleSubstances known_;

@@ -54,18 +54,6 @@ double ChromaPrecision(const SharedValues& mean) {
 
 using Feature = std::array<float, 4>;
 
-Feature FeatureOf(const TexelLooks& looks, size_t texel) {
-  std::array<float, 3> logs;
-  float mean = 0;
-  for (size_t c = 0; c < 3; ++c) {
-    const float d = looks.colour[c * looks.gloss.size() + texel];
-    logs[c] = std::log(std::max(0.0f, d) + kAlbedoOffset);
-    mean += logs[c] / 3;
-  }
-  return {kBrightnessWeight * mean, kChromaWeight * (logs[0] - mean),
-          kChromaWeight * (logs[2] - mean), kGlossWeight * looks.gloss[texel]};
-}
-
 float Distance2(const Feature& a, const Feature& b) {
   float sum = 0;
   for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
@@ -119,8 +107,21 @@ std::vector<Feature> Centres(const std::vector<Feature>& features, int count) {
 
 }  // namespace
 
-Substances::Substances(const TexelLooks& looks, int substances) {
-  const size_t texels = looks.gloss.size(), step = std::max<size_t>(1, texels / kClustered);
+Substances::Feature Substances::FeatureOf(const TexelLooks& looks, size_t texel) const {
+  std::array<float, 3> logs;
+  float mean = 0;
+  for (size_t c = 0; c < 3; ++c) {
+    const float d = looks.colour[c * looks.colour.size() / 3 + texel];
+    logs[c] = std::log(std::max(0.0f, d) + kAlbedoOffset);
+    mean += logs[c] / 3;
+  }
+  return {kBrightnessWeight * mean, kChromaWeight * (logs[0] - mean),
+          kChromaWeight * (logs[2] - mean), by_gloss_ ? kGlossWeight * looks.gloss[texel] : 0};
+}
+
+Substances::Substances(const TexelLooks& looks, int substances, bool by_gloss)
+    : by_gloss_(by_gloss) {
+  const size_t texels = looks.colour.size() / 3, step = std::max<size_t>(1, texels / kClustered);
   std::vector<Feature> sampled;
   for (size_t i = step / 2; i < texels; i += step) sampled.push_back(FeatureOf(looks, i));
   if (sampled.empty()) sampled.push_back(FeatureOf(looks, 0));
@@ -128,7 +129,7 @@ Substances::Substances(const TexelLooks& looks, int substances) {
 }
 
 std::vector<float> Substances::SharesOf(const TexelLooks& looks) const {
-  const size_t texels = looks.gloss.size();
+  const size_t texels = looks.colour.size() / 3;
   std::vector<float> all(texels * centres_.size());
   for (size_t t = 0; t < texels; ++t) {
     const Feature x = FeatureOf(looks, t);

@@ -28,21 +28,28 @@ using SharedCovariance = std::array<double, kShared * kShared>;  // row-major
 // What texels are told apart by.
 struct TexelLooks {
   std::vector<float> colour;  // 3 planes: what each texel reflects away from its highlight
-  std::vector<float> gloss;   // 1 plane: sample_look.h
+  std::vector<float> gloss;   // 1 plane: sample_look.h; may be empty where it is not asked for
 };
 
-// Which substances there are, by colour and gloss.
+// Which substances there are, by colour, or by colour and gloss.
 class Substances {
  public:
-  // k-means on the logarithms of brightness and chroma, and on gloss; deterministic.
-  Substances(const TexelLooks& looks, int substances);
+  // k-means on the logarithms of brightness and chroma, and on gloss, which may be empty where it
+  // is not asked for; deterministic.
+  Substances(const TexelLooks& looks, int substances, bool by_gloss);
+
+  bool by_gloss() const { return by_gloss_; }
 
   int count() const { return static_cast<int>(centres_.size()); }
   // Shares of each such texel, `count()` of them one after the other, sum 1.
   std::vector<float> SharesOf(const TexelLooks& looks) const;
 
  private:
-  std::vector<std::array<float, 4>> centres_;  // in the space of features
+  using Feature = std::array<float, 4>;
+  Feature FeatureOf(const TexelLooks& looks, size_t texel) const;
+
+  bool by_gloss_;
+  std::vector<Feature> centres_;
 };
 
 inline constexpr double kExpectedRoughnessSpread = 0.1, kExpectedSpecularSpread = 0.8;
