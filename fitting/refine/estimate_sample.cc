@@ -117,7 +117,7 @@ class Estimator {
         looks_(LooksOf(problem_, start, look_, threads)),
         by_colour_(problem_, start, {look_, Substances(looks_, options.substances, false)}, looks_),
         by_gloss_(problem_, start, {look_, Substances(looks_, options.substances, true)}, looks_),
-        model_(by_colour_, options) {
+        model_(by_gloss_, options) {
     shared_light_.distance_mm = MeanLightDistance_mm(said_);
   }
   void Run();
@@ -176,7 +176,7 @@ void Estimator::Run() {
   solver.deviate = [&](const ViewDeviations& deviations) { SetViews(deviations); };
   if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);
   SetViews(model_.deviations());
-  model_.Estimate(look_.tells() ? &by_gloss_ : nullptr, solver, threads_);
+  model_.Estimate(look_.tells() ? &by_colour_ : nullptr, solver, threads_);
 }
 
 void Estimator::Solve(std::span<const SampleTask> tasks, const SampleRequest& request,

@@ -14,7 +14,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 32;
+inline constexpr int kRefineVersion = 33;
 
 struct RefineStageOptions {
   RefineOptions refine;

@@ -126,7 +126,7 @@ class SampleModel {
   void UpdateNormalSpreads(const Sampling& sampling);
   double NormalPrecision(size_t texel) const;
   void UpdateDeviations(const Sampling& sampling);
-  // Takes other substances where photographs held out are predicted better by them.
+  // Takes other substances where photographs held out are predicted far better by them.
   void ChooseSubstances(const SamplePart* other, const Sampling& sampling);
   // What is believed of the part's substances, from texels solved.
   void BeginSubstances(const Sampling& sampling);
