@@ -28,7 +28,7 @@ TexelLooks Looks(std::vector<float> colour) {
 }
 
 TEST(Substances, TexelsOfOneColourAreOneSubstanceWhereverTheyLie) {
-  const Substances substances(Looks(Stripes(1000)), 4);
+  const Substances substances(Looks(Stripes(1000)), 4, true);
   ASSERT_EQ(substances.count(), 2);  // no more colours than there are
   const std::vector<float> shares = substances.SharesOf(Looks(Stripes(1000)));
   for (const size_t t : {10u, 503u, 990u}) {
@@ -41,10 +41,10 @@ TEST(Substances, TexelsOfOneColourAreOneSubstanceWhereverTheyLie) {
 
 TEST(Substances, SharesSumToOneAndDoNotChangeWithBrightnessOfLight) {
   std::vector<float> colour = Stripes(1000);
-  const Substances substances_before(Looks(colour), 4);
+  const Substances substances_before(Looks(colour), 4, true);
   const std::vector<float> before = substances_before.SharesOf(Looks(colour));
   for (float& c : colour) c *= 1.5f;
-  const std::vector<float> after = Substances(Looks(colour), 4).SharesOf(Looks(colour));
+  const std::vector<float> after = Substances(Looks(colour), 4, true).SharesOf(Looks(colour));
   const auto count = static_cast<size_t>(substances_before.count());
   for (size_t t = 0; t < 1000; ++t) {
     float sum = 0;
@@ -62,7 +62,8 @@ TEST(Substances, SharesSumToOneAndDoNotChangeWithBrightnessOfLight) {
 TEST(Substances, TexelsOfOneColourAndAnotherGlossAreAnother) {
   TexelLooks looks{std::vector<float>(3 * 1000, 0.2f), {}};
   for (int t = 0; t < 1000; ++t) looks.gloss.push_back(t % 10 == 0 ? -0.5f : 0.05f);
-  const Substances substances(looks, 4);
+  EXPECT_EQ(Substances(looks, 4, false).count(), 1);
+  const Substances substances(looks, 4, true);
   ASSERT_EQ(substances.count(), 2);
   const std::vector<float> shares = substances.SharesOf(looks);
   EXPECT_GT(std::abs(shares[0] - shares[2]), 0.9f);
@@ -127,7 +128,7 @@ std::vector<SubstanceSample> Samples(const std::vector<float>& shares, double no
 }
 
 TEST(UpdateMeans, FindsEachSubstanceHoweverLittleATexelKnows) {
-  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2).SharesOf(Looks(Stripes(1000)));
+  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2, true).SharesOf(Looks(Stripes(1000)));
   for (const double noise : {0.02, 0.3}) {
     SubstanceMeans means;
     means.diffuse_spread = kExpectedDiffuseSpread;
@@ -147,7 +148,7 @@ TEST(UpdateMeans, FindsEachSubstanceHoweverLittleATexelKnows) {
 }
 
 TEST(UpdateMeans, SubstancesThatLittleIsKnownOfStayTogether) {
-  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2).SharesOf(Looks(Stripes(1000)));
+  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2, true).SharesOf(Looks(Stripes(1000)));
   SubstanceMeans means;
   means.mean.assign(2, {0.1, 0.1, 0.1, 0.45});
   for (int round = 0; round < 12; ++round) {
@@ -188,7 +189,7 @@ TEST(UpdateMeans, WhereOneIsHeldAtItsBoundTheOtherMakesUpForIt) {
 }
 
 TEST(UpdateMeans, MeansAreOffByAsMuchAsTheirCovarianceSays) {
-  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2).SharesOf(Looks(Stripes(1000)));
+  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2, true).SharesOf(Looks(Stripes(1000)));
   double squares = 0;
   constexpr int kSeeds = 100;
   for (int seed = 1; seed <= kSeeds; ++seed) {
