@@ -271,7 +271,7 @@ std::vector<DeviationProducts> Estimator::OfViews(size_t texel, int lane,
 }
 
 SampleEstimate Estimator::Estimate(std::vector<int> order) const {
-  SampleEstimate estimate{std::move(order),   said_,  ViewsOf(problem_),
+  SampleEstimate estimate{std::move(order),      said_,  ViewsOf(problem_),
                           model_.part().known(), model_, {}};
   RefineSummary& summary = estimate.summary;
   model_.Describe(&summary);

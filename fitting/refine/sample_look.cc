@@ -13,7 +13,7 @@ namespace {
 
 // Along each side of the sample: as fine as highlights are, and far coarser than texture.
 constexpr int kCells = 16;
-constexpr size_t kLeastViews = 3;        // a line through two points has no error
+constexpr size_t kLeastViews = 3;  // a line through two points has no error
 constexpr double kLeastInformation = 1e-3;
 constexpr double kSteepest = 3;  // of few and noisy photographs
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
@@ -39,6 +39,10 @@ Place PlaceOnSample(const SamplePlane& plane, size_t texel) {
 
 int CellOf(double place) { return std::clamp(static_cast<int>(place * kCells), 0, kCells - 1); }
 
+size_t CellAt(int row, int column) {
+  return static_cast<size_t>(row) * kCells + static_cast<size_t>(column);
+}
+
 float LowerMedian(std::vector<float>* values) {
   const auto middle = values->begin() + static_cast<std::ptrdiff_t>((values->size() - 1) / 2);
   std::nth_element(values->begin(), middle, values->end());
@@ -57,8 +61,7 @@ double LogIrradiance(const RefineProblem& problem, const View& view, int column,
 
 }  // namespace
 
-SampleLook::SampleLook(const RefineProblem& problem, int threads)
-    : typical_(problem.views.size()) {
+SampleLook::SampleLook(const RefineProblem& problem, int threads) : typical_(problem.views.size()) {
   if (problem.views.size() < kLeastViews) return;
   const size_t texels = problem.views.front().mask.size();
   ForEachPiece(static_cast<int>(problem.views.size()), threads, [&](int v) {
@@ -67,15 +70,13 @@ SampleLook::SampleLook(const RefineProblem& problem, int threads)
     for (size_t t = 0; t < texels; ++t) {
       if (!Sees(view, t)) continue;
       const Place place = PlaceOnSample(problem.plane, t);
-      by_cell[static_cast<size_t>(kCells * CellOf(place.y) + CellOf(place.x))].push_back(
-          LogRadianceOf(view, t));
+      by_cell[CellAt(CellOf(place.y), CellOf(place.x))].push_back(LogRadianceOf(view, t));
     }
     for (int cell = 0; cell < kCells * kCells; ++cell) {
       std::vector<float>& seen = by_cell[static_cast<size_t>(cell)];
       const float median = seen.empty() ? kUnseen : LowerMedian(&seen);
       const double received = LogIrradiance(problem, view.view, cell % kCells, cell / kCells);
-      typical_[static_cast<size_t>(v)].push_back(
-          {median, median - static_cast<float>(received)});
+      typical_[static_cast<size_t>(v)].push_back({median, median - static_cast<float>(received)});
     }
   });
   LearnVariances(LinesOf(problem, threads));
@@ -114,9 +115,9 @@ SampleLook::Typical SampleLook::TypicalAt(size_t view, double x, double y) const
   const int row = std::min(static_cast<int>(v), kCells - 2);
   const float s = static_cast<float>(u - column), t = static_cast<float>(v - row);
   const auto at = [&](int down, int across) -> const Typical& {
-    return typical_[view][static_cast<size_t>(kCells * (row + down) + column + across)];
+    return typical_[view][CellAt(row + down, column + across)];
   };
-  const auto between = [&](float Typical::* of) {
+  const auto between = [&](float Typical::*of) {
     const float above = at(0, 0).*of * (1 - s) + at(0, 1).*of * s;
     const float below = at(1, 0).*of * (1 - s) + at(1, 1).*of * s;
     return above * (1 - t) + below * t;
@@ -149,8 +150,7 @@ SampleLook::Line SampleLook::LineOf(const RefineProblem& problem, size_t texel) 
           static_cast<float>(std::max(0.0, left)), static_cast<int>(n) - 2};
 }
 
-std::vector<SampleLook::Line> SampleLook::LinesOf(const RefineProblem& problem,
-                                                  int threads) const {
+std::vector<SampleLook::Line> SampleLook::LinesOf(const RefineProblem& problem, int threads) const {
   constexpr int kBlock = 4096;
   std::vector<Line> lines(problem.views.front().mask.size());
   ForEachBlock(static_cast<int>(lines.size()), kBlock, threads, [&](int begin, int end) {

@@ -7,9 +7,9 @@
 // E_v what falls on it there, a texel's gloss is the slope β of
 //   log(I_v/M_v) = a + β·log(M_v/E_v),   over the photographs, by least squares:
 // −1: no highlight where the others have one; 0: as the others; above: a brighter one.
-// Nine photographs tell single texels' slopes badly: what is taken is the mean of β ~ N(0, τ²) given
-// the slope found and the variance of its error, s²/Σ(log(M_v/E_v) − mean)², with τ² and s² of the
-// sample.
+// Nine photographs tell single texels' slopes badly: what is taken is the mean of β ~ N(0, τ²)
+// given the slope found and the variance of its error, s²/Σ(log(M_v/E_v) − mean)², with τ² and s²
+// of the sample.
 #pragma once
 
 #include <vector>
@@ -47,8 +47,8 @@ class SampleLook {
   void LearnVariances(const std::vector<Line>& lines);
 
   std::vector<std::vector<Typical>> typical_;  // by view: of the middles of cells, row by row
-  double noise_ = 0;     // s²
-  double variance_ = 0;  // τ²
+  double noise_ = 0;                           // s²
+  double variance_ = 0;                        // τ²
 };
 
 }  // namespace glint

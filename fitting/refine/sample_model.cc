@@ -26,7 +26,7 @@ constexpr double kSeenAlready = 3;
 // part is what fitting made of its photographs.
 constexpr double kExpectedNormalSpread = 0.05;
 constexpr double kProbableSubstances = 3;  // energy by which other ones must be the better
-constexpr int kOtherRounds = 4;  // of other substances' means, from texels that are solved
+constexpr int kOtherRounds = 4;       // of other substances' means, from texels that are solved
 constexpr double kNormalTexels = 20;  // that this belief is worth, of a substance
 
 using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
@@ -501,7 +501,8 @@ void SampleModel::ChooseSubstances(const SamplePart* other, const Sampling& samp
     model.UpdateSubstances(solved);
   }
   const Sampling blocks = SampleBlocks(kSampled, *sampling.solver, sampling.threads);
-  if (model.CrossValidate(blocks).EnergyAgainst(CrossValidate(blocks)) < -kProbableSubstances) *this = model;
+  if (model.CrossValidate(blocks).EnergyAgainst(CrossValidate(blocks)) < -kProbableSubstances)
+    *this = model;
 }
 
 void SampleModel::BeginSubstances(const Sampling& sampling) {

@@ -116,12 +116,13 @@ HeldOutErrors SampleModel::CrossValidate(const Sampling& sampling) const {
   std::vector<ViewDifferences> differences(sampling.texels.size());
   ForEachFold(sampling, [&](const SampleModel&, const Sampling& part, const std::vector<int>&,
                             const std::vector<int>& held_out) {
-    ForEachSampleBlock(differences.size(), part.threads, [&](size_t first, size_t count, int worker) {
-      std::vector<TexelValues> values;
-      for (size_t k = first; k < first + count; ++k) values.push_back(part.solved[k].values);
-      part.solver->predict(std::span(part.texels).subspan(first, count), values, held_out, worker,
-                           std::span(differences).subspan(first, count));
-    });
+    ForEachSampleBlock(
+        differences.size(), part.threads, [&](size_t first, size_t count, int worker) {
+          std::vector<TexelValues> values;
+          for (size_t k = first; k < first + count; ++k) values.push_back(part.solved[k].values);
+          part.solver->predict(std::span(part.texels).subspan(first, count), values, held_out,
+                               worker, std::span(differences).subspan(first, count));
+        });
     errors.BeginFold();
     const std::vector<double> squares = HeldOutSquares(differences);
     for (size_t k = 0; k < squares.size(); ++k) errors.Add(part.places[k], squares[k]);

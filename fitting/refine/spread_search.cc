@@ -18,12 +18,12 @@ constexpr SpreadPowers kLeast = {-2, -4, -2, -3, 0, -2}, kMost = {2, 2, 1, 1, 4,
 constexpr double kInitialisationOctaves = 1;
 // Roughness varies within many substances whose specular albedo does not.
 constexpr std::array<SpreadPowers, 7> kDirections = {{{1, 1, 0, 0, 0, 0},
-                                                     {0, 0, 1, 0, 0, 0},
-                                                     {0, 1, 0, 0, 0, 0},
-                                                     {0, 0, 0, 1, 0, 0},
-                                                     {0, 0, 0, 0, 1, 0},
-                                                     {0, 0, 0, 0, 0, 1},
-                                                     {1, 1, 0, 0, 0, -1}}};
+                                                      {0, 0, 1, 0, 0, 0},
+                                                      {0, 1, 0, 0, 0, 0},
+                                                      {0, 0, 0, 1, 0, 0},
+                                                      {0, 0, 0, 0, 1, 0},
+                                                      {0, 0, 0, 0, 0, 1},
+                                                      {1, 1, 0, 0, 0, -1}}};
 // Difference of negative logarithms: of what lies beyond, less than e⁻³ = 5 % is left out.
 constexpr double kImprobable = 3;
 

@@ -1,9 +1,9 @@
 // Substances: places of one reflectance, wherever they lie in the sample (docs/model.md,
 // "What is known of a texel beforehand").
 //
-// A texel belongs to a few substances, by its colour and its gloss. Its roughness and albedos are those of its
-// substances, in the mean, and depart from them by a spread that all substances share. Means are
-// found from sampled texels by type-II maximum likelihood.
+// A texel belongs to a few substances, by its colour and its gloss. Its roughness and albedos are
+// those of its substances, in the mean, and depart from them by a spread that all substances share.
+// Means are found from sampled texels by type-II maximum likelihood.
 #pragma once
 
 #include <array>

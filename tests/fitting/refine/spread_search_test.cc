@@ -181,8 +181,7 @@ std::vector<ViewDifferences> BrighterSecond(float scatter) {
   std::vector<ViewDifferences> texels;
   for (int t = 0; t < 100; ++t) {
     const float off = t % 2 == 0 ? scatter : -scatter;
-    texels.push_back({std::array{off, off, off},
-                      std::array{off - 0.2f, off - 0.2f, off - 0.2f}});
+    texels.push_back({std::array{off, off, off}, std::array{off - 0.2f, off - 0.2f, off - 0.2f}});
   }
   return texels;
 }
@@ -192,7 +191,9 @@ double Sum(const std::vector<double>& values) {
 }
 
 TEST(SquaresOf, AnUnknownExposureIsNoErrorOfTheMaps) {
-  const auto right = [](float scatter) { return Sum(SquaresOf(BrighterSecond(scatter), 0.1, true)); };
+  const auto right = [](float scatter) {
+    return Sum(SquaresOf(BrighterSecond(scatter), 0.1, true));
+  };
   EXPECT_NEAR(right(0), 0, 1e-9);
   EXPECT_NEAR(right(0.02f), 600 * 0.02 * 0.02, 0.02 * 600 * 0.02 * 0.02);
   EXPECT_GT(Sum(SquaresOf(BrighterSecond(0), 0.1, false)), 300 * 0.02);

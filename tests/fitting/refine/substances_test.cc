@@ -128,7 +128,8 @@ std::vector<SubstanceSample> Samples(const std::vector<float>& shares, double no
 }
 
 TEST(UpdateMeans, FindsEachSubstanceHoweverLittleATexelKnows) {
-  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2, true).SharesOf(Looks(Stripes(1000)));
+  const std::vector<float> shares =
+      Substances(Looks(Stripes(1000)), 2, true).SharesOf(Looks(Stripes(1000)));
   for (const double noise : {0.02, 0.3}) {
     SubstanceMeans means;
     means.diffuse_spread = kExpectedDiffuseSpread;
@@ -148,7 +149,8 @@ TEST(UpdateMeans, FindsEachSubstanceHoweverLittleATexelKnows) {
 }
 
 TEST(UpdateMeans, SubstancesThatLittleIsKnownOfStayTogether) {
-  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2, true).SharesOf(Looks(Stripes(1000)));
+  const std::vector<float> shares =
+      Substances(Looks(Stripes(1000)), 2, true).SharesOf(Looks(Stripes(1000)));
   SubstanceMeans means;
   means.mean.assign(2, {0.1, 0.1, 0.1, 0.45});
   for (int round = 0; round < 12; ++round) {
@@ -189,7 +191,8 @@ TEST(UpdateMeans, WhereOneIsHeldAtItsBoundTheOtherMakesUpForIt) {
 }
 
 TEST(UpdateMeans, MeansAreOffByAsMuchAsTheirCovarianceSays) {
-  const std::vector<float> shares = Substances(Looks(Stripes(1000)), 2, true).SharesOf(Looks(Stripes(1000)));
+  const std::vector<float> shares =
+      Substances(Looks(Stripes(1000)), 2, true).SharesOf(Looks(Stripes(1000)));
   double squares = 0;
   constexpr int kSeeds = 100;
   for (int seed = 1; seed <= kSeeds; ++seed) {
