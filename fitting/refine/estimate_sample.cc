@@ -114,10 +114,14 @@ class Estimator {
         workers_(RefineWorkers(problem, options, threads)),
         gathered_(problem_, start),
         look_(problem_, threads),
-        looks_(LooksOf(problem_, start, look_, threads)),
-        by_colour_(problem_, start, {look_, Substances(looks_, options.substances, false)}, looks_),
+        looks_(LooksOf(problem_, start, look_, true, threads)),
         by_gloss_(problem_, start, {look_, Substances(looks_, options.substances, true)}, looks_),
         model_(by_gloss_, options) {
+    if (look_.tells()) {
+      by_colour_.emplace(problem_, start,
+                         SampleSubstances{look_, Substances(looks_, options.substances, false)},
+                         looks_);
+    }
     shared_light_.distance_mm = MeanLightDistance_mm(said_);
   }
   void Run();
@@ -143,7 +147,8 @@ class Estimator {
   GatheredObservations gathered_;
   const SampleLook look_;
   const TexelLooks looks_;
-  const SamplePart by_colour_, by_gloss_;
+  const SamplePart by_gloss_;
+  std::optional<SamplePart> by_colour_;  // none: gloss tells nothing apart
   SampleModel model_;
   SharedLight shared_light_;
 };
@@ -176,7 +181,7 @@ void Estimator::Run() {
   solver.deviate = [&](const ViewDeviations& deviations) { SetViews(deviations); };
   if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);
   SetViews(model_.deviations());
-  model_.Estimate(look_.tells() ? &by_colour_ : nullptr, solver, threads_);
+  model_.Estimate(by_colour_ ? &*by_colour_ : nullptr, solver, threads_);
 }
 
 void Estimator::Solve(std::span<const SampleTask> tasks, const SampleRequest& request,

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel/parallel.h"
+#include "fitting/refine/lower_median.h"
 #include "fitting/reflectance/brdf.h"
 #include "fitting/reflectance/log_radiance.h"
 
@@ -41,12 +42,6 @@ int CellOf(double place) { return std::clamp(static_cast<int>(place * kCells), 0
 
 size_t CellAt(int row, int column) {
   return static_cast<size_t>(row) * kCells + static_cast<size_t>(column);
-}
-
-float LowerMedian(std::vector<float>* values) {
-  const auto middle = values->begin() + static_cast<std::ptrdiff_t>((values->size() - 1) / 2);
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
 }
 
 // The logarithm of what a view's light sends to the middle of a cell.

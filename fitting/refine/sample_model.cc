@@ -25,7 +25,9 @@ constexpr double kSeenAlready = 3;
 // Scatter of normals to begin with; cross-validation changes it. Of what initial maps say of it a
 // part is what fitting made of its photographs.
 constexpr double kExpectedNormalSpread = 0.05;
-constexpr double kProbableSubstances = 3;  // energy by which other ones must be the better
+// Prior log odds of substances by gloss against those by colour alone, which gloss only divides:
+// what is lost where they are divided in vain is little.
+constexpr double kGlossLogOdds = 3;
 constexpr int kOtherRounds = 4;       // of other substances' means, from texels that are solved
 constexpr double kNormalTexels = 20;  // that this belief is worth, of a substance
 
@@ -501,7 +503,7 @@ void SampleModel::ChooseSubstances(const SamplePart* other, const Sampling& samp
     model.UpdateSubstances(solved);
   }
   const Sampling blocks = SampleBlocks(kSampled, *sampling.solver, sampling.threads);
-  if (model.CrossValidate(blocks).EnergyAgainst(CrossValidate(blocks)) < -kProbableSubstances)
+  if (model.CrossValidate(blocks).EnergyAgainst(CrossValidate(blocks)) < -kGlossLogOdds)
     *this = model;
 }
 

@@ -9,18 +9,11 @@
 
 #include "base/parallel/parallel.h"
 #include "fitting/refine/gather.h"
+#include "fitting/refine/lower_median.h"
 #include "fitting/reflectance/log_radiance.h"
 
 namespace glint {
 namespace {
-
-// The lower of the two in the middle; 0 of none.
-float Median(std::vector<float>* values) {
-  if (values->empty()) return 0;
-  const auto middle = values->begin() + static_cast<std::ptrdiff_t>((values->size() - 1) / 2);
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
-}
 
 // Median over the views of π·I/(E·NoL), the albedo of a matte texel: highlights are rare among
 // them.
@@ -54,7 +47,7 @@ std::vector<float> MedianColour(const RefineProblem& problem, const SvbrdfMaps& 
             values.push_back(std::numbers::pi_v<float> * radiance / received);
           }
           colour[static_cast<size_t>(c) * texels + batch[static_cast<size_t>(lane)]] =
-              Median(&values);
+              LowerMedian(&values);
         }
       }
     }
@@ -65,8 +58,9 @@ std::vector<float> MedianColour(const RefineProblem& problem, const SvbrdfMaps& 
 }  // namespace
 
 TexelLooks LooksOf(const RefineProblem& problem, const SvbrdfMaps& initial, const SampleLook& look,
-                   int threads) {
-  return {MedianColour(problem, initial, threads), look.GlossOf(problem, threads)};
+                   bool with_gloss, int threads) {
+  return {MedianColour(problem, initial, threads),
+          with_gloss ? look.GlossOf(problem, threads) : std::vector<float>()};
 }
 
 SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
@@ -78,6 +72,7 @@ SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
 
 SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
                        const SampleSubstances& known, int threads)
-    : SamplePart(problem, initial, known, LooksOf(problem, initial, known.look, threads)) {}
+    : SamplePart(problem, initial, known,
+                 LooksOf(problem, initial, known.look, known.substances.by_gloss(), threads)) {}
 
 }  // namespace glint

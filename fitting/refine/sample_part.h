@@ -16,9 +16,9 @@ struct SampleSubstances {
   Substances substances;
 };
 
-// Of the problem's texels, views as they are said to be.
+// What the problem's texels are told apart by; views nominal. `with_gloss` false: by colour alone.
 TexelLooks LooksOf(const RefineProblem& problem, const SvbrdfMaps& initial, const SampleLook& look,
-                   int threads);
+                   bool with_gloss, int threads);
 
 class SamplePart {
  public:

@@ -31,8 +31,9 @@ struct TriedSpreads {
 };
 
 // Coordinate descent on the negative log posterior, from factors of 1: roughness and specular
-// albedo together, normals, specular albedo alone, diffuse albedo, the initialisation; then again
-// until nothing is better. Returns the best first, then along the axes through it all that is not
+// albedo together, normals, specular albedo alone, diffuse albedo, the initial maps' errors,
+// neighbours, and neighbours against roughness and specular albedo; then again until nothing is
+// better. Returns the best first, then along the axes through it all that is not
 // improbable; the way to it, which rounding decides, is not told. The initialisation is expected to
 // err by as much as is said, within a factor of two.
 std::vector<TriedSpreads> SearchSpreads(

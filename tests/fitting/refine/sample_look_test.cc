@@ -136,7 +136,7 @@ TEST(SampleLook, TwoPhotographsAndMaskedOnesTellNothing) {
   for (const float g : SampleLook(nothing, 1).GlossOf(nothing, 1)) EXPECT_EQ(g, 0);
 }
 
-// From a start that knows nothing of them. As one substance with the varnish they stay like it.
+// From initial maps that know nothing of them. As one substance with the varnish they stay like it.
 TEST(Refine, FindsRoughLinesInAGlossySubstance) {
   SyntheticScene scene = Photograph(Pored(), 7, 8);
   AddNoise(0.05, &scene);

@@ -176,7 +176,7 @@ TEST(SpreadSearch, WhatIsAsLikelyCountsAsMuch) {
   EXPECT_NEAR(factors[kDiffuseSpread], 0.5, 1e-12);
 }
 
-// What a texel's rendering differs by in two photographs, the second 20 % brighter than is said.
+// What a texel's rendering differs by in two photographs, the second 20 % brighter than stated.
 std::vector<ViewDifferences> BrighterSecond(float scatter) {
   std::vector<ViewDifferences> texels;
   for (int t = 0; t < 100; ++t) {
