@@ -42,7 +42,7 @@ void AddNoise(Alike alike, SyntheticScene* scene) {
 }
 
 RefineResult Refined(Alike alike, int views) {
-  const SvbrdfMaps truth = QuarteredMaps(24, 32);
+  const SvbrdfMaps truth = QuarteredMaps(40, 32);
   SyntheticScene scene = Photograph(truth, views);
   AddNoise(alike, &scene);
   return Refine(scene.Problem(), test::DisturbedMaps(truth, 0.5f, 33), {}, 1);
@@ -50,7 +50,7 @@ RefineResult Refined(Alike alike, int views) {
 
 // Root mean square of error / stated deviation of roughness, the widest tenth left out.
 double ErrorOverSigma(const RefineResult& result) {
-  const SvbrdfMaps truth = QuarteredMaps(24, 32);
+  const SvbrdfMaps truth = QuarteredMaps(40, 32);
   std::vector<double> squares;
   for (size_t t = 0; t < truth.texels(); ++t) {
     const double ratio = (result.maps.plane(kRoughness)[t] - truth.plane(kRoughness)[t]) /
@@ -72,7 +72,7 @@ TEST(ResidualNoise, TheSizeOfNoiseIsTheSameEitherWay) {
 
 // With the widest tenth left out, normal errors give 0.79. What is not measurement is taken to be
 // common to the channels and to neighbours: where it is, deviations hold; where it is not, they are
-// too large, by up to 1.8 for neighbours or √2.8 · 1.6 for both, and never too small.
+// too large, by up to 1.8 for neighbours or √2.8 times that for both, and never too small.
 TEST(ResidualNoise, DeviationsHoldWhereChannelsShareTheirErrors) {
   const double ratio = ErrorOverSigma(Refined(Alike::kChannels, 16));
   EXPECT_GT(ratio, 0.79 / 1.8);
@@ -83,14 +83,14 @@ TEST(ResidualNoise, DeviationsHoldWhereChannelsShareTheirErrors) {
 TEST(ResidualNoise, DeviationsHoldWhereNeighboursShareTheirErrors) {
   for (const int views : {2, 3, 4}) {
     const double ratio = ErrorOverSigma(Refined(Alike::kNeighbours, views));
-    EXPECT_GT(ratio, 0.79 / 1.8) << views;
+    EXPECT_GT(ratio, 0.5) << views;
     EXPECT_LT(ratio, 1.2) << views;
   }
 }
 
 TEST(ResidualNoise, DeviationsAreOnTheSafeSideWhereChannelsErrOnTheirOwn) {
   const double ratio = ErrorOverSigma(Refined(Alike::kNone, 16));
-  EXPECT_GT(ratio, 0.79 / std::sqrt(2.8) / 1.6);
+  EXPECT_GT(ratio, 0.79 / std::sqrt(2.8) / 1.8);
   EXPECT_LT(ratio, 1.2);
 }
 
