@@ -179,7 +179,9 @@ Json ExportMaterial(const ExportTask& task, const ExportOptions& options,
   material.diffuse_weight = convention.diffuse_weight;
   material.width_mm = task.size_mm[0];
   material.height_mm = task.size_mm[1];
-  MetalRows metal(material.diffuse_weight, options.metal, threads);
+  MetalRoughnessOptions metal_options = options.metal;
+  metal_options.metal_share = MetalShareOf(task.metals);
+  MetalRows metal(material.diffuse_weight, metal_options, threads);
   material.metal = MetalOf(material.maps, &metal);
 
   const SamplePlane plane{width, height, task.size_mm[0], task.size_mm[1], convention.sampling};

@@ -18,7 +18,8 @@ struct ExportTask {
   std::filesystem::path maps_manifest;  // of refine, fit or tile; svbrdf.exr beside it
   std::array<double, 2> size_mm{0, 0};
   bool repeats = false;
-  int rows_at_once = 0;  // in memory; 0: as memory allows; never changes a value
+  int rows_at_once = 0;         // in memory; 0: as memory allows; never changes a value
+  std::string metals = "rare";  // how the maps were found: fitting/reflectance/material_kinds.h
 };
 
 // Writes all files as outputs of `stage`; the manifest's data. Throws UserError, EnvironmentError.

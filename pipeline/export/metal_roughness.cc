@@ -8,6 +8,7 @@
 #include "base/parallel/parallel.h"
 #include "pipeline/export/best_base_color.h"
 #include "pipeline/export/direction_pairs.h"
+#include "pipeline/export/kind_costs.h"
 
 namespace glint {
 // Named, since MetalConverter holds some of it.
@@ -16,6 +17,9 @@ namespace metal_tables {
 // That are tried: denser near 0, where F0 is a little above 0.04, and near 1, where a metal has a
 // little diffuse light.
 constexpr int kMetalnesses = 17;
+// What a unit of negative log probability costs, of log radiance: a texel that no metal and no
+// dielectric reflects like is off by so much in the mean (Laplace's distribution).
+constexpr float kErrorScale = 0.1f;
 constexpr double kLeastRoughness = 0.03;
 constexpr int kRoughnessBins = 64;
 
@@ -23,6 +27,12 @@ constexpr int kRoughnessBins = 64;
 double Metalness(double label) {
   const double t = std::clamp(label / (kMetalnesses - 1), 0.0, 1.0);
   return t * t * (3 - 2 * t);
+}
+
+std::vector<double> AllMetalnesses() {
+  std::vector<double> all;
+  for (int label = 0; label < kMetalnesses; ++label) all.push_back(Metalness(label));
+  return all;
 }
 
 size_t BinOf(double roughness) {
@@ -163,7 +173,10 @@ void SetColours(const SvbrdfMaps& maps, size_t begin, size_t end, Rows* rows) {
   }
 }
 
-void SetCosts(const CostTable& table, const std::vector<std::uint32_t>& cells, double blend_cost,
+// `texel_at` gives the texel of an index.
+template <class TexelAt>
+void SetCosts(const CostTable& table, const KindCosts& kinds,
+              const std::vector<std::uint32_t>& cells, const TexelAt& texel_at, double blend_cost,
               size_t begin, size_t end, Rows* rows) {
   Costs blend;
   for (size_t label = 0; label < kMetalnesses; ++label) {
@@ -173,9 +186,11 @@ void SetCosts(const CostTable& table, const std::vector<std::uint32_t>& cells, d
   for (size_t i = begin; i < end; ++i) {
     const Costs &red = table.at(cells[3 * i]), &green = table.at(cells[3 * i + 1]),
                 &blue = table.at(cells[3 * i + 2]);
+    const Texel texel = texel_at(i);
+    const KindLook look = KindLookOf(texel.diffuse, texel.specular);
     for (size_t label = 0; label < kMetalnesses; ++label) {
-      rows->costs[label * rows->texels + i] =
-          blend[label] + (red[label] + green[label] + blue[label]) / 3;
+      rows->costs[label * rows->texels + i] = blend[label] + kErrorScale * kinds.At(label, look) +
+                                              (red[label] + green[label] + blue[label]) / 3;
     }
   }
 }
@@ -263,13 +278,19 @@ std::array<float, 3> MetalRoughness::ColorAt(size_t texel) const {
 }
 
 struct MetalConverter::Tables {
+  explicit Tables(double metal_share) : kinds(AllMetalnesses(), metal_share) {}
+
   TermsTable terms = TermsByRoughness();
   CostTable costs;
+  KindCosts kinds;
 };
 
 MetalConverter::MetalConverter(DiffuseWeight weight, const MetalRoughnessOptions& options,
                                int threads)
-    : weight_(weight), options_(options), threads_(threads), tables_(new Tables) {}
+    : weight_(weight),
+      options_(options),
+      threads_(threads),
+      tables_(new Tables(options.metal_share)) {}
 
 MetalConverter::~MetalConverter() = default;
 
@@ -287,8 +308,9 @@ MetalRoughness MetalConverter::Convert(const SvbrdfMaps& maps, int above, int be
   });
   tables_->costs.Add(tables_->terms, cells, threads_);
   ForEachBlock(texels, kBlock, threads_, [&](int begin, int end) {
-    SetCosts(tables_->costs, cells, options_.blend_cost, static_cast<size_t>(begin),
-             static_cast<size_t>(end), &rows);
+    SetCosts(
+        tables_->costs, tables_->kinds, cells, [&](size_t i) { return TexelOf(maps, weight_, i); },
+        options_.blend_cost, static_cast<size_t>(begin), static_cast<size_t>(end), &rows);
   });
   const int converted = maps.height - above - below;
   MetalRoughness result{maps.width, converted, {}, {}};

@@ -5,7 +5,8 @@
 // dielectric of F0 = 0.04 whose diffuse lobe is weighted by 1 − F, blended with a metal of F0 =
 // base colour. For a given metalness its radiance is linear in base colour, so for each of a few
 // metalnesses the best base colour over pairs of light and view directions, on the highlight and
-// beside it, is a closed form. What errors these leave is averaged over neighbours of like colour
+// beside it, is a closed form. What errors these leave, and how improbable the metalness is given
+// F0, its colour and the diffuse light (kind_costs.h), is averaged over neighbours of like colour
 // (cost-volume filtering: Hosni et al., PAMI 2013) before a texel takes the best, so that metalness
 // is a property of substances, not of single texels.
 #pragma once
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "fitting/reflectance/convention.h"
+#include "fitting/reflectance/material_kinds.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "pipeline/export/direction_pairs.h"
 
@@ -30,6 +32,8 @@ struct MetalRoughnessOptions {
   double colour_width = 0.1;
   // Cost of metalness ½ beside 0 and 1: nothing is half a metal. Of log radiance.
   double blend_cost = 0.003;
+  // Prior share of metals among substances.
+  double metal_share = MetalShareOf("rare");
 };
 
 struct MetalRoughness {

@@ -64,6 +64,40 @@ TEST(MetalRoughnessTest, AMetalKeepsItsLittleDiffuseLight) {
   }
 }
 
+// Nothing of metal reflects so little, however well a dark metal would look like it.
+TEST(MetalRoughnessTest, DarkDielectricsAreNoMetals) {
+  const std::array<float, 10> felt = {0, 0, 1, 0.01f, 0.01f, 0.01f, 0.065f, 0.065f, 0.065f, 0.87f};
+  const std::array<float, 10> wood = {0, 0, 1, 0.03f, 0.012f, 0.004f, 0.07f, 0.055f, 0.04f, 0.3f};
+  const std::array<float, 10> leather = {0,     0,      1,      0.006f, 0.01f,
+                                         0.03f, 0.003f, 0.003f, 0.006f, 0.4f};
+  for (const auto& texel : {felt, wood, leather}) {
+    const auto found =
+        ToMetalRoughness(UniformMaps(texel), DiffuseWeight::kOneMinusSpecular, {}, 1);
+    EXPECT_LT(found.metallic[5], 0.05f) << texel[6];
+  }
+}
+
+// Foil under a light that is stronger than thought: only its colour and that it is black beside its
+// highlight tell.
+TEST(MetalRoughnessTest, ColouredFoilIsMetal) {
+  const auto found =
+      ToMetalRoughness(UniformMaps({0, 0, 1, 0.004f, 0.004f, 0.004f, 0.21f, 0.19f, 0.08f, 0.1f}),
+                       DiffuseWeight::kOneMinusSpecular, {}, 1);
+  EXPECT_GT(found.metallic[5], 0.7f);
+}
+
+TEST(MetalRoughnessTest, BetweenTheKindsTheShareOfMetalsDecides) {
+  const SvbrdfMaps maps = UniformMaps({0, 0, 1, 0.01f, 0.01f, 0.01f, 0.11f, 0.11f, 0.11f, 0.5f});
+  MetalRoughnessOptions possible;
+  possible.metal_share = 0.9;
+  MetalRoughnessOptions rare;
+  rare.metal_share = 0.01;
+  const auto metallic = [&](const MetalRoughnessOptions& options) {
+    return ToMetalRoughness(maps, DiffuseWeight::kOne, options, 1).metallic[5];
+  };
+  EXPECT_GT(metallic(possible), metallic(rare) + 0.3f);
+}
+
 TEST(MetalRoughnessTest, MetalnessIsOfSubstancesNotOfTexels) {
   const SvbrdfMaps maps = Foils(48);
   const auto found = ToMetalRoughness(maps, DiffuseWeight::kOne, {}, 2);

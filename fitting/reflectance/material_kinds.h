@@ -1,0 +1,26 @@
+// What physics knows of the specular albedo F0 at perpendicular incidence: dielectrics reflect 2 to
+// 8 % of white light, metals a third to all of it in a colour of their own.
+#pragma once
+
+#include <string_view>
+
+namespace glint {
+
+// A log-normal distribution of F0.
+struct MaterialKind {
+  double f0;          // its median
+  double log_spread;  // standard deviation of its logarithm
+};
+
+// Indices of refraction of 1.33 to 1.8: two standard deviations.
+inline constexpr MaterialKind kDielectric{0.04, 0.35};
+// Iron and nickel .5, rusty or tarnished metals a third, silver .95.
+inline constexpr MaterialKind kMetal{0.5, 0.5};
+
+// Prior share of metals among the substances that people photograph ("rare"), and where there may
+// be metal ("possible").
+inline constexpr double MetalShareOf(std::string_view metals) {
+  return metals == "possible" ? 0.5 : 0.1;
+}
+
+}  // namespace glint
