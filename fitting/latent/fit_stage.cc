@@ -217,6 +217,7 @@ Json Data(const FitResult& fit, const RectifiedSet& set, const FitStageOptions& 
   return {{"convention", ToString(set.convention)},
           {"light_scale_rgb", std::vector<double>(3, fit.light_scale)},
           {"views", names},
+          {"metals", options.metals},
           {"method", options.method}};
 }
 
@@ -232,8 +233,8 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
       "how the initial maps are estimated; estimator: a trained network; heuristic: lobes fitted "
       "to the whole sample");
   set->AddChoice("metals", &options->metals, {"rare", "possible"},
-                 "how the estimator interprets dark, glossy areas; rare: glass, lacquer, print and "
-                 "the like; possible: perhaps metal");
+                 "how dark, glossy areas are interpreted, by the estimator, in refinement and in "
+                 "export; rare: glass, lacquer, print and the like; possible: perhaps metal");
   set->AddRange("estimator-size", &options->estimator_size, 0, kFullSize,
                 "texels along the longer side at which the estimator is shown the photographs, at "
                 "most; 0: by their number, which is then recorded in the manifest");

@@ -11,7 +11,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kFitVersion = 10;
+inline constexpr int kFitVersion = 11;
 
 struct FitStageOptions {
   // latent: in the learned space; classic: texel by texel; start: no fitting, the start as it is

@@ -74,6 +74,10 @@ std::string RefineOptions::Check() const {
   if (neighbour_passes < 0) return "neighbour passes must be at least 0";
   if (!(flash_offset >= 0.0)) return "the expected flash offset must be at least 0";
   if (!(flash_beam >= 0.0)) return "the expected gradient of the flash's beam must be at least 0";
+  if (!(kinds.light_power_spread > 0.0)) return "the spread of the light's power must be above 0";
+  if (!(kinds.metal_share > 0.0 && kinds.metal_share < 1.0)) {
+    return "the share of metals must be between 0 and 1";
+  }
   if (!(distance_power >= 0.0)) return "the expected power of distance must be at least 0";
   if (!(exposure_spread >= 0.0)) return "the expected exposure spread must be at least 0";
   if (!(residual_sigma > 0.0)) return "the expected scale of residuals must be above 0";

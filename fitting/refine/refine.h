@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "fitting/refine/kinds_prior.h"
 #include "fitting/reflectance/convention.h"
 #include "fitting/reflectance/environment_lighting.h"
 #include "fitting/reflectance/svbrdf_deviations.h"
@@ -77,6 +78,8 @@ struct RefineOptions {
   // Scale σ expected of residuals (log radiance) before any is seen: a weak prior, which decides
   // where photographs are few (residual_model.h).
   double residual_sigma = 0.05;
+  // Of substances. That of the light's power is what calibration leaves open of a board's white.
+  KindsPriorOptions kinds;
   // Standard deviations expected of all views' light (shared_light.h). 0: as said.
   double flash_beam = 0, distance_power = 0;
   double prior = 1.0;  // factor on the priors' weight; 0: none

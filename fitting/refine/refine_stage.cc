@@ -13,6 +13,7 @@
 #include "fitting/refine/sample_source.h"
 #include "fitting/refine/substances.h"
 #include "fitting/reflectance/brdf.h"
+#include "fitting/reflectance/material_kinds.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "fitting/view_correction/shared_light.h"
 #include "pipeline/contract/progress.h"
@@ -191,10 +192,13 @@ int RowsAtOnce(const SamplePlane& plane, size_t views) {
 }
 
 // What is expected of views whose light nobody calibrated.
-RefineOptions OptionsFor(const RectifiedSet& set, const RefineStageOptions& options) {
+RefineOptions OptionsFor(const RectifiedSet& set, const RefineStart& start,
+                         const RefineStageOptions& options) {
   RefineOptions refine = options.refine;
+  refine.kinds.metal_share = MetalShareOf(start.metals);
   if (set.light_power_known) return refine;
   refine.flash_offset = options.flash_offset;
+  refine.kinds.light_power_spread = options.light_power_spread;
   refine.exposure_spread = options.exposure_spread;
   refine.light_spread = options.light_spread;
   refine.residual_sigma = options.residual_sigma;
@@ -222,7 +226,7 @@ struct Sample {
          const RefineStageOptions& stage_options, int threads)
       : set(ReadRectifiedSet(rectify_manifest)),
         views(ChooseViews(set, start, stage_options)),
-        options(OptionsFor(set, stage_options)),
+        options(OptionsFor(set, start, stage_options)),
         source(set, views, start.light_scale_rgb, start.maps_file, start.deviations_file),
         correction(CorrectViewsWithBar(stage_options.refine,
                                        CorrectionFor(set, views, stage_options.correction), threads,
@@ -392,6 +396,10 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "distance-power", &options->distance_power, 0, 10,
       "prior standard deviation of p, where the light's intensity varies as distance^p "
       "(automatic exposure, uncertain distances), if the light was not calibrated; 0: none");
+  set->AddRange(
+      "light-power-spread", &options->light_power_spread, 0.01, 10,
+      "prior standard deviation of the logarithm of the light's power, if the light was not "
+      "calibrated: by so much may all specular albedos be off together");
   set->AddRange("rows-at-once", &options->rows_at_once, 0, 1 << 20,
                 "rows of texels held in memory at once; the result does not depend on it; 0: as "
                 "memory allows",
@@ -433,6 +441,7 @@ RefineStart ResolveRefineStart(const fs::path& work, const RefineStageOptions& o
     const auto scale = RequireNumbers(file, fit.data, "data", "light_scale_rgb", 3);
     std::copy(scale.begin(), scale.end(), start.light_scale_rgb.begin());
   }
+  start.metals = fit.data.value("metals", start.metals);
   const Json& views = RequireField(file, fit.data, "data", "views");
   const auto is_name = [](const Json& name) { return name.is_string(); };
   if (!views.is_array() || !std::all_of(views.begin(), views.end(), is_name)) {
@@ -463,6 +472,7 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
                  {"light_scale_rgb", start.light_scale_rgb},
                  {"shared_light", JsonOf(result.summary.shared_light)},
                  {"views", result.views},
+                 {"metals", start.metals},
                  {"method", "refined"}};
   result.metrics = Metrics(result.summary, sample.views);
   AddCorrections(Corrections(result.correction, result.summary), sample.views, &result.data);

@@ -14,7 +14,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 33;
+inline constexpr int kRefineVersion = 34;
 
 struct RefineStageOptions {
   RefineOptions refine;
@@ -29,6 +29,8 @@ struct RefineStageOptions {
   double residual_sigma = 0.1;
   double flash_beam = 0.3;
   double distance_power = 1;
+  // Likewise KindsPriorOptions::light_power_spread: estimators find it within a half.
+  double light_power_spread = 0.5;
   int rows_at_once = 0;              // in memory; 0: as memory allows; never changes a value
   std::string part;                  // "K/N": that part alone; empty: all rows
   int join = 0;                      // this many parts; 0: refine
@@ -46,6 +48,7 @@ struct RefineStart {
   std::filesystem::path manifest_file;    // of fit; empty with `from`
   Vec3d light_scale_rgb{1, 1, 1};
   std::vector<std::string> views;
+  std::string metals = "rare";  // FitStageOptions::metals
 };
 
 // Throws UserError (no result of fit, a damaged manifest, wrong options).

@@ -124,6 +124,7 @@ SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
                    options.flash_beam, options.distance_power}) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   means_.mean = InitialMeans(part);
+  means_.kinds = options.kinds;
   if (!has_sample_priors_) means_.roughness_spread = means_.specular_spread = kUnknownSpread;
 }
 

@@ -20,37 +20,7 @@ constexpr float kLeastShare = 1e-3f;      // a texel that has less of a substanc
 constexpr int kIterations = 40;
 constexpr size_t kClustered = 8192;
 
-// A substance is a dielectric or a metal. Dielectrics reflect 2 to 8 % (two standard deviations
-// would be 0.35 of the logarithm; 0.6 for light whose power is known within a half) and have no
-// colour; metals reflect a half, or a third to all, in a colour of their own.
-struct Kind {
-  double share, log_specular, log_spread;
-  double chroma;  // standard deviation of channels about their mean, relative
-
-  // Of a substance of this specular albedo and these squared relative departures of its channels,
-  // of which two are free.
-  double Density(double specular, double departures) const {
-    const double off = (std::log(specular) - log_specular) / log_spread;
-    return share / (log_spread * chroma * chroma) *
-           std::exp(-0.5 * (off * off + departures / (chroma * chroma)));
-  }
-};
-const Kind kDielectric{0.9, std::log(0.04), 0.6, 0.05}, kMetal{0.1, std::log(0.5), 0.5, 0.6};
-constexpr double kLeastSpecular = 1e-4;
 constexpr double kMostMeanStep = 0.5;  // of a mean, in one round, relative
-
-// Of a channel's departure from the mean, relative, in a substance of which it is known how
-// probably it is a dielectric: expectation maximisation.
-double ChromaPrecision(const SharedValues& mean) {
-  const double grey = (mean[0] + mean[1] + mean[2]) / 3, size = grey + kSpecularOffset;
-  double departures = 0;
-  for (size_t p = 0; p < 3; ++p) departures += (mean[p] - grey) * (mean[p] - grey) / (size * size);
-  const double dielectric = kDielectric.Density(grey + kLeastSpecular, departures);
-  const double metal = kMetal.Density(grey + kLeastSpecular, departures);
-  return (dielectric / (kDielectric.chroma * kDielectric.chroma) +
-          metal / (kMetal.chroma * kMetal.chroma)) /
-         (dielectric + metal);
-}
 
 using Feature = std::array<float, 4>;
 
@@ -103,6 +73,26 @@ std::vector<Feature> Centres(const std::vector<Feature>& features, int count) {
     }
   }
   return centres;
+}
+
+constexpr Eigen::Index kSpecularValues = 3;  // the first of the shared ones
+
+void AddKinds(const SubstanceMeans& means, Eigen::MatrixXd* information,
+              Eigen::VectorXd* gradient) {
+  std::vector<SpecularMean> specular;
+  for (const SharedValues& m : means.mean) specular.emplace_back(m[0], m[1], m[2]);
+  const KindsPrior kinds = PriorOfKinds(specular, means.kinds);
+  constexpr auto kN = static_cast<Eigen::Index>(kShared);
+  const auto count = static_cast<Eigen::Index>(specular.size());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    for (Eigen::Index l = 0; l < count; ++l) {
+      information->block<kSpecularValues, kSpecularValues>(kN * k, kN * l) +=
+          kinds.information.block<kSpecularValues, kSpecularValues>(kSpecularValues * k,
+                                                                    kSpecularValues * l);
+    }
+    gradient->segment<kSpecularValues>(kN * k) +=
+        kinds.gradient.segment<kSpecularValues>(kSpecularValues * k);
+  }
 }
 
 }  // namespace
@@ -228,35 +218,23 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, const SampleWorth&
   const Eigen::MatrixXd of_samples = information;
   information *= worth.shared_by_half_vector;
   gradient *= worth.shared_by_half_vector;
-  // Means are expected within a wide range of their common mean.
+  // Roughness and diffuse albedo are expected within a wide range of their common mean.
   SharedValues common{};
   for (const SharedValues& m : means->mean) {
     for (size_t p = 0; p < kShared; ++p) common[p] += m[p] / static_cast<double>(count);
   }
   for (Eigen::Index k = 0; k < count; ++k) {
-    for (Eigen::Index p = 0; p < kN; ++p) {
+    for (Eigen::Index p = kSpecularValues; p < kN; ++p) {
       const auto q = static_cast<size_t>(p);
       const double width =
-          kBetweenToWithin * (p == 3  ? kExpectedRoughnessSpread
-                              : p > 3 ? kExpectedDiffuseSpread * (common[q] + kSpecularOffset)
-                                      : kExpectedSpecularSpread * (common[q] + kSpecularOffset));
+          kBetweenToWithin * (p == 3 ? kExpectedRoughnessSpread
+                                     : kExpectedDiffuseSpread * (common[q] + kSpecularOffset));
       const double precision = 1 / (width * width);
       information(kN * k + p, kN * k + p) += precision;
       gradient[kN * k + p] += precision * (common[q] - means->mean[static_cast<size_t>(k)][q]);
     }
   }
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const SharedValues& m = means->mean[static_cast<size_t>(k)];
-    const double grey = (m[0] + m[1] + m[2]) / 3;
-    const double size = grey + kSpecularOffset;
-    const double chroma = ChromaPrecision(m) / (size * size);
-    for (Eigen::Index p = 0; p < 3; ++p) {
-      for (Eigen::Index q = 0; q < 3; ++q) {
-        information(kN * k + p, kN * k + q) += ((p == q ? 1.0 : 0.0) - 1.0 / 3) * chroma;
-      }
-      gradient[kN * k + p] += (grey - m[static_cast<size_t>(p)]) * chroma;
-    }
-  }
+  AddKinds(*means, &information, &gradient);
   Eigen::VectorXd least(kN * count), most(kN * count);
   for (Eigen::Index i = 0; i < kN * count; ++i) {
     const double mean = means->mean[static_cast<size_t>(i / kN)][static_cast<size_t>(i % kN)];

@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "fitting/refine/kinds_prior.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/texel/texel_prior.h"
 
@@ -67,6 +68,7 @@ struct SubstanceMeans {
   // relative to mean + kSpecularOffset.
   double roughness_spread = kExpectedRoughnessSpread, specular_spread = kExpectedSpecularSpread;
   double diffuse_spread = kUnknownSpread;
+  KindsPriorOptions kinds;
 
   // Covariance of all means' errors, row-major by substance and value; empty: they are certain.
   std::vector<double> covariance;

@@ -39,7 +39,8 @@ void AddTileOptions(OptionSet* set, TileStageOptions* options) {
 TileStageResult RunTileStage(const Capture& capture, const TileStageOptions& options, int threads,
                              Stage* stage) {
   const auto source = capture.work() / options.from / "manifest.json";
-  VerifyOutputs(source, ReadManifest(source, options.from));
+  const Manifest made_from = ReadManifest(source, options.from);
+  VerifyOutputs(source, made_from);
   ReflectanceConvention convention;
   SvbrdfMaps maps = ReadSvbrdf(source.parent_path() / "svbrdf.exr", &convention);
   ContinueBorder(&maps, options.border);
@@ -65,6 +66,7 @@ TileStageResult RunTileStage(const Capture& capture, const TileStageOptions& opt
                    convention, threads);
   stage->Commit({{"convention", ToString(convention)},
                  {"from", options.from},
+                 {"metals", made_from.data.value("metals", "rare")},
                  {"size_mm", {result.width_mm, result.height_mm}},
                  {"columns", IntervalJson(tile.across)},
                  {"rows", IntervalJson(tile.down)}},

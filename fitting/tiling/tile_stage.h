@@ -14,7 +14,7 @@
 
 namespace glint {
 
-inline constexpr int kTileVersion = 5;
+inline constexpr int kTileVersion = 6;
 
 struct TileStageOptions {
   std::string from = "refine";

@@ -35,6 +35,37 @@ TEST(Refine, OneSubstanceBecomesNearlyHomogeneous) {
             0.05 * MeanSquare(start, truth, kSpecularR, kSpecularB));
 }
 
+// Cloth, felt, asphalt: a lobe as rough as this hardly differs from diffuse light, and takes its
+// place where nothing is known of how much dielectrics reflect.
+TEST(Refine, DarkRoughDielectricsReflectWhatDielectricsDo) {
+  SvbrdfMaps truth = QuarteredMaps(32, 3);
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    truth.plane(kNormalX)[t] = truth.plane(kNormalY)[t] = 0;
+    truth.plane(kNormalZ)[t] = 1;
+    truth.plane(kRoughness)[t] = 0.85f;
+    for (int c = 0; c < 3; ++c) {
+      truth.plane(kDiffuseR + c)[t] *= 0.1f;
+      truth.plane(kSpecularR + c)[t] = 0.04f;
+    }
+  }
+  SvbrdfMaps start = truth;
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    for (int c = 0; c < 3; ++c) {
+      start.plane(kDiffuseR + c)[t] *= 0.4f;
+      start.plane(kSpecularR + c)[t] = 0.12f;
+    }
+  }
+  const SyntheticScene scene = Photograph(truth, 8, 8);
+  const auto error = [&](double light_power_spread) {
+    RefineOptions options;
+    options.kinds.light_power_spread = light_power_spread;
+    const SvbrdfMaps found = Refine(scene.Problem(), start, options, 1).maps;
+    return std::sqrt(MeanSquare(found, truth, kSpecularR, kSpecularB));
+  };
+  EXPECT_LT(error(0.1), 0.015);
+  EXPECT_GT(error(10), 1.5 * error(0.1));
+}
+
 // One level substance; roughness and specular albedo of texel t: .3 + roughness(t), .05 · (1 +
 // specular(t)).
 template <class Roughness, class Specular>

@@ -73,6 +73,7 @@ TEST(Refine, FindsTheShapeOfTheFlashsLight) {
 TEST(Refine, LeavesTheShapeOfALightThatIsAsSaid) {
   const SyntheticScene scene = Photograph(QuarteredMaps(40, 26), 8, 8);
   RefineOptions options;
+  options.kinds.light_power_spread = 0.5;
   options.exposure_spread = 0.1;
   options.flash_beam = 0.3;
   options.distance_power = 1;
