@@ -55,7 +55,7 @@ int Measure(const std::filesystem::path& folder, int texels) {
     const std::filesystem::path file = capture.folder / calibrated.photo;
     Photo photo = Timed(&times.decode, [&] { return ReadPhoto(file); });
     pixels += static_cast<double>(photo.image.pixels());
-    const Encoding encoding = ResolveEncoding(capture.encoding, file, photo.bits);
+    const Encoding encoding = ResolveEncoding(capture.encoding, file, photo);
     const BoardDetection detection =
         Timed(&times.detect, [&] { return DetectBoard(GrayFromPhoto(photo), capture.board); });
     LightPhoto light{calibrated.photo,

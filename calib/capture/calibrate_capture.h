@@ -20,7 +20,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 14;
+inline constexpr int kCalibVersion = 15;
 
 struct RejectedPhoto {
   std::string name, reason;

@@ -50,7 +50,7 @@ DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
   detected.camera_model = photo.camera_model;
   detected.clips = !photo.is_float();
   detected.exposure = photo.exposure();
-  const Encoding encoding = ResolveEncoding(capture.resolved_encoding(), file, photo.bits);
+  const Encoding encoding = ResolveEncoding(capture.resolved_encoding(), file, photo);
   if (!capture.has_board) {
     detected.picture = SamplePictureOf(photo, encoding, {}, capture.sample_size_mm);
     return detected;

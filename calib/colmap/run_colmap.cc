@@ -52,7 +52,7 @@ std::string WorkName(const std::vector<ColmapPhoto>& photos, size_t index) {
 
 void WriteCopy(const fs::path& from, const fs::path& to, const std::string& encoding) {
   Photo photo = ReadPhoto(from);
-  if (ResolveEncoding(encoding, from, photo.bits) == Encoding::kLinear) {
+  if (ResolveEncoding(encoding, from, photo) == Encoding::kLinear) {
     for (float& value : photo.image.samples) {
       value = std::pow(std::clamp(value, 0.0f, 1.0f), 1 / 2.2f);
     }

@@ -40,7 +40,9 @@ std::optional<Mean> DiscMean(const Photo& photo, Encoding encoding,
     }
   }
   if (count == 0) return std::nullopt;
-  return Mean{sum / count, count};
+  const Eigen::Vector3f mean = (sum / count).cast<float>();
+  const auto rec709 = photo.colour.rec709_from_rgb({mean[0], mean[1], mean[2]});
+  return Mean{{rec709[0], rec709[1], rec709[2]}, count};
 }
 
 }  // namespace

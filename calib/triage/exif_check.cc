@@ -73,6 +73,24 @@ void CheckLens(const PhotoMeasures& photo, std::vector<Remark>* remarks) {
   }
 }
 
+void CheckColours(const PhotoMeasures& photo, std::vector<Remark>* remarks) {
+  const ColourProfile& colour = photo.file.colour;
+  constexpr int kUncalibrated = 65535;
+  if (!colour.ignored.empty()) {
+    Say(photo,
+        fmt::format("its colour profile '{}' is not used ({}), its colours are read as sRGB; "
+                    "convert the photographs to sRGB, or to 16-bit TIFF in linear Rec.709",
+                    colour.name, colour.ignored),
+        remarks);
+  } else if (colour.name.empty() && photo.file.exif.colour_space == kUncalibrated &&
+             photo.file.format != "raw") {
+    Say(photo,
+        "EXIF says that its colours are not sRGB's, and no profile says whose they are: read as "
+        "sRGB; set the camera to sRGB, or let the profile in the file",
+        remarks);
+  }
+}
+
 void CheckExposure(const PhotoMeasures& photo, std::vector<Remark>* remarks) {
   const Photo& file = photo.file;
   if (Differ(file.exposure_time_s, file.exif.shutter_s, kStops)) {
@@ -215,6 +233,7 @@ std::vector<Remark> CheckExif(const std::vector<PhotoMeasures>& photos) {
   for (const PhotoMeasures& photo : photos) {
     CheckSize(photo, &remarks);
     CheckLens(photo, &remarks);
+    CheckColours(photo, &remarks);
     CheckExposure(photo, &remarks);
   }
   CheckFlash(photos, &remarks);

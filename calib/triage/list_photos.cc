@@ -69,19 +69,19 @@ std::string NumberText(double value, const char* before, const char* after) {
 
 std::string Row(const ListedPhoto& photo) {
   if (!photo.problem.empty()) {
-    return fmt::format("| {} | | | | | | | cannot be read: {} |\n", photo.name, photo.problem);
+    return fmt::format("| {} | | | | | | | | cannot be read: {} |\n", photo.name, photo.problem);
   }
   const Photo& f = photo.measures.file;
   std::string remarks;
   for (const std::string& remark : OwnRemarks(photo)) {
     remarks += (remarks.empty() ? "" : "; ") + remark;
   }
-  return fmt::format("| {} | {}x{} | {} {} bit | {} | {} | {} ({}) | {}, {}, {} | {} |\n",
-                     photo.name, f.image.width, f.image.height, f.format, f.bits, f.orientation,
-                     f.camera_model.empty() ? "–" : f.camera_model,
-                     NumberText(f.exif.focal_length_mm, "", " mm"),
-                     NumberText(f.focal_length_35mm, "", " mm"), TimeText(f.exposure_time_s),
-                     NumberText(f.iso, "ISO ", ""), NumberText(f.f_number, "f/", ""), remarks);
+  return fmt::format(
+      "| {} | {}x{} | {} {} bit | {} | {} | {} | {} ({}) | {}, {}, {} | {} |\n", photo.name,
+      f.image.width, f.image.height, f.format, f.bits, f.colour.Description(), f.orientation,
+      f.camera_model.empty() ? "–" : f.camera_model, NumberText(f.exif.focal_length_mm, "", " mm"),
+      NumberText(f.focal_length_35mm, "", " mm"), TimeText(f.exposure_time_s),
+      NumberText(f.iso, "ISO ", ""), NumberText(f.f_number, "f/", ""), remarks);
 }
 
 }  // namespace
@@ -102,8 +102,9 @@ std::vector<std::string> OwnRemarks(const ListedPhoto& photo) {
 
 std::string TableOf(const std::vector<ListedPhoto>& photos) {
   std::string table =
-      "| file | pixels | format | orientation | camera | focal length (35 mm) | exposure | remarks "
-      "|\n|---|---|---|---|---|---|---|---|\n";
+      "| file | pixels | format | colours | orientation | camera | focal length (35 mm) | exposure "
+      "| remarks "
+      "|\n|---|---|---|---|---|---|---|---|---|\n";
   for (const ListedPhoto& photo : photos) table += Row(photo);
   return table;
 }

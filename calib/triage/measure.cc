@@ -142,6 +142,7 @@ Photo WithoutSamples(const Photo& photo) {
   facts.image.height = photo.image.height;
   facts.bits = photo.bits;
   facts.format = photo.format;
+  facts.colour = photo.colour;
   facts.focal_length_35mm = photo.focal_length_35mm;
   facts.exposure_time_s = photo.exposure_time_s;
   facts.iso = photo.iso;

@@ -147,6 +147,7 @@ Json ToJson(const PhotoMeasures& photo) {
   Json json = {{"size_px", {f.image.width, f.image.height}},
                {"format", f.format},
                {"bits", f.bits},
+               {"colours", f.colour.Description()},
                {"orientation", f.orientation},
                {"camera", f.camera_model},
                {"focal_length_mm", f.exif.focal_length_mm},

@@ -8,7 +8,7 @@ namespace glint {
 
 std::vector<float> ReadTheirRendering(const std::filesystem::path& file, int width, int height) {
   Photo photo = ReadPhoto(file);
-  const Encoding encoding = ResolveEncoding("gamma2.2", file, photo.bits);
+  const Encoding encoding = ResolveEncoding("gamma2.2", file, photo);
   const LinearPhoto linear(std::move(photo), encoding);
   cv::Mat picture(linear.height(), linear.width(), CV_32FC3);
   linear.Visit([&](const auto& reader) {

@@ -25,7 +25,7 @@ LinearPhoto ReadLinear(const ForeignView& view, const std::string& encoding_name
   SaturationRule rule;
   rule.stored_level = options.saturation_level;
   if (options.float_saturation_level > 0) rule.float_level = options.float_saturation_level;
-  const Encoding encoding = ResolveEncoding(encoding_name, view.image, photo.bits);
+  const Encoding encoding = ResolveEncoding(encoding_name, view.image, photo);
   return LinearPhoto(std::move(photo), encoding, rule);
 }
 

@@ -45,6 +45,8 @@ RectifiedImage RectifiedReader::Read(int first_row, int rows) {
     }
     std::vector<float>& values = i < 3 ? result.rgb : result.mask;
     values.insert(values.end(), plane.begin(), plane.end());
+    // Colours beyond Rec.709, which photographs with a wider profile have and albedos have not.
+    for (float& value : values) value = std::max(value, 0.0f);
   }
   return result;
 }

@@ -68,6 +68,35 @@ std::string Patterns(const fs::path& folder, const std::string& subfolder,
   return list.empty() ? "" : "[" + list + "]";
 }
 
+// A list in TOML; empty where there are none.
+std::string NamesIn(const std::string& subfolder, const std::set<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) {
+    list += (list.empty() ? "" : ", ") + TomlQuoted((fs::path(subfolder) / name).generic_string());
+  }
+  return list.empty() ? "" : "[" + list + "]";
+}
+
+struct Films {
+  std::set<std::string> live;  // beside photographs of the same names: filmed while those were taken
+  std::set<std::string> others;
+};
+
+Films FilmsIn(const fs::path& folder) {
+  std::set<std::string> stems;
+  Films films;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (IsPhotoFileName(entry.path())) stems.insert(entry.path().stem());
+  }
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const fs::path& file = entry.path();
+    if (!IsVideoFileName(file) || file.filename().string()[0] == '.') continue;
+    (stems.contains(file.stem()) ? films.live : films.others).insert(file.filename());
+  }
+  return films;
+}
+
 size_t Photographs(const fs::path& folder) {
   size_t count = 0;
   for (const auto& [extension, files] : CountFiles(folder, IsPhotoFileName)) count += files;
@@ -313,7 +342,12 @@ std::string PhotoText(const InitOptions& options, size_t* files) {
   size_t videos = 0;
   const std::string subfolder = PhotoFolder(options.folder);
   const std::string patterns = Patterns(options.folder, subfolder, IsPhotoFileName, files);
-  const std::string video = Patterns(options.folder, subfolder, IsVideoFileName, &videos);
+  const Films films = FilmsIn(options.folder / subfolder);
+  std::string video = Patterns(options.folder, subfolder, IsVideoFileName, &videos);
+  if (!films.live.empty()) {
+    videos = films.others.size();
+    video = NamesIn(subfolder, films.others);
+  }
   std::string text = "[photos]\n";
   if (!patterns.empty() || video.empty()) {
     text += "files = " + (patterns.empty() ? "[\"photos/*.jpg\"]" : patterns) + "\n";
@@ -321,6 +355,12 @@ std::string PhotoText(const InitOptions& options, size_t* files) {
   if (!video.empty()) {
     text += "video = " + video + "\nevery = " + std::to_string(options.every) +
             "                       # one frame in so many becomes a photograph\n";
+  }
+  if (!films.live.empty()) {
+    const size_t more = films.live.size() - 1;
+    text += "# left out: " + *films.live.begin() +
+            (more > 0 ? fmt::format(" and {} more", more) : "") +
+            "; films of live photographs, which show no flash\n";
   }
   *files += videos;
   return text + "\n";

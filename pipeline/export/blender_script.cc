@@ -80,7 +80,9 @@ def make_material():
     link(height, displace.inputs["Height"])
     if USE_DISPLACEMENT:
         link(displace.outputs["Displacement"], output.inputs["Displacement"])
-        material.cycles.displacement_method = "DISPLACEMENT"
+        # A property of the material since Blender 4.1, of Cycles' settings alone before.
+        owner = material if hasattr(material, "displacement_method") else material.cycles
+        owner.displacement_method = "DISPLACEMENT"
     return material
 
 

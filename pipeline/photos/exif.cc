@@ -56,9 +56,8 @@ Orientation OrientationOf(const std::filesystem::path& file, const OIIO::ImageIn
   return {orientation >= 1 && orientation <= 8 ? orientation : 1, false};
 }
 
-void ReadExif(const OIIO::ImageInput& input, Photo* photo) {
-  const OIIO::ImageSpec& spec = input.spec();
-  photo->format = input.format_name();
+void ReadExif(const OIIO::ImageSpec& spec, std::string_view format, Photo* photo) {
+  photo->format = format;
   photo->focal_length_35mm = Positive(spec, "Exif:FocalLengthIn35mmFilm");
   photo->exposure_time_s = Positive(spec, "ExposureTime");
   photo->f_number = Positive(spec, "FNumber");
@@ -82,6 +81,7 @@ void ReadExif(const OIIO::ImageInput& input, Photo* photo) {
   const float av = spec.get_float_attribute("Exif:ApertureValue", 0);
   if (tv != 0 && std::abs(tv) < 30) exif.shutter_s = std::exp2(-tv);
   if (av > 0 && av < 30) exif.aperture_f = std::exp2(0.5 * av);
+  exif.colour_space = spec.get_int_attribute("Exif:ColorSpace", 0);
   exif.flash = spec.get_int_attribute("Exif:Flash", -1);
   ReadWhiteBalance(spec, photo);
 }

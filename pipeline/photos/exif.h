@@ -4,6 +4,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <filesystem>
+#include <string_view>
 
 #include "pipeline/photos/photo.h"
 
@@ -17,7 +18,7 @@ struct Orientation {
 };
 Orientation OrientationOf(const std::filesystem::path& file, const OIIO::ImageInput& input);
 
-// Fills everything but image, bits and orientation.
-void ReadExif(const OIIO::ImageInput& input, Photo* photo);
+// Fills everything but image, bits, orientation and colour.
+void ReadExif(const OIIO::ImageSpec& spec, std::string_view format, Photo* photo);
 
 }  // namespace glint

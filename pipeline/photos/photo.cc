@@ -1,5 +1,6 @@
 // Photographs as cameras write them: see ReadPhoto in photo.h.
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/tiffutils.h>
 
 #include <cmath>
 #include <tuple>
@@ -10,6 +11,7 @@
 #include "pipeline/images/image_format.h"
 #include "pipeline/images/oiio.h"
 #include "pipeline/photos/exif.h"
+#include "pipeline/photos/heif_facts.h"
 #include "pipeline/photos/jpeg_end.h"
 #include "pipeline/photos/photo.h"
 #include "pipeline/photos/photo_header.h"
@@ -61,6 +63,33 @@ void RequireWholeRaw(const std::filesystem::path& file, const Photo& photo) {
   }
   throw UserError(file, "", "a RAW file without a picture: cut off or damaged",
                   "copy the photograph again, or take it out");
+}
+
+// Of PNG and TIFF, as OpenImageIO hands it on.
+std::string_view IccOf(const OIIO::ImageSpec& spec) {
+  const OIIO::ParamValue* icc = spec.find_attribute("ICCProfile");
+  if (icc == nullptr || icc->type().basetype != OIIO::TypeDesc::UINT8) return {};
+  return {static_cast<const char*>(icc->data()), icc->type().size()};
+}
+
+// EXIF and colours.
+void ReadFacts(const std::filesystem::path& file, const OIIO::ImageInput& input, Photo* photo) {
+  const std::string_view format = input.format_name();
+  OIIO::ImageSpec spec = input.spec();
+  if (format == "heif") {
+    const HeifFacts facts = ReadHeifFacts(file);
+    if (!facts.exif.empty()) OIIO::decode_exif(OIIO::string_view(facts.exif), spec);
+    photo->colour = facts.colour;
+  } else if (format == "jpeg") {
+    photo->colour = ReadColourProfile(IccOfJpeg(ReadTextFile(file, kMaxJpegBytes)));
+  } else if (format != "raw") {
+    photo->colour = ReadColourProfile(IccOf(spec));
+  }
+  ReadExif(spec, format, photo);
+  constexpr int kExifAdobeRgb = 2;
+  if (photo->colour.name.empty() && photo->exif.colour_space == kExifAdobeRgb) {
+    photo->colour = AdobeRgbProfile();
+  }
 }
 
 // The turn that is left to do, 1 … 8.
@@ -127,7 +156,7 @@ Photo ReadPhoto(const std::filesystem::path& file) {
   RequireSize(file, input->spec().width, input->spec().height);
   RequireWholeJpeg(file, *input);
   Photo photo;
-  ReadExif(*input, &photo);
+  ReadFacts(file, *input, &photo);
   const Orientation orientation = OrientationOf(file, *input);
   photo.orientation = orientation.exif;
   ReadPixels(file, input.get(), TurnToApply(orientation), &photo);
@@ -147,7 +176,7 @@ PhotoHeader ReadPhotoHeader(const std::filesystem::path& file) {
   header.is_jpeg = std::string_view(input->format_name()) == "jpeg";
   header.stored_width = input->spec().width;
   header.stored_height = input->spec().height;
-  ReadExif(*input, &header.photo);
+  ReadFacts(file, *input, &header.photo);
   header.photo.orientation = OrientationOf(file, *input).exif;
   return header;
 }

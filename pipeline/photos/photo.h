@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pipeline/images/image.h"
+#include "pipeline/photos/colour_profile.h"
 
 namespace glint {
 
@@ -19,6 +20,7 @@ struct ExifFacts {
   double shutter_s = 0;        // from ShutterSpeedValue, which should agree with the exposure time
   double aperture_f = 0;       // from ApertureValue, which should agree with the f-number
   int flash = -1;              // EXIF's bits, the lowest: it fired; −1: not told
+  int colour_space = 0;        // EXIF's ColorSpace: 1 sRGB, 2 Adobe RGB, 65535 another
   bool focal_is_zero = false;  // a tag is there, and holds nothing
   bool iso_is_zero = false;
   std::array<double, 3> white_balance{0, 0, 0};  // RAW: multipliers of R, G, B; G is 1
@@ -32,6 +34,7 @@ struct Photo {
   int bits = 8;        // 8, 16, or 32 for float
   std::string format;  // OpenImageIO's name: "jpeg", "heif", "raw", "tiff"…; "video" for a frame
   bool is_float() const { return bits == 32; }
+  ColourProfile colour;          // what R, G and B are; RAW is developed to Rec.709
   double focal_length_35mm = 0;  // EXIF; 0: absent
   double exposure_time_s = 0, iso = 0, f_number = 0;
   std::string camera_model;  // EXIF make and model

@@ -9,6 +9,14 @@
 #include "pipeline/images/image_format.h"
 
 namespace glint {
+namespace {
+
+// By nature.
+bool IsLinear(const std::filesystem::path& file, int bits) {
+  return bits > 16 || IsRawFileName(file);
+}
+
+}  // namespace
 
 std::optional<Encoding> EncodingFromName(std::string_view name) {
   if (name == "linear" || name == "none") return Encoding::kLinear;
@@ -74,8 +82,16 @@ bool IsResponseFileName(const std::string& name) {
   return std::filesystem::path(name).extension() == ".json";
 }
 
+Encoding ResolveEncoding(const std::string& name, const std::filesystem::path& file,
+                         const Photo& photo) {
+  if (name == "auto" && photo.colour.has_curve() && !IsLinear(file, photo.bits)) {
+    return Encoding(ResponseCurve{photo.colour.curve});
+  }
+  return ResolveEncoding(name, file, photo.bits);
+}
+
 Encoding ResolveEncoding(const std::string& name, const std::filesystem::path& file, int bits) {
-  const bool linear = bits > 16 || IsRawFileName(file);
+  const bool linear = IsLinear(file, bits);
   if (name == "auto") return linear ? Encoding::kLinear : Encoding::kGamma22;
   if (IsResponseFileName(name)) {
     return linear ? Encoding(Encoding::kLinear) : Encoding(ReadResponseCurve(name));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipeline/images/image.h"
+#include "pipeline/photos/photo.h"
 #include "pipeline/photos/photo_name.h"
 #include "rectify/linearize/response_curve.h"
 
@@ -54,9 +55,13 @@ std::vector<float> LinearTable(const Encoding& encoding, int codes, int channel 
 bool IsResponseFileName(const std::string& name);
 
 // The encoding of one photograph. `name` is "auto", a name that EncodingFromName knows, or the path
-// of a response curve (….json); "auto" is linear for floats and camera RAW files, gamma 2.2 for 8
-// and 16 bit. RAW and floats are linear by nature: a response curve, which is measured on what the
-// camera developed, is not for them. Throws UserError for others.
+// of a response curve (….json); "auto" is linear for floats and camera RAW files, and for 8 and 16
+// bit the curve of its colour profile, if that has one that is not sRGB's, or gamma 2.2. RAW and
+// floats are linear by nature: a response curve, which is measured on what the camera developed, is
+// not for them. Throws UserError for others.
+Encoding ResolveEncoding(const std::string& name, const std::filesystem::path& file,
+                         const Photo& photo);
+// Of one without a colour profile.
 Encoding ResolveEncoding(const std::string& name, const std::filesystem::path& file, int bits);
 
 }  // namespace glint

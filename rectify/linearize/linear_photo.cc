@@ -24,7 +24,10 @@ std::vector<Code> Pack(const Image& image) {
 }  // namespace
 
 LinearPhoto::LinearPhoto(Photo photo, const Encoding& encoding, const SaturationRule& saturation)
-    : width_(photo.image.width), height_(photo.image.height), bits_(photo.bits) {
+    : width_(photo.image.width),
+      height_(photo.image.height),
+      bits_(photo.bits),
+      colour_(std::move(photo.colour)) {
   if (bits_ == 8 || bits_ == 16) {
     const int codes = bits_ == 8 ? 256 : 65536;
     codes_ = static_cast<size_t>(codes);

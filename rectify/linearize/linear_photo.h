@@ -23,31 +23,40 @@ struct SaturationRule {
 // floats are linearised in place. Interleaved R, G, B codes, or three float planes.
 class LinearPhoto {
  public:
-  // One pixel: linear values, and whether any of the three had clipped.
+  // One pixel: linear Rec.709, in colours beyond it with channels below 0, and whether any of the
+  // three stored values had clipped.
   struct Pixel {
     std::array<float, 3> rgb;
     bool saturated;
   };
+
+  static std::array<float, 3> InRec709(const std::array<float, 3>& rgb,
+                                       const ColourProfile::Matrix* rec709_from_rgb) {
+    return rec709_from_rgb == nullptr ? rgb : (*rec709_from_rgb)(rgb);
+  }
 
   // Eight- and sixteen-bit codes: pixel i is data[3·i …]. `Code` is uint8_t or uint16_t.
   template <class Code>
   struct Codes {
     const Code* data;
     std::array<const float*, 3> table;
-    int saturated_from;  // first code that is clipped
+    int saturated_from;                            // first code that is clipped
+    const ColourProfile::Matrix* rec709_from_rgb;  // null: they are
     Pixel At(size_t i) const {
       const Code* p = data + 3 * i;
       const int brightest = std::max({p[0], p[1], p[2]});
-      return {{table[0][p[0]], table[1][p[1]], table[2][p[2]]}, brightest >= saturated_from};
+      return {InRec709({table[0][p[0]], table[1][p[1]], table[2][p[2]]}, rec709_from_rgb),
+              brightest >= saturated_from};
     }
   };
   struct Floats {
     const float* plane;
     size_t pixels;
     float saturated_from;
+    const ColourProfile::Matrix* rec709_from_rgb;
     Pixel At(size_t i) const {
       const float r = plane[i], g = plane[pixels + i], b = plane[2 * pixels + i];
-      return {{r, g, b}, std::max({r, g, b}) >= saturated_from};
+      return {InRec709({r, g, b}, rec709_from_rgb), std::max({r, g, b}) >= saturated_from};
     }
   };
 
@@ -61,9 +70,11 @@ class LinearPhoto {
   // Calls `f` with the storage's reader (Codes<uint8_t>, Codes<uint16_t> or Floats).
   template <class F>
   auto Visit(F&& f) const {
-    if (bits_ == 8) return f(Codes<uint8_t>{codes8_.data(), Tables(), saturated_code_});
-    if (bits_ == 16) return f(Codes<uint16_t>{codes16_.data(), Tables(), saturated_code_});
-    return f(Floats{planes_.data(), static_cast<size_t>(width_) * height_, saturated_value_});
+    const ColourProfile::Matrix* matrix = colour_.converts() ? &colour_.rec709_from_rgb : nullptr;
+    if (bits_ == 8) return f(Codes<uint8_t>{codes8_.data(), Tables(), saturated_code_, matrix});
+    if (bits_ == 16) return f(Codes<uint16_t>{codes16_.data(), Tables(), saturated_code_, matrix});
+    const size_t pixels = static_cast<size_t>(width_) * height_;
+    return f(Floats{planes_.data(), pixels, saturated_value_, matrix});
   }
 
  private:
@@ -75,6 +86,7 @@ class LinearPhoto {
   }
 
   int width_, height_, bits_;
+  ColourProfile colour_;
   size_t codes_ = 0;
   std::vector<float> table_;
   int saturated_code_ = 0;

@@ -10,7 +10,7 @@ StreamedPhoto Read(const std::filesystem::path& file, const std::string& encodin
   Photo photo = ReadPhoto(file);
   const bool ldr = !photo.is_float();
   const double exposure = photo.exposure();
-  const Encoding encoding = ResolveEncoding(encoding_name, file, photo.bits);
+  const Encoding encoding = ResolveEncoding(encoding_name, file, photo);
   return {LinearPhoto(std::move(photo), encoding, saturation), ldr, exposure};
 }
 

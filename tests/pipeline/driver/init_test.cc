@@ -56,6 +56,24 @@ TEST_F(RunTest, InitDescribesWhatIsInTheFolderAndKeepsAnExistingFile) {
   EXPECT_EQ(test::ReadAll(folder / "capture.toml"), text);
 }
 
+TEST_F(RunTest, InitLeavesTheFilmsOfLivePhotosOut) {
+  const fs::path folder = folder_.path() / "live";
+  for (const char* name : {"IMG_1.JPG", "IMG_1.MOV", "IMG_2.HEIC", "IMG_2.mov"}) {
+    test::WriteAll(folder / "photos" / name, "x");
+  }
+  EXPECT_EQ(Glint({"init", folder.string()}).code, 0);
+  const std::string text = test::ReadAll(folder / "capture.toml");
+  EXPECT_THAT(text, HasSubstr("files = [\"photos/*.heic\", \"photos/*.jpg\"]"));
+  EXPECT_THAT(text, HasSubstr("# left out: IMG_1.MOV and 1 more"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("\nvideo = ")));
+  // A film of its own is meant.
+  test::WriteAll(folder / "photos/walk.mp4", "x");
+  fs::remove(folder / "capture.toml");
+  EXPECT_EQ(Glint({"init", folder.string()}).code, 0);
+  EXPECT_THAT(test::ReadAll(folder / "capture.toml"),
+              HasSubstr("video = [\"photos/walk.mp4\"]"));
+}
+
 TEST_F(RunTest, InitWithoutABoardTakesCamerasFromColmap) {
   const fs::path folder = folder_.path() / "open";
   test::WriteAll(folder / "photos/1.jpg", "x");

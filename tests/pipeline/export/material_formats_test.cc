@@ -7,6 +7,7 @@
 
 #include "base/errors/errors.h"
 #include "tests/pipeline/export/exported_material.h"
+#include "tests/support/process.h"
 
 namespace glint {
 namespace {
@@ -67,6 +68,18 @@ TEST(MaterialFormatsTest, BlendersScriptHasTrueScale) {
   EXPECT_THAT(text, HasSubstr("DIFFUSE_WHOLE = True"));
   EXPECT_THAT(WrittenText("blender", DiffuseWeight::kOneMinusSpecular),
               HasSubstr("DIFFUSE_WHOLE = False"));
+}
+
+TEST(MaterialFormatsTest, BlendersScriptDisplacesInEveryVersion) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path script = folder / "material.py";
+  test::WriteAll(script, WrittenText("blender"));
+  for (const std::string owner : {"material", "cycles"}) {
+    const test::Outcome run =
+        test::RunProgram({"python3", GLINT_STAND_IN_BPY, script.string(), owner});
+    EXPECT_EQ(run.code, 0) << owner << run.err;
+    EXPECT_EQ(run.out, "DISPLACEMENT\n") << owner;
+  }
 }
 
 // The formats that keep F0 are nearer to ours than base colour and metalness alone can be.

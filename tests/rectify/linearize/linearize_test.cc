@@ -82,6 +82,31 @@ TEST(Encoding, AutoFollowsWhatTheFileIs) {
   EXPECT_THROW(ResolveEncoding("log", "a.jpg", 8), UserError);
 }
 
+TEST(Encoding, AutoTakesTheProfilesCurveWhereItIsNotSrgbs) {
+  Photo photo;
+  EXPECT_EQ(ResolveEncoding("auto", "a.jpg", photo), Encoding::kGamma22);
+  photo.colour = AdobeRgbProfile();
+  const Encoding encoding = ResolveEncoding("auto", "a.jpg", photo);
+  EXPECT_NEAR(LinearFromEncoded(encoding, 0.5f), std::pow(0.5, 563.0 / 256), 1e-4);
+  EXPECT_EQ(ResolveEncoding("srgb", "a.jpg", photo), Encoding::kSrgb);
+  EXPECT_EQ(ResolveEncoding("auto", "a.dng", photo), Encoding::kLinear);
+}
+
+TEST(LinearPhoto, IsInRec709WhateverTheProfile) {
+  for (const int bits : {8, 16, 32}) {
+    Photo photo;
+    photo.bits = bits;
+    photo.image = Image(1, 1, {"R", "G", "B"});
+    photo.image.samples = {0.8f, 0.2f, 0.0f};
+    photo.colour = ProfileOfPrimaries(12);
+    const LinearPhoto linear(photo, Encoding::kLinear);
+    const auto rgb = linear.Visit([](const auto& reader) { return reader.At(0).rgb; });
+    EXPECT_NEAR(rgb[0], 1.2249 * 0.8 - 0.2247 * 0.2, 3e-3) << bits;
+    EXPECT_NEAR(rgb[1], -0.0420 * 0.8 + 1.0419 * 0.2, 3e-3) << bits;
+    EXPECT_LT(rgb[2], 0) << bits;  // beyond Rec.709, and kept
+  }
+}
+
 TEST(LinearPhoto, ReadsStoredCodesThroughTheCurve) {
   for (const int bits : {8, 16, 32}) {
     Photo photo;
