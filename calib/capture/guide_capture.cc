@@ -1,5 +1,6 @@
 #include "calib/capture/guide_capture.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -17,6 +18,29 @@ const DetectedPhoto& FindPhoto(const CalibSummary& summary, const std::string& n
                        [&](const DetectedPhoto& photo) { return photo.name == name; });
 }
 
+// "15.0 mm on the left, 1 square, …": sides on which the sample reaches beyond the board's opening.
+// What lies on a whole board, or beside it, covers squares by intent.
+std::string ReachOverBoard(const Capture& capture) {
+  constexpr double kLeast_mm = 1;  // to which people measure a sample and lay it down
+  if (!capture.has_board) return "";
+  const auto opening = OpeningInSample(capture.board);
+  if (!opening) return "";
+  const double x = capture.sample_size_mm[0] / 2, y = capture.sample_size_mm[1] / 2;
+  const std::pair<const char*, double> sides[] = {{"on the left", opening->left_mm + x},
+                                                  {"on the right", x - opening->right_mm},
+                                                  {"at the bottom", opening->bottom_mm + y},
+                                                  {"at the top", y - opening->top_mm}};
+  std::string text;
+  for (const auto& [side, over_mm] : sides) {
+    if (over_mm < kLeast_mm) continue;
+    text += fmt::format("{}{:.0f} mm {}", text.empty() ? "" : ", ", over_mm, side);
+    if (capture.board.square_mm <= 0) continue;
+    const double squares = std::ceil(over_mm / capture.board.square_mm);
+    text += fmt::format(": {:.0f} square{}", squares, squares == 1 ? "" : "s");
+  }
+  return text;
+}
+
 }  // namespace
 
 GuidanceInput GuidanceInputOf(const Capture& capture, const CalibSummary& summary,
@@ -25,6 +49,7 @@ GuidanceInput GuidanceInputOf(const Capture& capture, const CalibSummary& summar
   input.sample_size_mm = capture.sample_size_mm;
   input.resolution_px = capture.resolution_px;
   input.focal_assumed = focal_assumed;
+  input.over_board = ReachOverBoard(capture);
   for (const CalibratedPhoto& photo : summary.calibration.photos) {
     const Rigid3 sample_from_camera = Inverse(photo.camera_from_sample);
     GuidancePhoto one;

@@ -26,6 +26,14 @@ std::string Counted(size_t count) {
 
 int Percent(double share) { return static_cast<int>(std::lround(100 * share)); }
 
+void AddOverBoard(const GuidanceInput& input, List* list) {
+  if (input.over_board.empty()) return;
+  list->push_back({"over_board", Importance::kNeeded,
+                   "the sample as described reaches over the printed board (" + input.over_board +
+                       "), which would become part of the material: correct [sample] size_mm and "
+                       "centre_mm, or [board] window"});
+}
+
 void AddUnseen(const Verdict& v, List* list) {
   if (1 - v.shown_share < v.limits.unseen_share) return;
   std::vector<bool> cells;
@@ -183,6 +191,7 @@ void AddCut(const Verdict& v, List* list) {
 
 std::vector<Advice> AdviceFor(const GuidanceInput& input, const Verdict& verdict) {
   List list;
+  AddOverBoard(input, &list);
   AddUnseen(verdict, &list);
   AddFocal(input, verdict, &list);
   AddFew(verdict, &list);

@@ -1,4 +1,5 @@
 // The sentences of a verdict. Each has a topic, by which tests and programs know it:
+//   over_board  the sample as described reaches over the printed board
 //   unseen      part of the sample is in no photograph
 //   focal       the focal length is assumed, or known poorly
 //   few         more photographs lower the errors

@@ -27,6 +27,8 @@ struct GuidanceInput {
   double focal_sigma = 0;
   // The photographs did not determine the focal length, and one was assumed.
   bool focal_assumed = false;
+  // How far the sample as described reaches over the printed board, on which sides; empty: not.
+  std::string over_board;
 };
 
 struct GuidanceLimits {

@@ -101,6 +101,16 @@ TEST_F(Guidance, CheckSaysWhatCalibSaysAndWritesNothing) {
   }
 }
 
+// A window of 40 mm for a sample of 100.
+TEST_F(Guidance, NamesTheSquaresThatTheSampleReachesOver) {
+  LeaveOut({});
+  EXPECT_EQ(Checked().count("over_board"), 0u);  // on a whole board
+  const std::string whole = test::ReadAll(capture() / "capture.toml");
+  test::WriteAll(capture() / "capture.toml", whole + "window = [3, 2, 2, 2]\n");
+  EXPECT_THAT(Checked()["over_board"],
+              HasSubstr("30 mm on the left: 2 squares, 30 mm on the right: 2 squares"));
+}
+
 TEST_F(Guidance, MissesTheTopView) {
   LeaveOut({});
   EXPECT_EQ(Checked().count("top"), 0u);

@@ -104,6 +104,15 @@ TEST(Verdict, TellsWhatMorePhotographsBring) {
   EXPECT_EQ(Sentence(GoodCapture(), "few"), "");
 }
 
+TEST(Verdict, ASampleThatReachesOverTheBoardIsNotEnough) {
+  GuidanceInput input = GoodCapture();
+  input.over_board = "15 mm on the left: 1 square";
+  const Verdict verdict = Judge(input);
+  EXPECT_EQ(verdict.Word(), "not enough");
+  EXPECT_EQ(verdict.advice[0].topic, "over_board");
+  EXPECT_THAT(verdict.advice[0].text, HasSubstr("15 mm on the left: 1 square"));
+}
+
 TEST(Verdict, TellsThatPartOfTheSampleIsInNoPhotograph) {
   GuidanceInput input = GoodCapture();
   for (GuidancePhoto& photo : input.photos) {
