@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "calib/corners/charuco_mismatch.h"
 #include "calib/corners/detector_internal.h"
 #include "calib/corners/marker_match.h"
 
@@ -80,24 +81,6 @@ double MarkerScale(const std::vector<MarkerMatch>& matches,
   return ratios[ratios.size() / 2];
 }
 
-// What is wrong when many markers are seen and no place on the board explains them.
-std::string LayoutMismatch(const Board& board, const std::vector<SeenMarker>& seen, size_t on_board,
-                           size_t agreeing) {
-  Board other = board;
-  other.legacy_layout = !board.legacy_layout;
-  if (board.squares_y % 2 == 0 &&
-      Consensus(MatchMarkers(other, seen)).size() > agreeing + on_board / 5) {
-    return fmt::format("the markers lie as on a board with legacy_layout = {}; set it in [board]",
-                       other.legacy_layout);
-  }
-  return fmt::format(
-      "{} markers of {} seen (ids {} to {}), but only {} of {} lie where a board of {} x {} "
-      "squares "
-      "has them; correct squares in [board]",
-      seen.size(), board.dictionary, seen.front().id, seen.back().id, agreeing, on_board,
-      board.squares_x, board.squares_y);
-}
-
 BoardDetection Mismatch(BoardDetection detection, const std::string& problem) {
   detection.mismatch = true;
   detection.problem = problem;
@@ -119,6 +102,8 @@ BoardDetection DetectCharuco(const GrayImage& image, const Board& board,
   const auto foreign =
       std::count_if(seen.begin(), seen.end(), [&](const SeenMarker& m) { return m.id >= all_ids; });
   if (foreign >= 4 && foreign * 4 > static_cast<long>(seen.size())) {
+    const std::string why = ExplainMismatch(image, board, options, seen, agreeing.size());
+    if (!why.empty()) return Mismatch(detection, why);
     return Mismatch(detection,
                     fmt::format("markers with ids up to {} seen, while {} x {} squares have {}; "
                                 "correct squares in [board]",
@@ -126,7 +111,14 @@ BoardDetection DetectCharuco(const GrayImage& image, const Board& board,
   }
   // Lens distortion costs few markers; a wrong layout costs a third at least.
   if (matches.size() >= 6 && agreeing.size() * 10 < matches.size() * 7) {
-    return Mismatch(detection, LayoutMismatch(board, seen, matches.size(), agreeing.size()));
+    const std::string why = ExplainMismatch(image, board, options, seen, agreeing.size());
+    if (!why.empty()) return Mismatch(detection, why);
+    return Mismatch(
+        detection,
+        fmt::format("{} markers of {} seen (ids {} to {}), but only {} of {} lie where a board of "
+                    "{} x {} squares has them; correct squares in [board]",
+                    seen.size(), board.dictionary, seen.front().id, seen.back().id, agreeing.size(),
+                    matches.size(), board.squares_x, board.squares_y));
   }
   if (agreeing.size() < 2) {
     if (ShowsMirroredMarkers(image, board, options)) return Mismatch(detection, kMirrored);

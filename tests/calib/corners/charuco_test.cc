@@ -1,5 +1,6 @@
 #include "calib/corners/detector.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,9 +13,11 @@
 namespace glint {
 namespace {
 
+using ::testing::AnyOf;
 using testing::Charuco;
 using testing::Checkerboard;
 using testing::Errors;
+using ::testing::HasSubstr;
 using testing::LookAt;
 using testing::PhoneCamera;
 using testing::Photograph;
@@ -119,7 +122,7 @@ TEST(DetectCharuco, SaysThatTheBoardIsAnother) {
     EXPECT_TRUE(detection.corners.empty());
     return detection.problem;
   };
-  EXPECT_NE(problem(Charuco(6, 8)).find("6 x 8 squares"), std::string::npos);
+  EXPECT_NE(problem(Charuco(6, 8)).find("8 x 6 squares, not of 6 x 8"), std::string::npos);
   EXPECT_NE(problem(Charuco(9, 6)).find("9 x 6 squares"), std::string::npos);
   EXPECT_NE(problem(Charuco(5, 4)).find("ids up to 23"), std::string::npos);
   Board board = Charuco(8, 6);
@@ -133,6 +136,33 @@ TEST(DetectCharuco, SaysThatTheBoardIsAnother) {
   const auto none = DetectBoard(photo, board);
   EXPECT_TRUE(none.corners.empty());
   EXPECT_NE(none.problem.find("DICT_6X6_250"), std::string::npos);
+}
+
+// On a board large enough that markers which do not fit still agree among themselves.
+TEST(DetectCharuco, NamesTheFieldThatIsWrong) {
+  const auto described = [](int columns, int rows) {
+    Board board = Charuco(columns, rows);
+    board.square_mm = 13;
+    board.marker_mm = 9.75;
+    board.dictionary = "DICT_5X5_1000";
+    return board;
+  };
+  const Board truth = described(16, 12);
+  const GrayImage photo = Photograph(truth, PhoneCamera(), LookAt(240, 15, 40, 5));
+  ASSERT_EQ(DetectBoard(photo, truth).problem, "");
+  const auto problem = [&](const Board& board) {
+    const auto detection = DetectBoard(photo, board);
+    EXPECT_TRUE(detection.corners.empty());
+    return detection.problem;
+  };
+  EXPECT_THAT(problem(described(12, 16)), HasSubstr("a board of 16 x 12 squares, not of 12 x 16"));
+  Board board = truth;
+  board.marker_mm = 6.5;
+  EXPECT_THAT(problem(board), HasSubstr("are about 0.7"));
+  board = truth;
+  board.dictionary = "DICT_4X4_1000";
+  EXPECT_THAT(problem(board),
+              AnyOf(HasSubstr("are of DICT_5X5_100 "), HasSubstr("(DICT_4X4_1000) seen")));
 }
 
 TEST(DetectBoard, FindsNothingInPicturesWithoutABoard) {
