@@ -11,8 +11,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kRemedy[] =
-    "give a folder with views.json, with camera_pos.txt (MaterialGAN) or parameters.json, or DIR's "
-    "NAME.txt in a folder *wlv";
+    "give a folder with views.json, with camera_pos.txt (MaterialGAN), parameters.json or "
+    "optim_*.json (svbrdf-diff-renderer), or DIR's NAME.txt in a folder *wlv";
 
 bool EndsWithWlv(const fs::path& folder) {
   const std::string name = folder.filename();
@@ -36,10 +36,29 @@ std::vector<fs::path> WlvFiles(const fs::path& folder) {
   return files;
 }
 
+// svbrdf-diff-renderer's descriptions in a folder: one for each resolution (optim_latent_256.json
+// …).
+std::vector<fs::path> MaterialGanFiles(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (IsMaterialGanJson(entry.path())) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 ForeignSet ReadFolder(const fs::path& folder) {
   if (fs::is_regular_file(folder / "views.json")) return ReadViewsJson(folder / "views.json");
   if (fs::is_regular_file(folder / "camera_pos.txt")) return ReadMaterialGanText(folder);
-  if (fs::is_regular_file(folder / "parameters.json")) return ReadMaterialGanJson(folder);
+  if (fs::is_regular_file(folder / "parameters.json")) {
+    return ReadMaterialGanJson(folder / "parameters.json");
+  }
+  const std::vector<fs::path> described = MaterialGanFiles(folder);
+  if (described.size() == 1) return ReadMaterialGanJson(described[0]);
+  if (described.size() > 1) {
+    throw UserError(folder, "", std::to_string(described.size()) + " descriptions of a set",
+                    "name one of them, for example " + described.back().string());
+  }
   const std::vector<fs::path> wlv = WlvFiles(folder);
   if (wlv.size() == 1) return ReadDirSet(wlv[0]);
   if (wlv.size() > 1) {
@@ -58,7 +77,7 @@ std::string_view ForeignLayoutName(ForeignLayout layout) {
     case ForeignLayout::kMaterialGanText:
       return "MaterialGAN (camera_pos.txt)";
     case ForeignLayout::kMaterialGanJson:
-      return "MaterialGAN (parameters.json)";
+      return "svbrdf-diff-renderer (.json)";
     case ForeignLayout::kDirWlv:
       return "DIR 2019 (wlv)";
   }
@@ -68,7 +87,9 @@ std::string_view ForeignLayoutName(ForeignLayout layout) {
 ForeignSet ReadForeignSet(const fs::path& source) {
   if (fs::is_directory(source)) return ReadFolder(source);
   if (!fs::is_regular_file(source)) throw UserError(source, "", "no such file or folder", kRemedy);
-  if (source.filename() == "parameters.json") return ReadMaterialGanJson(source.parent_path());
+  if (source.filename() == "parameters.json" || IsMaterialGanJson(source)) {
+    return ReadMaterialGanJson(source);
+  }
   if (source.extension() == ".json") return ReadViewsJson(source);
   if (EndsWithWlv(fs::absolute(source).parent_path())) return ReadDirSet(source);
   throw UserError(source, "", "a file of unknown layout", kRemedy);

@@ -49,7 +49,8 @@ ForeignSet ReadForeignSet(const std::filesystem::path& source);
 // The layouts' readers, for files known to be theirs.
 ForeignSet ReadViewsJson(const std::filesystem::path& file);
 ForeignSet ReadMaterialGanText(const std::filesystem::path& folder);
-ForeignSet ReadMaterialGanJson(const std::filesystem::path& folder);
+ForeignSet ReadMaterialGanJson(const std::filesystem::path& file);
+bool IsMaterialGanJson(const std::filesystem::path& file);  // by its fields
 ForeignSet ReadDirSet(const std::filesystem::path& wlv_file);
 
 // Throws UserError unless camera and light stand in front of the sample.

@@ -13,6 +13,7 @@
 #include "datasets/import/foreign_set.h"
 #include "datasets/import/json_fields.h"
 #include "datasets/import/number_file.h"
+#include "pipeline/files/files.h"
 #include "pipeline/photos/photo.h"
 
 namespace glint {
@@ -78,12 +79,18 @@ fs::path ImageOf(const std::vector<fs::path>& images, int index) {
   return {};
 }
 
-// The images lie beside parameters.json, or where it says.
+// The images lie beside the file, or where it says.
 std::vector<fs::path> ImagesOf(const fs::path& folder, const Json* images_dir) {
   const std::vector<fs::path> beside = NumberedImages(folder);
   if (!beside.empty() || images_dir == nullptr || !images_dir->is_string()) return beside;
   const fs::path inside = folder / images_dir->get<std::string>();
   return fs::is_directory(inside) ? NumberedImages(inside) : beside;
+}
+
+// Of two names for the same, by the program's version.
+const Json* EitherOf(const char* newer, const char* older, JsonFields* fields) {
+  const Json* found = fields->Find(newer);
+  return found != nullptr ? found : fields->Find(older);
 }
 
 }  // namespace
@@ -119,15 +126,25 @@ ForeignSet ReadMaterialGanText(const fs::path& folder) {
   return set;
 }
 
-ForeignSet ReadMaterialGanJson(const fs::path& folder) {
+bool IsMaterialGanJson(const fs::path& file) {
+  if (file.extension() != ".json" || !fs::is_regular_file(file)) return false;
+  constexpr std::size_t kMostBytes = 16u << 20;
+  if (fs::file_size(file) > kMostBytes) return false;
+  const Json json = Json::parse(ReadTextFile(file, kMostBytes), nullptr, false);
+  return json.is_object() && json.contains("idx") && json.contains("camera_pos") &&
+         json.contains("light_pos");
+}
+
+ForeignSet ReadMaterialGanJson(const fs::path& file) {
   ForeignSet set = EmptySet(ForeignLayout::kMaterialGanJson);
-  const fs::path file = folder / "parameters.json";
+  const fs::path folder = fs::absolute(file).parent_path();
   set.description = {file};
   const Json json = ReadJsonFile(file, "copy the file again");
   JsonFields fields(file, json, "");
-  const std::string remedy = "give image_size, idx, camera_pos, light_pos and light_pow";
-  SetSize(file, "image_size",
-          fields.Numbers("image_size", fields.Require("image_size", remedy), 1, true, 0)[0], &set);
+  const std::string remedy = "give im_size, idx, camera_pos, light_pos and light_pow";
+  const Json* size = EitherOf("im_size", "image_size", &fields);
+  if (size == nullptr) size = &fields.Require("im_size", remedy);
+  SetSize(file, "im_size", fields.Numbers("im_size", *size, 1, true, 0)[0], &set);
   const Vec3d power =
       Power(fields.Numbers("light_pow", fields.Require("light_pow", remedy), 3, true, 0));
   const Json& indices = fields.Require("idx", remedy);
@@ -140,7 +157,8 @@ ForeignSet ReadMaterialGanJson(const fs::path& folder) {
         field, *list,
         "give one position for each of the " + std::to_string(indices.size()) + " entries of idx");
   }
-  const std::vector<fs::path> images = ImagesOf(folder, fields.Find("images_dir"));
+  const std::vector<fs::path> images =
+      ImagesOf(folder, EitherOf("target_dir", "images_dir", &fields));
   for (size_t i = 0; i < indices.size(); ++i) {
     const std::string at = "[" + std::to_string(i) + "]";
     if (!indices[i].is_number_integer()) {
@@ -165,7 +183,7 @@ ForeignSet ReadMaterialGanJson(const fs::path& folder) {
   }
   if (set.views.empty()) {
     throw UserError(folder, "images", "no image numbered as idx says",
-                    "put the rectified images (00.png …) beside parameters.json");
+                    "put the rectified images (00.png …) beside " + file.filename().string());
   }
   if (PhotoSize(set.views[0].image).first == kFrame_px) set.crop_px = kFrameSample_px;
   return set;

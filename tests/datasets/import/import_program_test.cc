@@ -233,6 +233,32 @@ TEST_F(ImportProgram, MaterialGanIsInCentimetres) {
   EXPECT_EQ(set.convention, ReflectanceConvention::MaterialGan());
 }
 
+// svbrdf-diff-renderer: one description for each resolution, images in a folder that it names.
+TEST_F(ImportProgram, DescriptionsByResolutionNameTheirImages) {
+  fs::create_directories(source() / "target/32");
+  for (int i = 0; i < 3; ++i) {
+    fs::rename(ImageFile(i), source() / "target/32" / ("0" + std::to_string(i) + ".png"));
+  }
+  const Json json = {{"target_dir", "target/32"},
+                     {"optimize_dir", "tex"},
+                     {"im_size", 9.6},
+                     {"idx", {0, 1, 2}},
+                     {"camera_pos", {{1.0, 0.5, 17}, {2.0, -0.5, 18}, {-1, 0, 16}}},
+                     {"light_pos", {{1.0, 0.6, 17}, {2.0, -0.4, 18}, {-1, 0.1, 16}}},
+                     {"light_pow", {1500, 1400, 1300}}};
+  test::WriteAll(source() / "optim_latent_32.json", json.dump());
+  const test::Outcome outcome = Import();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const RectifiedSet set = Set();
+  EXPECT_NEAR(set.plane.width_mm, 96, 1e-9);
+  ASSERT_EQ(set.views.size(), 3u);
+  EXPECT_EQ(set.views[1].view.camera_in_sample_mm, (Vec3d{20, -5, 180}));
+  EXPECT_EQ(set.views[1].view.light_rgb, (Vec3d{150000, 140000, 130000}));
+  // Of two descriptions a person chooses.
+  test::WriteAll(source() / "optim_latent_64.json", json.dump());
+  EXPECT_THAT(Import().err, testing::HasSubstr("2 descriptions of a set"));
+}
+
 TEST_F(ImportProgram, MaterialGanMistakesAreNamed) {
   WriteMaterialGan();
   test::WriteAll(source() / "light_pos.txt", "1,0.6,17\n2,-0.4,18\n");
