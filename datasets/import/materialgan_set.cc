@@ -81,7 +81,7 @@ fs::path ImageOf(const std::vector<fs::path>& images, int index) {
 
 // The images lie beside the file, or where it says.
 std::vector<fs::path> ImagesOf(const fs::path& folder, const Json* images_dir) {
-  const std::vector<fs::path> beside = NumberedImages(folder);
+  std::vector<fs::path> beside = NumberedImages(folder);
   if (!beside.empty() || images_dir == nullptr || !images_dir->is_string()) return beside;
   const fs::path inside = folder / images_dir->get<std::string>();
   return fs::is_directory(inside) ? NumberedImages(inside) : beside;
@@ -178,7 +178,9 @@ ForeignSet ReadMaterialGanJson(const fs::path& file) {
     view.view.light_in_sample_mm =
         Millimetres(fields.Numbers("light_pos" + at, lights[i], 3, false, JsonFields::kAny));
     view.view.light_rgb = power;
-    RequireInFront(file, "camera_pos" + at + ", light_pos" + at, view.view);
+    std::string positions = "camera_pos";
+    positions.append(at).append(", light_pos").append(at);
+    RequireInFront(file, positions, view.view);
     set.views.push_back(view);
   }
   if (set.views.empty()) {

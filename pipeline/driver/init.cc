@@ -78,7 +78,8 @@ std::string NamesIn(const std::string& subfolder, const std::set<std::string>& n
 }
 
 struct Films {
-  std::set<std::string> live;  // beside photographs of the same names: filmed while those were taken
+  std::set<std::string>
+      live;  // beside photographs of the same names: filmed while those were taken
   std::set<std::string> others;
 };
 

@@ -34,7 +34,8 @@ class ImportProgram : public testing::Test {
 
   // Brightness grows with the row (down) and the column's sixteenth; image i is darker than i − 1.
   static float Stored(int i, int row, int column) {
-    return 0.2f + 0.5f * static_cast<float>(row) / kSide + 0.01f * static_cast<float>(column / 16) -
+    const int sixteenth = column / 16;
+    return 0.2f + 0.5f * static_cast<float>(row) / kSide + 0.01f * static_cast<float>(sixteenth) -
            0.02f * static_cast<float>(i);
   }
   void WriteImage(int i, int width, int height) {

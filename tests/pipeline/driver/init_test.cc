@@ -70,8 +70,7 @@ TEST_F(RunTest, InitLeavesTheFilmsOfLivePhotosOut) {
   test::WriteAll(folder / "photos/walk.mp4", "x");
   fs::remove(folder / "capture.toml");
   EXPECT_EQ(Glint({"init", folder.string()}).code, 0);
-  EXPECT_THAT(test::ReadAll(folder / "capture.toml"),
-              HasSubstr("video = [\"photos/walk.mp4\"]"));
+  EXPECT_THAT(test::ReadAll(folder / "capture.toml"), HasSubstr("video = [\"photos/walk.mp4\"]"));
 }
 
 TEST_F(RunTest, InitWithoutABoardTakesCamerasFromColmap) {
