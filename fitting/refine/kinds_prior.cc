@@ -99,7 +99,8 @@ KindsPrior PriorOfKinds(const std::vector<SpecularMean>& means, const KindsPrior
   joint -= precision * precision.transpose() / (power_precision + precision.sum());
   const Eigen::VectorXd pull = -(joint * off);
 
-  KindsPrior prior{Eigen::MatrixXd::Zero(3 * count, 3 * count), Eigen::VectorXd::Zero(3 * count)};
+  KindsPrior prior{Eigen::MatrixXd::Zero(3 * count, 3 * count), Eigen::VectorXd::Zero(3 * count),
+                   log_power};
   const Eigen::Matrix3d chroma = Eigen::Matrix3d::Identity() - Eigen::Matrix3d::Constant(1.0 / 3);
   const auto slope = [&](Eigen::Index k) {  // of the logarithm by each channel
     return 1 / (3 * (looks[static_cast<size_t>(k)].grey + kBlack));

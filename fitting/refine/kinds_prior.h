@@ -24,6 +24,7 @@ struct KindsPriorOptions {
 struct KindsPrior {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;  // of the log prior
+  double log_power = 0;      // of the light, most probable: what all substances are off by
 };
 
 // Expectation maximisation of which kind each substance is and of the light's power, which is then

@@ -112,7 +112,10 @@ struct RefineSummary {
   double initialisation_error = 0;  // in expected ones of one photograph
   double neighbour_spread = 0;      // between neighbours' departures from those means, in spreads
   double normal_spread = 0;         // of n_x, n_y about 0, and between neighbours; likewise
-  SharedLight shared_light;         // of all views
+  // By how much the light is stronger than stated, if dielectrics reflect what they do (of use
+  // where its power was not calibrated): specular albedos over what they should be.
+  double light_power = 1;
+  SharedLight shared_light;  // of all views
   // What single views deviate by: added to the lights beside `shared_light`, factors on
   // exposures; and the spreads of both, estimated.
   std::vector<Vec3d> light_offsets_mm;

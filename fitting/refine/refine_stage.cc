@@ -8,6 +8,7 @@
 #include "base/errors/errors.h"
 #include "base/parallel/parallel.h"
 #include "fitting/refine/estimate_sample.h"
+#include "fitting/refine/light_power.h"
 #include "fitting/refine/refine_rows.h"
 #include "fitting/refine/residual_model.h"
 #include "fitting/refine/sample_source.h"
@@ -220,6 +221,16 @@ CorrectionOptions CorrectionFor(const RectifiedSet& set, const std::vector<Recti
   return options;
 }
 
+// Of the light beside what is stated, as the substances' specular albedos tell it: 1 where it was
+// calibrated, or where ambient illumination, which is not scaled with it, lights the sample too.
+double LightPower(const RectifiedSet& set, const std::vector<RectifiedView>& views,
+                  const SampleEstimate& estimate) {
+  const bool dark = std::all_of(views.begin(), views.end(), [](const RectifiedView& view) {
+    return view.view.ambient_rgb == Vec3d{};
+  });
+  return set.light_power_known || !dark ? 1 : estimate.summary.light_power;
+}
+
 // A capture's sample, ready to be refined by rows.
 struct Sample {
   Sample(const fs::path& rectify_manifest, const RefineStart& start,
@@ -243,6 +254,8 @@ struct Sample {
   int rows_at_once;
   SampleEstimate estimate;
 
+  double power() const { return LightPower(set, views, estimate); }
+
  private:
   SampleEstimate EstimateCorrected(int threads) {
     if (correction.taken) source.Correct(correction.corrections);
@@ -250,9 +263,9 @@ struct Sample {
   }
 };
 
-// Writes the part's rows of svbrdf.exr and confidence.exr.
+// Writes the part's rows of svbrdf.exr and confidence.exr, albedos as under a light of `power`.
 RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
-                   const RefineOptions& options, int rows_at_once, int threads,
+                   const RefineOptions& options, double power, int rows_at_once, int threads,
                    SampleSource* source, Stage* stage) {
   const SamplePlane& plane = source->plane();
   const ReflectanceConvention convention = source->Views().convention;
@@ -273,6 +286,7 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
     const SampleSource::Part some =
         source->Rows(first - above, above + last - first + below, threads);
     RowRefiner::Rows refined = refiner.Refine(some.Problem(), some.start, above, below);
+    SetUnderPower(power, convention.diffuse_weight, &refined.maps, &refined.confidence);
     Image deviations(plane.width, last - first, {});
     deviations.channels = ConfidenceChannels();
     deviations.samples = std::move(refined.confidence);
@@ -458,8 +472,8 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
   Sample sample(rectify_manifest, start, options, threads);
   const SamplePlane& plane = sample.set.plane;
   const RowSums sums = parts.empty()
-                           ? RefineRows({}, sample.estimate, sample.options, sample.rows_at_once,
-                                        threads, &sample.source, stage)
+                           ? RefineRows({}, sample.estimate, sample.options, sample.power(),
+                                        sample.rows_at_once, threads, &sample.source, stage)
                            : JoinParts(parts, sample, stage);
   RefineStageResult result;
   result.correction = std::move(sample.correction);
@@ -468,13 +482,16 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
   result.width = plane.width;
   result.height = plane.height;
   for (const RectifiedView& view : sample.views) result.views.push_back(view.name);
+  Vec3d light_scale_rgb = start.light_scale_rgb;
+  for (double& scale : light_scale_rgb) scale *= sample.power();
   result.data = {{"convention", ToString(sample.source.Views().convention)},
-                 {"light_scale_rgb", start.light_scale_rgb},
+                 {"light_scale_rgb", light_scale_rgb},
                  {"shared_light", JsonOf(result.summary.shared_light)},
                  {"views", result.views},
                  {"metals", start.metals},
                  {"method", "refined"}};
   result.metrics = Metrics(result.summary, sample.views);
+  result.metrics["light_power"] = sample.power();
   AddCorrections(Corrections(result.correction, result.summary), sample.views, &result.data);
   DescribeCorrection(result.correction, sample.set, sample.views, start.light_scale_rgb, &result);
   stage->Commit(result.data, result.metrics);
@@ -490,8 +507,8 @@ RowRange RunRefinePart(const fs::path& rectify_manifest, const RefineStart& star
                     std::to_string(height) + " rows, so that many at most");
   }
   Sample sample(rectify_manifest, start, options, threads);
-  const RowSums sums = RefineRows(part, sample.estimate, sample.options, sample.rows_at_once,
-                                  threads, &sample.source, stage);
+  const RowSums sums = RefineRows(part, sample.estimate, sample.options, sample.power(),
+                                  sample.rows_at_once, threads, &sample.source, stage);
   WriteRowSums(stage->Output(kPartSums), sums);
   const RowRange range{part.first(height), part.last(height) - part.first(height), height};
   stage->Commit(

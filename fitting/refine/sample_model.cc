@@ -547,6 +547,7 @@ void SampleModel::Describe(RefineSummary* summary) const {
   summary->diffuse_spread = means_.diffuse_spread;
   summary->initialisation_error = initial_errors_.diffuse / InitialisationErrors().diffuse;
   summary->neighbour_spread = neighbour_spread_;
+  summary->light_power = has_sample_priors_ ? means_.LightPower() : 1;
   summary->exposure_spread = deviations_.spreads()[kLogExposure];
   summary->light_spread = deviations_.spreads()[kLightAcrossX];
   double squares = 0;

@@ -20,6 +20,7 @@ constexpr float kLeastShare = 1e-3f;      // a texel that has less of a substanc
 constexpr int kIterations = 40;
 constexpr size_t kClustered = 8192;
 
+constexpr double kMostDiffuse = 0.9;   // white paint and paper
 constexpr double kMostMeanStep = 0.5;  // of a mean, in one round, relative
 
 using Feature = std::array<float, 4>;
@@ -77,13 +78,17 @@ std::vector<Feature> Centres(const std::vector<Feature>& features, int count) {
 
 constexpr Eigen::Index kSpecularValues = 3;  // the first of the shared ones
 
-void AddKinds(const SubstanceMeans& means, Eigen::MatrixXd* information,
-              Eigen::VectorXd* gradient) {
+KindsPrior KindsOf(const SubstanceMeans& means) {
   std::vector<SpecularMean> specular;
   for (const SharedValues& m : means.mean) specular.emplace_back(m[0], m[1], m[2]);
-  const KindsPrior kinds = PriorOfKinds(specular, means.kinds);
+  return PriorOfKinds(specular, means.kinds);
+}
+
+void AddKinds(const SubstanceMeans& means, Eigen::MatrixXd* information,
+              Eigen::VectorXd* gradient) {
+  const KindsPrior kinds = KindsOf(means);
   constexpr auto kN = static_cast<Eigen::Index>(kShared);
-  const auto count = static_cast<Eigen::Index>(specular.size());
+  const auto count = static_cast<Eigen::Index>(means.mean.size());
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index l = 0; l < count; ++l) {
       information->block<kSpecularValues, kSpecularValues>(kN * k, kN * l) +=
@@ -160,6 +165,14 @@ SharedCovariance SubstanceMeans::CovarianceOf(const float* shares) const {
     }
   }
   return sum;
+}
+
+double SubstanceMeans::LightPower() const {
+  double most = 0;
+  for (const SharedValues& m : mean) {
+    for (size_t p = kAlikeNearby; p < kShared; ++p) most = std::max(most, m[p]);
+  }
+  return std::max(std::exp(KindsOf(*this).log_power), most / kMostDiffuse);
 }
 
 SharedValues SubstanceMeans::Variances(const SharedValues& of) const {

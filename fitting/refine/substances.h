@@ -70,6 +70,10 @@ struct SubstanceMeans {
   double diffuse_spread = kUnknownSpread;
   KindsPriorOptions kinds;
 
+  // The light's power by what substances reflect (KindsPrior::log_power), as far as diffuse albedo
+  // lets it be weaker.
+  double LightPower() const;
+
   // Covariance of all means' errors, row-major by substance and value; empty: they are certain.
   std::vector<double> covariance;
 
