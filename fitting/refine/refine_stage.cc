@@ -491,7 +491,7 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
                  {"metals", start.metals},
                  {"method", "refined"}};
   result.metrics = Metrics(result.summary, sample.views);
-  result.metrics["light_power"] = sample.power();
+  result.metrics["light_power"] = {{"factor", sample.power()}};
   AddCorrections(Corrections(result.correction, result.summary), sample.views, &result.data);
   DescribeCorrection(result.correction, sample.set, sample.views, start.light_scale_rgb, &result);
   stage->Commit(result.data, result.metrics);

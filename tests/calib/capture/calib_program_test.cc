@@ -263,7 +263,8 @@ TEST_F(CalibProgram, SaysThatTheBoardIsAnother) {
     WriteText(capture / "capture.toml", text);
   };
   with("[8, 6]", "[6, 8]");
-  ExpectUserError(capture, {"board: found a board that does not fit", "6 x 8 squares"});
+  ExpectUserError(capture,
+                  {"board: found a board that does not fit", "8 x 6 squares, not of 6 x 8"});
   with("[8, 6]", "[5, 4]");
   ExpectUserError(capture, {"ids up to 23"});
   with("marker_mm = 12", "marker_mm = 16");
