@@ -45,7 +45,7 @@ ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, Export
   RequireMemoryForStage("export", capture, common.threads);
   VerifyOutputs(source, manifest);
   ExportTask task{source, SizeOf(capture, manifest, source), manifest.stage == "tile"};
-  task.metals = manifest.data.value("metals", task.metals);
+  task.metals = MetalsOf(source, manifest);
   const Json data = ExportMaterial(task, *options, formats, common.threads, &stage);
   stage.Commit(data, Json::object());
   const Json &files = data["maps"], &materials = data["materials"];

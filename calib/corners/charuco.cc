@@ -98,23 +98,23 @@ BoardDetection DetectCharuco(const GrayImage& image, const Board& board,
   const auto matches = MatchMarkers(board, seen);
   const auto agreeing = Consensus(matches);
   detection.markers = static_cast<int>(agreeing.size());
+  // By the field that is wrong, if one explains what is seen.
+  const auto mismatch = [&](const std::string& otherwise) {
+    const std::string why = ExplainMismatch(image, board, options, seen, agreeing.size());
+    return Mismatch(detection, why.empty() ? otherwise : why);
+  };
   const int all_ids = board.squares_x * board.squares_y / 2;  // the window's included
   const auto foreign =
       std::count_if(seen.begin(), seen.end(), [&](const SeenMarker& m) { return m.id >= all_ids; });
   if (foreign >= 4 && foreign * 4 > static_cast<long>(seen.size())) {
-    const std::string why = ExplainMismatch(image, board, options, seen, agreeing.size());
-    if (!why.empty()) return Mismatch(detection, why);
-    return Mismatch(detection,
-                    fmt::format("markers with ids up to {} seen, while {} x {} squares have {}; "
-                                "correct squares in [board]",
-                                seen.back().id, board.squares_x, board.squares_y, all_ids));
+    return mismatch(
+        fmt::format("markers with ids up to {} seen, while {} x {} squares have {}; "
+                    "correct squares in [board]",
+                    seen.back().id, board.squares_x, board.squares_y, all_ids));
   }
   // Lens distortion costs few markers; a wrong layout costs a third at least.
   if (matches.size() >= 6 && agreeing.size() * 10 < matches.size() * 7) {
-    const std::string why = ExplainMismatch(image, board, options, seen, agreeing.size());
-    if (!why.empty()) return Mismatch(detection, why);
-    return Mismatch(
-        detection,
+    return mismatch(
         fmt::format("{} markers of {} seen (ids {} to {}), but only {} of {} lie where a board of "
                     "{} x {} squares has them; correct squares in [board]",
                     seen.size(), board.dictionary, seen.front().id, seen.back().id, agreeing.size(),

@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/reflectance/material_kinds.h"
-
 namespace glint {
 namespace {
 
 // Standard deviation of channels about their mean, relative to that and half of what dielectrics
-// reflect at least: of what has no colour and of what has one. Half of all metals do. Dielectrics
-// do not, but where light that comes from beneath their surface is not diffuse, as in wood,
-// highlights take its colour.
+// reflect at least: of what has no colour and of what has one.
 constexpr double kGreyChroma = 0.05, kColouredChroma = 0.6;
-constexpr double kColouredDielectrics = 0.05, kColouredMetals = 0.5;
-constexpr double kChromaOffset = 0.02;
 constexpr double kBlack = 0.001;  // what no photograph tells from a specular albedo of 0
 constexpr double kCertain = 500;  // of a logarithm, that its exponential is finite
 constexpr int kRounds = 8;        // of kinds and the light's power, each given the other
@@ -23,7 +17,7 @@ struct Look {
   explicit Look(const SpecularMean& mean)
       : grey(mean.mean()),
         log_grey(std::log(grey + kBlack)),
-        size(grey + kChromaOffset),
+        size(grey + kSpecularOffset),
         departures((mean.array() - grey).square().sum() / (size * size)) {}
 
   double grey, log_grey;
@@ -46,12 +40,14 @@ struct Probabilities {
     // Relative to a grey dielectric.
     const double colour = std::exp(std::min(kCertain, OfChroma(kColouredChroma, look.departures) -
                                                           OfChroma(kGreyChroma, look.departures)));
-    const double dielectric_coloured = kColouredDielectrics / (1 - kColouredDielectrics) * colour;
+    const double dielectric_coloured =
+        kDielectric.coloured_share / (1 - kDielectric.coloured_share) * colour;
     const double log_grey = look.log_grey - log_power;
-    const double metal = metal_share / (1 - metal_share) / (1 - kColouredDielectrics) *
+    const double metal = metal_share / (1 - metal_share) / (1 - kDielectric.coloured_share) *
                          std::exp(OfSpecular(kMetal, log_grey) - OfSpecular(kDielectric, log_grey));
-    const double metal_coloured = metal * kColouredMetals * colour;
-    const double sum = 1 + dielectric_coloured + metal * (1 - kColouredMetals) + metal_coloured;
+    const double metal_coloured = metal * kMetal.coloured_share * colour;
+    const double sum =
+        1 + dielectric_coloured + metal * (1 - kMetal.coloured_share) + metal_coloured;
     of_dielectric = (1 + dielectric_coloured) / sum;
     of_coloured = (dielectric_coloured + metal_coloured) / sum;
   }

@@ -9,14 +9,16 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fitting/reflectance/material_kinds.h"
+
 namespace glint {
 
 // A substance's specular albedo by channel.
 using SpecularMean = Eigen::Vector3d;
 
 struct KindsPriorOptions {
-  double light_power_spread = 0.1;  // standard deviation of its logarithm, > 0
-  double metal_share = 0.1;         // prior share of metals among substances, 0 to 1
+  double light_power_spread = 0.1;            // standard deviation of its logarithm, > 0
+  double metal_share = MetalShareOf("rare");  // prior share of metals among substances, 0 to 1
 };
 
 // A Gaussian in place of the prior near some means: what a Newton step on them adds. Values in the

@@ -455,7 +455,7 @@ RefineStart ResolveRefineStart(const fs::path& work, const RefineStageOptions& o
     const auto scale = RequireNumbers(file, fit.data, "data", "light_scale_rgb", 3);
     std::copy(scale.begin(), scale.end(), start.light_scale_rgb.begin());
   }
-  start.metals = fit.data.value("metals", start.metals);
+  start.metals = MetalsOf(file, fit);
   const Json& views = RequireField(file, fit.data, "data", "views");
   const auto is_name = [](const Json& name) { return name.is_string(); };
   if (!views.is_array() || !std::all_of(views.begin(), views.end(), is_name)) {

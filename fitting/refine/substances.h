@@ -84,9 +84,6 @@ struct SubstanceMeans {
   SharedValues Variances(const SharedValues& mean) const;
 };
 
-// Half of what dielectrics reflect at least: what is nearer to 0 is black to all photographs.
-inline constexpr double kSpecularOffset = 0.02;
-
 // A sampled texel at its most probable values, for estimating means and spreads.
 struct SubstanceSample {
   const float* shares = nullptr;

@@ -8,14 +8,20 @@ namespace glint {
 
 // A log-normal distribution of F0.
 struct MaterialKind {
-  double f0;          // its median
-  double log_spread;  // standard deviation of its logarithm
+  double f0;              // its median
+  double log_spread;      // standard deviation of its logarithm
+  double coloured_share;  // of those with a colour in their highlights
 };
 
 // Indices of refraction of 1.33 to 1.8: two standard deviations.
-inline constexpr MaterialKind kDielectric{0.04, 0.35};
+// Highlights take the colour of what lies beneath where light from there is not diffuse, as in
+// wood.
+inline constexpr MaterialKind kDielectric{0.04, 0.35, 0.05};
 // Iron and nickel .5, rusty or tarnished metals a third, silver .95.
-inline constexpr MaterialKind kMetal{0.5, 0.5};
+inline constexpr MaterialKind kMetal{0.5, 0.5, 0.5};
+
+// Half of what dielectrics reflect at least: what is nearer to 0 is black to all photographs.
+inline constexpr double kSpecularOffset = 0.02;
 
 // Prior share of metals among the substances that people photograph ("rare"), and where there may
 // be metal ("possible").

@@ -66,7 +66,7 @@ TileStageResult RunTileStage(const Capture& capture, const TileStageOptions& opt
                    convention, threads);
   stage->Commit({{"convention", ToString(convention)},
                  {"from", options.from},
-                 {"metals", made_from.data.value("metals", "rare")},
+                 {"metals", MetalsOf(source, made_from)},
                  {"size_mm", {result.width_mm, result.height_mm}},
                  {"columns", IntervalJson(tile.across)},
                  {"rows", IntervalJson(tile.down)}},

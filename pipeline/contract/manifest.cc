@@ -204,6 +204,11 @@ Manifest ReadManifest(const std::filesystem::path& file, const std::string& expe
   return manifest;
 }
 
+std::string MetalsOf(const std::filesystem::path& manifest_file, const Manifest& manifest) {
+  if (!manifest.data.contains("metals")) return "rare";
+  return RequireString(manifest_file, manifest.data, "data", "metals");
+}
+
 void VerifyOutputs(const std::filesystem::path& manifest_file, const Manifest& manifest) {
   for (size_t i = 0; i < manifest.outputs.size(); ++i) {
     const ManifestOutput& output = manifest.outputs[i];

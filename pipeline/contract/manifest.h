@@ -47,6 +47,10 @@ Manifest ReadManifest(const std::filesystem::path& file, const std::string& expe
 // Compares the outputs on disk with their hashes; throws UserError on the first that differs.
 void VerifyOutputs(const std::filesystem::path& manifest_file, const Manifest& manifest);
 
+// How metals were expected where the maps of a stage come from (fit's option): "rare" where its
+// manifest, of another program or an older version, does not tell. Throws UserError: not a text.
+std::string MetalsOf(const std::filesystem::path& manifest_file, const Manifest& manifest);
+
 // Field access for `data` with errors that name the file and the field ("data.views[3].exposure").
 const Json& RequireField(const std::filesystem::path& file, const Json& object,
                          const std::string& object_name, const std::string& field);

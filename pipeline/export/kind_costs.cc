@@ -10,12 +10,10 @@ namespace {
 
 // Of captures whose light nobody calibrated, F0 is known up to the light's power, within a half.
 constexpr double kLogPowerSpread = 0.5;
-constexpr double kBlack = 0.002;  // what counts as no F0 at all, and as no diffuse light
+constexpr double kBlack = 0.002;  // what counts as no F0 at all
 // Standard deviation of channels about their mean, relative, of what has no colour and of what has
 // one. A fifth is what maps show of it where the diffuse light beneath has one.
 constexpr double kGreyChroma = 0.2, kColouredChroma = 0.6;
-constexpr double kColouredDielectrics = 0.05, kColouredMetals = 0.5;
-constexpr double kChromaOffset = 0.02;  // half of what dielectrics reflect at least
 // Mean of an exponential distribution of diffuse albedo. Metals have none; maps leave a little.
 constexpr double kDielectricDiffuse = 0.2, kMetalDiffuse = 0.02;
 
@@ -36,7 +34,7 @@ KindLook KindLookOf(const std::array<float, 3>& diffuse, const std::array<float,
   look.f0 = (specular[0] + specular[1] + specular[2]) / 3;
   look.diffuse = (diffuse[0] + diffuse[1] + diffuse[2]) / 3;
   for (const float channel : specular) {
-    const float off = (channel - look.f0) / (look.f0 + static_cast<float>(kChromaOffset));
+    const float off = (channel - look.f0) / (look.f0 + static_cast<float>(kSpecularOffset));
     look.chroma += off * off;
   }
   look.chroma = std::sqrt(look.chroma);
@@ -50,7 +48,8 @@ KindCosts::KindCosts(const std::vector<double>& metalnesses, double metal_share)
     const double f0 = Mixed(m, kDielectric.f0, kMetal.f0);
     const double spread =
         Mixed(m, kDielectric.f0 * of_dielectric, kMetal.f0 * of_metal) / f0;  // of the logarithm
-    const double coloured = Mixed(m * kMetal.f0 / f0, kColouredDielectrics, kColouredMetals);
+    const double coloured =
+        Mixed(m * kMetal.f0 / f0, kDielectric.coloured_share, kMetal.coloured_share);
     const double diffuse = Mixed(m, kDielectricDiffuse, kMetalDiffuse);
     const double constant = std::log(spread) + std::log(diffuse) -
                             Mixed(m, std::log(1 - metal_share), std::log(metal_share));

@@ -1,11 +1,13 @@
 #include "pipeline/images/jpeg_segments.h"
 
 #include <cstddef>
+#include <map>
 
 namespace glint {
 namespace {
 
-constexpr unsigned kJfif = 0xE0, kExif = 0xE1, kAdobe = 0xEE, kLastApp = 0xEF, kComment = 0xFE;
+constexpr unsigned kJfif = 0xE0, kExif = 0xE1, kIcc = 0xE2, kAdobe = 0xEE, kLastApp = 0xEF,
+                   kComment = 0xFE;
 constexpr unsigned kStartOfScan = 0xDA, kEndOfImage = 0xD9;
 
 // Markers that nothing follows: TEM, and RST0 … SOI.
@@ -26,11 +28,12 @@ bool IsNeeded(unsigned marker, std::string_view content) {
   return marker == kJfif || marker == kAdobe;
 }
 
-}  // namespace
+constexpr std::size_t kStartOfImage = 2, kMarkerAndLength = 4;
 
-std::string WithPictureSegmentsAlone(std::string_view jpeg) {
-  constexpr std::size_t kStartOfImage = 2, kMarkerAndLength = 4;
-  std::string kept(jpeg.substr(0, kStartOfImage));
+// Calls visit(marker, segment) with each segment before the picture's data, its marker and length
+// included. Returns where that data begins; the file's size where it has none.
+template <class Visit>
+std::size_t ForEachSegment(std::string_view jpeg, const Visit& visit) {
   std::size_t at = kStartOfImage;
   while (at + kMarkerAndLength <= jpeg.size()) {
     const unsigned marker = Byte(jpeg, at + 1);
@@ -42,15 +45,42 @@ std::string WithPictureSegmentsAlone(std::string_view jpeg) {
       at += 2;
       continue;
     }
-    if (marker == kEndOfImage) return kept;
-    if (marker == kStartOfScan) return kept.append(jpeg.substr(at));
+    if (marker == kEndOfImage) break;
+    if (marker == kStartOfScan) return at;
     const std::size_t length = Byte(jpeg, at + 2) << 8 | Byte(jpeg, at + 3);
-    if (length < 2 || at + 2 + length > jpeg.size()) return kept;
-    const std::string_view segment = jpeg.substr(at, 2 + length);
-    if (IsNeeded(marker, segment.substr(kMarkerAndLength))) kept += segment;
-    at += segment.size();
+    if (length < 2 || at + 2 + length > jpeg.size()) break;
+    visit(marker, jpeg.substr(at, 2 + length));
+    at += 2 + length;
   }
-  return kept;
+  return jpeg.size();
+}
+
+}  // namespace
+
+std::string WithPictureSegmentsAlone(std::string_view jpeg) {
+  std::string kept(jpeg.substr(0, kStartOfImage));
+  const std::size_t data = ForEachSegment(jpeg, [&](unsigned marker, std::string_view segment) {
+    if (IsNeeded(marker, segment.substr(kMarkerAndLength))) kept += segment;
+  });
+  return kept.append(jpeg.substr(data));
+}
+
+std::string IccOfJpeg(std::string_view jpeg) {
+  using namespace std::string_view_literals;
+  constexpr std::string_view kMark = "ICC_PROFILE\0"sv;
+  constexpr std::size_t kBeforeBytes = kMark.size() + 2;  // the part's number, and of how many
+  std::map<unsigned, std::string_view> parts;
+  unsigned count = 0;
+  ForEachSegment(jpeg, [&](unsigned marker, std::string_view segment) {
+    const std::string_view content = segment.substr(kMarkerAndLength);
+    if (marker != kIcc || !content.starts_with(kMark) || content.size() <= kBeforeBytes) return;
+    count = Byte(content, kMark.size() + 1);
+    parts[Byte(content, kMark.size())] = content.substr(kBeforeBytes);
+  });
+  if (count == 0 || parts.size() != count || parts.begin()->first != 1) return {};
+  std::string icc;
+  for (const auto& [number, part] : parts) icc += part;
+  return icc;
 }
 
 }  // namespace glint

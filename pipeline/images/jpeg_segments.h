@@ -13,4 +13,8 @@ namespace glint {
 // the file ends it.
 std::string WithPictureSegmentsAlone(std::string_view jpeg);
 
+// The colour profile that its APP2 segments hold (ICC.1:2010, annex B.4); empty: none, or not all
+// of it.
+std::string IccOfJpeg(std::string_view jpeg);
+
 }  // namespace glint

@@ -6,7 +6,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
 
 #include "base/colour/srgb.h"
@@ -174,37 +173,6 @@ ColourProfile AdobeRgbProfile() {
     }
   }
   return profile;
-}
-
-std::string IccOfJpeg(std::string_view jpeg) {
-  using namespace std::string_view_literals;
-  constexpr std::string_view kMark = "ICC_PROFILE\0"sv;
-  constexpr std::size_t kStartOfImage = 2, kMarkerAndLength = 4;
-  constexpr unsigned kApp2 = 0xE2, kStartOfScan = 0xDA;
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(jpeg[i]); };
-  std::map<unsigned, std::string_view> parts;  // by number
-  unsigned count = 0;
-  for (std::size_t at = kStartOfImage; at + kMarkerAndLength <= jpeg.size();) {
-    const unsigned marker = byte(at + 1);
-    if (byte(at) != 0xFF || marker == 0 || marker == 0xFF) {
-      ++at;
-      continue;
-    }
-    if (marker == kStartOfScan) break;
-    const std::size_t length = std::size_t{byte(at + 2)} << 8 | byte(at + 3);
-    if (length < 2 || at + 2 + length > jpeg.size()) break;
-    const std::string_view content = jpeg.substr(at + kMarkerAndLength, length - 2);
-    if (marker == kApp2 && content.starts_with(kMark) && content.size() > kMark.size() + 2) {
-      const unsigned number = static_cast<unsigned char>(content[kMark.size()]);
-      count = static_cast<unsigned char>(content[kMark.size() + 1]);
-      parts[number] = content.substr(kMark.size() + 2);
-    }
-    at += 2 + length;
-  }
-  if (count == 0 || parts.size() != count || parts.begin()->first != 1) return {};
-  std::string icc;
-  for (const auto& [number, part] : parts) icc += part;
-  return icc;
 }
 
 }  // namespace glint

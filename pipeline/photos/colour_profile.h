@@ -53,7 +53,4 @@ ColourProfile ProfileOfPrimaries(int h273);
 // Adobe RGB (1998), which cameras name by EXIF's ColorSpace without a profile.
 ColourProfile AdobeRgbProfile();
 
-// The profile that a JPEG file's APP2 segments hold (ICC.1:2010, annex B.4); empty: none.
-std::string IccOfJpeg(std::string_view jpeg);
-
 }  // namespace glint

@@ -9,6 +9,7 @@
 #include "pipeline/files/files.h"
 #include "pipeline/images/image.h"
 #include "pipeline/images/image_format.h"
+#include "pipeline/images/jpeg_segments.h"
 #include "pipeline/images/oiio.h"
 #include "pipeline/photos/exif.h"
 #include "pipeline/photos/heif_facts.h"
@@ -37,9 +38,9 @@ OIIO::ImageSpec Configuration() {
   return configuration;
 }
 
-void RequireWholeJpeg(const std::filesystem::path& file, const OIIO::ImageInput& input) {
-  if (std::string_view(input.format_name()) != "jpeg") return;
-  if (JpegIsComplete(ReadTextFile(file, kMaxJpegBytes))) return;
+// `jpeg`: the file's bytes; empty: it is none.
+void RequireWholeJpeg(const std::filesystem::path& file, std::string_view jpeg) {
+  if (jpeg.empty() || JpegIsComplete(jpeg)) return;
   throw UserError(file, "", "a truncated JPEG file, which ends before its picture does",
                   "copy the photograph again, or take it out");
 }
@@ -72,8 +73,14 @@ std::string_view IccOf(const OIIO::ImageSpec& spec) {
   return {static_cast<const char*>(icc->data()), icc->type().size()};
 }
 
-// EXIF and colours.
-void ReadFacts(const std::filesystem::path& file, const OIIO::ImageInput& input, Photo* photo) {
+std::string BytesOfJpeg(const std::filesystem::path& file, const OIIO::ImageInput& input) {
+  if (std::string_view(input.format_name()) != "jpeg") return {};
+  return ReadTextFile(file, kMaxJpegBytes);
+}
+
+// EXIF and colours. `jpeg` as above.
+void ReadFacts(const std::filesystem::path& file, const OIIO::ImageInput& input,
+               std::string_view jpeg, Photo* photo) {
   const std::string_view format = input.format_name();
   OIIO::ImageSpec spec = input.spec();
   if (format == "heif") {
@@ -81,7 +88,7 @@ void ReadFacts(const std::filesystem::path& file, const OIIO::ImageInput& input,
     if (!facts.exif.empty()) OIIO::decode_exif(OIIO::string_view(facts.exif), spec);
     photo->colour = facts.colour;
   } else if (format == "jpeg") {
-    photo->colour = ReadColourProfile(IccOfJpeg(ReadTextFile(file, kMaxJpegBytes)));
+    photo->colour = ReadColourProfile(IccOfJpeg(jpeg));
   } else if (format != "raw") {
     photo->colour = ReadColourProfile(IccOf(spec));
   }
@@ -154,9 +161,10 @@ Photo ReadPhoto(const std::filesystem::path& file) {
   if (name.frame >= 0) return ReadVideoFrame(name.file, name.frame);
   const auto input = OpenPhoto(file);
   RequireSize(file, input->spec().width, input->spec().height);
-  RequireWholeJpeg(file, *input);
+  const std::string jpeg = BytesOfJpeg(file, *input);
+  RequireWholeJpeg(file, jpeg);
   Photo photo;
-  ReadFacts(file, *input, &photo);
+  ReadFacts(file, *input, jpeg, &photo);
   const Orientation orientation = OrientationOf(file, *input);
   photo.orientation = orientation.exif;
   ReadPixels(file, input.get(), TurnToApply(orientation), &photo);
@@ -176,7 +184,7 @@ PhotoHeader ReadPhotoHeader(const std::filesystem::path& file) {
   header.is_jpeg = std::string_view(input->format_name()) == "jpeg";
   header.stored_width = input->spec().width;
   header.stored_height = input->spec().height;
-  ReadFacts(file, *input, &header.photo);
+  ReadFacts(file, *input, BytesOfJpeg(file, *input), &header.photo);
   header.photo.orientation = OrientationOf(file, *input).exif;
   return header;
 }

@@ -7,6 +7,7 @@
 #include "fitting/refine/refine.h"
 #include "fitting/reflectance/brdf.h"
 #include "fitting/reflectance/svbrdf_deviations.h"
+#include "fitting/reflectance/texel_at.h"
 #include "tests/fitting/refine/synthetic_scene.h"
 
 namespace glint {
@@ -25,19 +26,9 @@ TEST(SetUnderPower, MapsLookTheSameUnderTheOtherLight) {
     for (size_t t = 0; t < maps.texels(); ++t) {
       double was[3], is[3];
       const double one[3] = {1, 1, 1}, stronger[3] = {kPower, kPower, kPower};
-      const auto texel_of = [&](const SvbrdfMaps& of) {
-        TexelSvbrdf<double> texel;
-        for (int i = 0; i < 3; ++i) {
-          texel.normal[i] = of.plane(kNormalX + i)[t];
-          texel.diffuse[i] = of.plane(kDiffuseR + i)[t];
-          texel.specular[i] = of.plane(kSpecularR + i)[t];
-        }
-        texel.roughness = of.plane(kRoughness)[t];
-        return texel;
-      };
-      ShadeRadiance(texel_of(before), MakeTexelGeometry(direction, direction, one, ambient), weight,
-                    was);
-      ShadeRadiance(texel_of(maps), MakeTexelGeometry(direction, direction, stronger, ambient),
+      ShadeRadiance(TexelAt(before, t), MakeTexelGeometry(direction, direction, one, ambient),
+                    weight, was);
+      ShadeRadiance(TexelAt(maps, t), MakeTexelGeometry(direction, direction, stronger, ambient),
                     weight, is);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(is[c], was[c], 5e-3 * was[c]);
     }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/colour/srgb.h"
+#include "pipeline/images/jpeg_segments.h"
 #include "pipeline/photos/photo.h"
 #include "tests/support/process.h"
 
