@@ -119,7 +119,7 @@ class PhotoColours : public ::testing::Test {
  protected:
   // A grey picture with the profile embedded.
   fs::path Write(const std::string& name, OIIO::TypeDesc type, const std::string& icc) {
-    const fs::path file = folder_ / name;
+    fs::path file = folder_ / name;
     OIIO::ImageSpec spec(32, 32, 3, type);
     spec.attribute("ICCProfile",
                    OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(icc.size())), icc.data());
