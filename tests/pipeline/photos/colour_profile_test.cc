@@ -38,7 +38,7 @@ std::string Profile(const double xy[4][2], double gamma) {
   cmsToneCurve* curve =
       gamma > 0 ? cmsBuildGamma(nullptr, gamma) : cmsBuildParametricToneCurve(nullptr, 4, srgb);
   cmsToneCurve* curves[] = {curve, curve, curve};
-  const std::string icc = Saved(cmsCreateRGBProfile(&white, &primaries, curves));
+  std::string icc = Saved(cmsCreateRGBProfile(&white, &primaries, curves));
   cmsFreeToneCurve(curve);
   return icc;
 }
@@ -118,7 +118,7 @@ TEST(IccOfJpeg, PartsAreJoinedByTheirNumbers) {
 class PhotoColours : public ::testing::Test {
  protected:
   // A grey picture with the profile embedded.
-  fs::path Write(const std::string& name, OIIO::TypeDesc type, const std::string& icc) {
+  fs::path Write(const std::string& name, const OIIO::TypeDesc& type, const std::string& icc) {
     fs::path file = folder_ / name;
     OIIO::ImageSpec spec(32, 32, 3, type);
     spec.attribute("ICCProfile",
