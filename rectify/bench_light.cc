@@ -58,12 +58,11 @@ int Measure(const std::filesystem::path& folder, int texels) {
     const Encoding encoding = ResolveEncoding(capture.encoding, file, photo);
     const BoardDetection detection =
         Timed(&times.detect, [&] { return DetectBoard(GrayFromPhoto(photo), capture.board); });
-    LightPhoto light{calibrated.photo,
-                     calibrated.camera,
-                     calibrated.camera_from_sample,
-                     0,
-                     !photo.is_float(),
-                     {}};
+    LightPhoto light;
+    light.name = calibrated.photo;
+    light.camera = calibrated.camera;
+    light.camera_from_sample = calibrated.camera_from_sample;
+    light.clips = !photo.is_float();
     light.samples = Timed(&times.sample, [&] {
       return SamplePaper(photo, encoding, capture.board, spots, detection.corners);
     });

@@ -13,6 +13,7 @@
 #include "calib/camera/orientation.h"
 #include "calib/capture/above_pose.h"
 #include "calib/capture/assumed_camera.h"
+#include "calib/capture/board_side.h"
 #include "calib/capture/capture_light.h"
 #include "calib/capture/colmap_poses.h"
 #include "calib/capture/guide_capture.h"
@@ -135,17 +136,6 @@ void WarnOfToldFocal(const BundleProblem& problem, const BundleResult& bundle) {
   }
 }
 
-// Why a flash photograph is left out; "": it is not.
-std::string Reason(const CalibSummary& summary, size_t photo) {
-  const DetectedPhoto& detected = summary.photos[photo];
-  const int index = summary.BundleIndex(photo);
-  if (index < 0) return detected.detection.problem;
-  if (!summary.bundle.photos[index].rejected.empty()) return summary.bundle.photos[index].rejected;
-  if (!detected.board_photo && !detected.detection.position_known)
-    return detected.detection.problem;
-  return "";
-}
-
 // Cameras of upright pictures: each group's own, then turned ones where a photograph is turned.
 class UprightCameras {
  public:
@@ -175,7 +165,7 @@ void FillPhotos(const Capture& capture, CalibSummary* summary) {
   UprightCameras cameras(summary->bundle, &summary->calibration);
   for (size_t i = 0; i < summary->photos.size(); ++i) {
     const DetectedPhoto& detected = summary->photos[i];
-    const std::string reason = Reason(*summary, i);
+    const std::string reason = summary->ReasonLeftOut(i);
     if (!reason.empty()) {
       summary->rejected.push_back({detected.name, reason});
       spdlog::warn("{} is left out: {}", detected.name, reason);
@@ -203,11 +193,14 @@ void FillPhotos(const Capture& capture, CalibSummary* summary) {
                          ": no flash photograph could be calibrated:" + reasons);
 }
 
-void WriteOutputs(const CalibSummary& summary, Stage* stage) {
+void WriteOutputs(const Capture& capture, const CalibSummary& summary, Stage* stage) {
   for (size_t c = 0; c < summary.bundle.cameras.size(); ++c) {
     if (summary.bundle.cameras[c].photos == 0) continue;
     WritePng(stage->Output(fmt::format("residuals_camera{}.png", c)),
              ResidualPicture(summary.bundle, static_cast<int>(c)));
+  }
+  if (const auto curve = ToneCurveOf(capture, summary)) {
+    WriteResponseCurve(stage->Output(summary.calibration.tone_curve), *curve);
   }
   WriteLightPicture(summary, stage);
   if (summary.from_board()) WriteTrustPictures(summary.bundle, summary.trust, stage);
@@ -226,6 +219,24 @@ void FinishCapture(const Capture& capture, const CalibOptions& options, bool ass
 }
 
 }  // namespace
+
+std::string CalibSummary::ReasonLeftOut(size_t photo) const {
+  const DetectedPhoto& detected = photos[photo];
+  const int index = BundleIndex(photo);
+  if (index < 0) return detected.detection.problem;
+  if (!bundle.photos[index].rejected.empty()) return bundle.photos[index].rejected;
+  if (!detected.board_photo && !detected.detection.position_known)
+    return detected.detection.problem;
+  return "";
+}
+
+std::vector<size_t> CalibSummary::FlashPhotos() const {
+  std::vector<size_t> flash;
+  for (size_t i = 0; i < photos.size(); ++i) {
+    if (!photos[i].board_photo && ReasonLeftOut(i).empty()) flash.push_back(i);
+  }
+  return flash;
+}
 
 int CalibSummary::BundleIndex(size_t photo) const {
   const auto found = std::find(photo_index.begin(), photo_index.end(), photo);
@@ -253,6 +264,10 @@ CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, 
   CalibSummary summary;
   summary.photos = DetectPhotos(capture, options, threads);
   summary.remarks = TriagePhotos(options, &summary.photos);
+  for (const std::string& word : SettleBoardSides(capture, &summary.photos)) {
+    spdlog::warn("{}", word);
+    summary.board_findings.push_back(word);
+  }
   summary.groups = GroupCameras(capture.file, options.cameras, summary.photos);
   if (options.cameras == "auto") LeaveOutStrays(summary.groups, &summary.photos);
   RequireBoard(capture, options, summary.photos);
@@ -261,10 +276,15 @@ CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, 
 
 void SolveCapture(const Capture& capture, const CalibOptions& options,
                   const std::vector<Camera>& assumed, int threads, CalibSummary* summary) {
-  summary->photo_index.clear();
-  BundleProblem problem = MakeProblem(summary->photos, summary->groups, &summary->photo_index);
-  for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
-  Adjust(capture, options, problem, summary);
+  constexpr int kMostRounds = 3;  // of views that the light sets right
+  BundleProblem problem;
+  for (int round = 0; round <= kMostRounds; ++round) {
+    summary->photo_index.clear();
+    problem = MakeProblem(summary->photos, summary->groups, &summary->photo_index);
+    for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
+    Adjust(capture, options, problem, summary);
+    if (!EstimateBoardLight(capture, options, round < kMostRounds, summary)) break;
+  }
   WarnOfUncertainty(summary->bundle);
   if (assumed.empty()) WarnOfToldFocal(problem, summary->bundle);
   FinishCapture(capture, options, !assumed.empty(), threads, summary);
@@ -325,7 +345,7 @@ CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& option
     PosesFromColmap(capture, options, common, stage, &summary);
     FinishCapture(capture, options, false, common.threads, &summary);
   }
-  WriteOutputs(summary, stage);
+  WriteOutputs(capture, summary, stage);
   stage->Commit(ToJson(summary.calibration), MetricsOf(summary));
   return summary;
 }

@@ -20,7 +20,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 15;
+inline constexpr int kCalibVersion = 16;
 
 struct RejectedPhoto {
   std::string name, reason;
@@ -37,12 +37,18 @@ struct CalibSummary {
   std::vector<RejectedPhoto> rejected;
   Json poses;           // of COLMAP: what is known of its model and the sample's plane; else null
   LightEstimate light;  // photos as calibration.photos; known: the board told it
-  PowerEstimate power;  // otherwise; photo_power as calibration.photos
+  std::vector<std::string> light_findings;  // see light_findings.h
+  std::vector<std::string> board_findings;  // see board_side.h
+  PowerEstimate power;                      // otherwise; photo_power as calibration.photos
   std::string power_source;      // "capture.toml", "board", "board, light at the lens" or "guess"
   SampleRegistration placement;  // of the sample above or below the board; see place_sample.h
   Verdict guidance;
 
   bool from_board() const { return poses.is_null(); }
+  // Indices of the flash photographs that are used, as calibration.photos has them.
+  std::vector<size_t> FlashPhotos() const;
+  // Why a flash photograph is left out; "": it is not.
+  std::string ReasonLeftOut(size_t photo) const;
   // Index into bundle.photos of a detected photograph; −1: it has no corners.
   int BundleIndex(size_t photo) const;
 };

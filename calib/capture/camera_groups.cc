@@ -25,6 +25,18 @@ Key KeyOf(const DetectedPhoto& photo, int turns) {
   return {width, height, mirrored, photo.camera_model, std::lround(10 * photo.focal_length_35mm)};
 }
 
+Key TurnedKey(Key key) {
+  std::swap(std::get<0>(key), std::get<1>(key));
+  return key;
+}
+
+// Whether a picture stored upright is of a camera whose others are stored as wide as it is high:
+// sensors lie across.
+bool IsTurned(const Key& key, const std::vector<Key>& all) {
+  return std::get<0>(key) < std::get<1>(key) &&
+         std::find(all.begin(), all.end(), TurnedKey(key)) != all.end();
+}
+
 std::string Size(const CameraGroup& group) {
   return fmt::format("{}x{} pixels", group.width_px, group.height_px);
 }
@@ -51,13 +63,20 @@ std::string StrayReason(const std::vector<DetectedPhoto>& photos, const CameraGr
 }  // namespace
 
 CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::string& cameras,
-                          const std::vector<DetectedPhoto>& photos) {
+                          const std::vector<DetectedPhoto>& photos, bool turned_pixels) {
   CameraGroups groups;
-  std::vector<Key> keys;
+  std::vector<Key> keys, stored;
+  for (const DetectedPhoto& photo : photos) {
+    stored.push_back(KeyOf(photo, QuarterTurns(photo.orientation).value_or(0)));
+  }
   for (size_t i = 0; i < photos.size(); ++i) {
     const int turns = QuarterTurns(photos[i].orientation).value_or(0);
-    groups.turns.push_back(turns);
-    const Key key = KeyOf(photos[i], turns);
+    Key key = KeyOf(photos[i], turns);
+    const bool turned = turned_pixels && cameras != "each" && IsTurned(key, stored);
+    if (turned) key = TurnedKey(key);
+    groups.surely_turned.push_back(turned);
+    groups.pixel_turns.push_back(turned ? 1 : 0);
+    groups.turns.push_back((turns + groups.pixel_turns.back()) % 4);
     auto found = keys.end();
     if (cameras == "auto") found = std::find(keys.begin(), keys.end(), key);
     if (cameras == "one" && !keys.empty()) {
@@ -81,6 +100,13 @@ CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::
   return groups;
 }
 
+void LeaveOut(const std::string& reason, DetectedPhoto* photo) {
+  photo->detection.corners.clear();
+  photo->detection.problem = reason;
+  photo->detection.mismatch = false;
+  photo->paper.clear();
+}
+
 void LeaveOutStrays(const CameraGroups& groups, std::vector<DetectedPhoto>* photos) {
   const auto largest = std::max_element(
       groups.groups.begin(), groups.groups.end(),
@@ -90,11 +116,7 @@ void LeaveOutStrays(const CameraGroups& groups, std::vector<DetectedPhoto>* phot
     if (group.photos.size() > kSmallGroup) continue;
     const std::string reason = StrayReason(*photos, group, *largest);
     for (const size_t i : group.photos) {
-      DetectedPhoto& photo = (*photos)[i];
-      photo.detection.corners.clear();
-      photo.detection.problem = reason;
-      photo.detection.mismatch = false;
-      photo.paper.clear();
+      LeaveOut(reason, &(*photos)[i]);
     }
   }
 }

@@ -21,13 +21,21 @@ struct CameraGroups {
   std::vector<CameraGroup> groups;  // in the order of their first photograph
   std::vector<int> group;           // of each photograph
   std::vector<int> turns;           // of each photograph
+  // Clockwise quarter turns that each photograph's pixels had before EXIF's orientation, which does
+  // not tell of them; part of `turns`.
+  std::vector<int> pixel_turns;     // empty: not looked for
+  std::vector<bool> surely_turned;  // of each photograph: by its size, if not to which side
 };
 
-// cameras = "auto": one group per stored size, EXIF camera and focal length; "one": a single group;
-// "each": a group per photograph. Throws UserError naming the photograph of another size where
-// there is to be one camera.
+// cameras = "auto": one group per stored size, EXIF camera and focal length; photographs whose size
+// is that of others turned by 90° are of the same camera, their pixels turned to an unknown side,
+// unless `turned_pixels` is false; "one": a single group; "each": a group per photograph. Throws
+// UserError naming the photograph of another size where there is to be one camera.
 CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::string& cameras,
-                          const std::vector<DetectedPhoto>& photos);
+                          const std::vector<DetectedPhoto>& photos, bool turned_pixels = true);
+
+// Takes a photograph's corners and paper from it; `reason` becomes its detection.problem.
+void LeaveOut(const std::string& reason, DetectedPhoto* photo);
 
 // Photographs whose size or focal length stands alone (a group of one or two beside larger ones)
 // are mistakes, not cameras: their corners are taken from them, and detection.problem says why.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "calib/camera/orientation.h"
+#include "calib/capture/light_findings.h"
 #include "calib/light/light_picture.h"
 #include "pipeline/files/files.h"
 
@@ -44,15 +45,24 @@ Eigen::Vector3d Values(const std::array<Estimate, 3>& estimates) {
   return {estimates[0].value, estimates[1].value, estimates[2].value};
 }
 
+// COLMAP's poses, and a stated one, are what they are.
+bool PosesFollowTheLight(const CalibSummary& summary) {
+  return !summary.groups.pixel_turns.empty();
+}
+
 LightProblem ProblemOf(const CalibSummary& summary) {
   LightProblem problem;
   for (const CameraEstimate& camera : summary.bundle.cameras) {
     problem.cameras.push_back(camera.camera);
   }
-  for (const CalibratedPhoto& photo : summary.calibration.photos) {
-    const size_t detected = DetectedIndex(summary, photo);
+  for (const size_t detected : summary.FlashPhotos()) {
     LightPhoto& added = problem.photos.emplace_back();
-    added.name = photo.photo;
+    added.name = summary.photos[detected].name;
+    if (PosesFollowTheLight(summary)) {
+      // A picture upside down has the same size; one on its side has not, or is known to be turned.
+      added.possible_turns = {0, 2};
+      added.surely_turned = summary.groups.surely_turned[detected];
+    }
     added.camera = summary.groups.group[detected];
     added.camera_from_sample =
         summary.bundle.photos[summary.BundleIndex(detected)].camera_from_sample;
@@ -63,6 +73,14 @@ LightProblem ProblemOf(const CalibSummary& summary) {
   return problem;
 }
 
+// RAW and floats are linear by nature, and a response curve was measured.
+bool MayHaveToneCurve(const Capture& capture, const CalibSummary& summary) {
+  if (IsResponseFileName(capture.encoding) || capture.encoding == "linear") return false;
+  return std::all_of(summary.photos.begin(), summary.photos.end(), [](const DetectedPhoto& photo) {
+    return photo.board_photo || (photo.clips && photo.measures.file.format != "raw");
+  });
+}
+
 LightEstimate EstimateFromBoard(const Capture& capture, const CalibOptions& options,
                                 const CalibSummary& summary) {
   LightOptions light;
@@ -71,6 +89,8 @@ LightEstimate EstimateFromBoard(const Capture& capture, const CalibOptions& opti
   light.power = Eigen::Vector3d(capture.light_power.data());
   const Eigen::Vector3d ambient(capture.ambient.data());
   if (ambient.maxCoeff() > 0) light.ambient = ambient;
+  if (options.quick_px > 0) light.spots_per_photo = 120;  // for what it says of the photographs
+  light.tone_known = !MayHaveToneCurve(capture, summary);
   return EstimateLight(ProblemOf(summary), light);
 }
 
@@ -83,8 +103,8 @@ void FillExposures(const CalibSummary& summary, Calibration* calibration) {
   const size_t first = static_cast<size_t>(used - photos.begin());
   for (size_t i = 0; i < photos.size(); ++i) {
     calibration->photos[i].exposure =
-        photos[i].used ? photos[i].exposure.value : exif[i] / exif[first];
-    if (photos[i].used) continue;
+        photos[i].used || photos[i].contradicts ? photos[i].exposure.value : exif[i] / exif[first];
+    if (photos[i].used || photos[i].contradicts) continue;
     spdlog::warn("{}: too little unclipped white paper; its exposure is taken from EXIF",
                  photos[i].name);
   }
@@ -95,7 +115,17 @@ void FillExposures(const CalibSummary& summary, Calibration* calibration) {
   *calibration->ambient_rgb *= gauge;
 }
 
-void TakeEstimate(CalibSummary* summary) {
+// White balances that changed by more than they are known.
+void FillWhiteBalance(const LightEstimate& light, Calibration* calibration) {
+  constexpr double kWorthCorrecting = 0.01;
+  for (size_t i = 0; i < light.photos.size(); ++i) {
+    const Eigen::Vector3d& colour = light.photos[i].colour;
+    if (colour.maxCoeff() / colour.minCoeff() < 1 + kWorthCorrecting) continue;
+    calibration->photos[i].white_balance_rgb = colour;
+  }
+}
+
+void TakeEstimate(const Capture& capture, CalibSummary* summary) {
   const LightEstimate& light = summary->light;
   Calibration& calibration = summary->calibration;
   calibration.light_rgb = Values(light.power_rgb);
@@ -112,6 +142,8 @@ void TakeEstimate(CalibSummary* summary) {
     calibration.cameras[photo.camera].vignetting = {v[0].value, v[1].value, v[2].value};
   }
   FillExposures(*summary, &calibration);
+  FillWhiteBalance(light, &calibration);
+  if (ToneCurveOf(capture, *summary)) calibration.tone_curve = "tone_curve.json";
 }
 
 // The paper's assumption: the light at the lens, or where capture.toml puts it; all photographs'
@@ -150,13 +182,41 @@ void FillSimpleLight(const Capture& capture, const CalibOptions& options, CalibS
 
 }  // namespace
 
+bool EstimateBoardLight(const Capture& capture, const CalibOptions& options, bool may_change,
+                        CalibSummary* summary) {
+  summary->light = LightEstimate();
+  if (options.light != "board") return false;
+  const std::vector<size_t> flash = summary->FlashPhotos();
+  if (flash.empty()) return false;
+  summary->light = EstimateFromBoard(capture, options, *summary);
+  if (!may_change) return false;
+  bool changed = false;
+  for (size_t k = 0; k < summary->light.photos.size(); ++k) {
+    const LightOfPhoto& photo = summary->light.photos[k];
+    CameraGroups& groups = summary->groups;
+    const size_t i = flash[k];
+    if (photo.turns != 0) {
+      groups.turns[i] = (groups.turns[i] + photo.turns) % 4;
+      groups.pixel_turns[i] = (groups.pixel_turns[i] + photo.turns) % 4;
+      changed = true;
+    }
+    const std::string reason = ContradictionOf(photo);
+    if (reason.empty()) continue;
+    LeaveOut(reason, &summary->photos[i]);
+    changed = true;
+  }
+  return changed;
+}
+
 void FillLight(const Capture& capture, const CalibOptions& options, CalibSummary* summary) {
-  if (options.light == "board" && options.quick_px == 0) {  // --check asks for no light
-    summary->light = EstimateFromBoard(capture, options, *summary);
+  if (summary->light.photos.empty()) EstimateBoardLight(capture, options, false, summary);
+  summary->light_findings = LightFindings(capture, *summary);
+  for (const std::string& word : summary->light_findings) spdlog::warn("{}", word);
+  if (options.light == "board") {
     if (summary->light.known) {
       summary->power_source =
           Eigen::Vector3d(capture.light_power.data()).maxCoeff() > 0 ? "capture.toml" : "board";
-      TakeEstimate(summary);
+      TakeEstimate(capture, summary);
       for (const std::string& word : summary->light.held) spdlog::warn("light: {}", word);
       return;
     }
@@ -185,9 +245,24 @@ void WriteLightPicture(const CalibSummary& summary, Stage* stage) {
   WriteFileAtomically(stage->Output("light_residuals.json"), json.dump(1) + "\n");
 }
 
+std::optional<ResponseCurve> ToneCurveOf(const Capture& capture, const CalibSummary& summary) {
+  if (!summary.light.tone || capture.encoding != "auto") return std::nullopt;
+  const Photo& file = summary.photos[summary.FlashPhotos()[0]].measures.file;
+  const Encoding encoding = ResolveEncoding("auto", summary.photos[0].name, file);
+  ResponseCurve curve;
+  for (int c = 0; c < 3; ++c) {
+    curve.linear[c] = LinearTable(encoding, kResponseCodes, c);
+    for (float& value : curve.linear[c]) {
+      value = static_cast<float>(summary.light.tone->Linear(value));
+    }
+  }
+  return curve;
+}
+
 std::vector<std::string> LightAdvice(const CalibSummary& summary) {
   const LightEstimate& light = summary.light;
   std::vector<std::string> advice = light.held;
+  advice.insert(advice.end(), summary.light_findings.begin(), summary.light_findings.end());
   if (!light.known) return advice;
   constexpr double kFlash_mm = 2, kAmbientOfFlash = 0.01, kVignetting = 0.01, kResidual = 3;
   double flash = 0;

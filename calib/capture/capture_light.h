@@ -1,13 +1,26 @@
 // The light of a calibrated capture: from the board, or as capture.toml and EXIF tell it.
 #pragma once
 
+#include <optional>
+
 #include "calib/capture/calibrate_capture.h"
+#include "rectify/linearize/response_curve.h"
 
 namespace glint {
+
+// Fills in summary->light where the board is to tell it, and puts right what it says of
+// photographs: pixels that were turned, photographs that contradict all others. Needs the bundle.
+// True: views changed, and the bundle is to be adjusted again; never unless `may_change`.
+bool EstimateBoardLight(const Capture& capture, const CalibOptions& options, bool may_change,
+                        CalibSummary* summary);
 
 // Fills in `calibration`: positions of the flash, power, exposures, ambient light, the cameras'
 // vignetting; and in the summary how they were found. Needs calibration.photos and the bundle.
 void FillLight(const Capture& capture, const CalibOptions& options, CalibSummary* summary);
+
+// The tone curve that the paper told, as a response curve; nullopt: photographs are read as
+// [radiometry] encoding says.
+std::optional<ResponseCurve> ToneCurveOf(const Capture& capture, const CalibSummary& summary);
 
 // Writes light_residuals.png through the stage, where the board told the light.
 void WriteLightPicture(const CalibSummary& summary, Stage* stage);

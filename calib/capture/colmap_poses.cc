@@ -275,7 +275,7 @@ class PoseTaker {
 
 ColmapRun RunOnCapture(const Capture& capture, const CalibOptions& options,
                        const CommonOptions& common, const CalibSummary& summary) {
-  const CameraGroups groups = GroupCameras(capture.file, options.cameras, summary.photos);
+  const CameraGroups groups = GroupCameras(capture.file, options.cameras, summary.photos, false);
   std::vector<ColmapPhoto> photos;
   for (size_t i = 0; i < summary.photos.size(); ++i) {
     const std::string& name = summary.photos[i].name;

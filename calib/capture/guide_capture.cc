@@ -50,6 +50,8 @@ GuidanceInput GuidanceInputOf(const Capture& capture, const CalibSummary& summar
   input.resolution_px = capture.resolution_px;
   input.focal_assumed = focal_assumed;
   input.over_board = ReachOverBoard(capture);
+  input.board_findings = summary.board_findings;
+  input.light_findings = summary.light_findings;
   for (const CalibratedPhoto& photo : summary.calibration.photos) {
     const Rigid3 sample_from_camera = Inverse(photo.camera_from_sample);
     GuidancePhoto one;

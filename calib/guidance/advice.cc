@@ -44,6 +44,15 @@ void AddUnseen(const Verdict& v, List* list) {
                                100 * (1 - v.shown_share), RegionName(v.coverage.grid, cells))});
 }
 
+void AddFindings(const GuidanceInput& input, List* list) {
+  for (const std::string& finding : input.board_findings) {
+    list->push_back({"board", Importance::kUseful, finding});
+  }
+  for (const std::string& finding : input.light_findings) {
+    list->push_back({"light", Importance::kUseful, finding});
+  }
+}
+
 void AddFocal(const GuidanceInput& input, const Verdict& v, List* list) {
   const std::string remedy = "take two or three tilted by 20 to 40° toward different sides";
   if (input.focal_assumed) {
@@ -193,6 +202,7 @@ std::vector<Advice> AdviceFor(const GuidanceInput& input, const Verdict& verdict
   List list;
   AddOverBoard(input, &list);
   AddUnseen(verdict, &list);
+  AddFindings(input, &list);
   AddFocal(input, verdict, &list);
   AddFew(verdict, &list);
   AddTilted(verdict, &list);

@@ -1,6 +1,8 @@
 // The sentences of a verdict. Each has a topic, by which tests and programs know it:
 //   over_board  the sample as described reaches over the printed board
 //   unseen      part of the sample is in no photograph
+//   board       the board looks the same from two sides
+//   light       the board's light contradicts EXIF, the encoding or the flash's place
 //   focal       the focal length is assumed, or known poorly
 //   few         more photographs lower the errors
 //   tilted      all photographs look straight down

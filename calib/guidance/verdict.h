@@ -29,6 +29,10 @@ struct GuidanceInput {
   bool focal_assumed = false;
   // How far the sample as described reaches over the printed board, on which sides; empty: not.
   std::string over_board;
+  // What can be wrong with the board's place; a sentence each.
+  std::vector<std::string> board_findings;
+  // What the paper's light says against EXIF, encoding or the flash's place; a sentence each.
+  std::vector<std::string> light_findings;
 };
 
 struct GuidanceLimits {

@@ -6,7 +6,10 @@
 #include <map>
 #include <utility>
 
+#include "calib/light/contradictions.h"
 #include "calib/light/light_state.h"
+#include "calib/light/settle.h"
+#include "calib/light/thinned.h"
 
 namespace glint {
 namespace light {
@@ -76,12 +79,12 @@ void Start(const LightOptions& options, State* state) {
     PhotoState& photo = state->photos[i];
     if (!photo.used) continue;
     photo.exif = exif ? photo.exif / first_exif : 0;
-    photo.log_exposure = std::log(exif ? photo.exif : Median(shares[i]) / first);
+    photo.log_exposure.setConstant(std::log(exif ? photo.exif : Median(shares[i]) / first));
     for (const Spot& spot : photo.spots) {
       double flash = 0;
       if (!FlashOnSpot(spot.geometry, options.offset_mm.data(), 0.0, &flash)) continue;
       for (int c = 0; c < 3; ++c) {
-        q[c].push_back(spot.seen[c] / (flash * std::exp(photo.log_exposure)));
+        q[c].push_back(spot.seen[c] / (flash * std::exp(photo.log_exposure[c])));
       }
     }
   }
@@ -97,23 +100,6 @@ void SetGivenAmbient(const LightOptions& options, State* state) {
                              : std::exp(state->log_q[c]) * kPi / options.paper_reflectance;
     state->ambient[c] = (*options.ambient)[c] / (power * state->reference);
   }
-}
-
-// Residuals' scale from the inliers' median; new weights from the prediction.
-void Reweigh(State* state) {
-  std::vector<double> sizes;
-  for (PhotoState& photo : state->photos) {
-    if (!photo.used) continue;
-    for (Spot& spot : photo.spots) {
-      const auto predicted = state->Prediction(photo, spot);
-      if (predicted.empty()) continue;
-      for (int c = 0; c < 3; ++c) {
-        spot.sigma[c] = SigmaOf(predicted[c], spot.pixels);
-        if (spot.inlier) sizes.push_back(std::abs(spot.seen[c] - predicted[c]) / spot.sigma[c]);
-      }
-    }
-  }
-  state->scale = std::max(1e-6, 1.4826 * Median(sizes));
 }
 
 bool Fits(const LightOptions& options, const State& state, const PhotoState& photo,
@@ -149,43 +135,6 @@ int Inliers(const PhotoState& photo) {
                                         [](const Spot& spot) { return spot.inlier; }));
 }
 
-// A photo without enough spots leaves; false: none is left.
-bool DropPhotos(const LightOptions& options, State* state) {
-  for (PhotoState& photo : state->photos) {
-    if (photo.used && Inliers(photo) < options.min_samples) photo.used = false;
-  }
-  const auto first = std::find_if(state->photos.begin(), state->photos.end(),
-                                  [](const PhotoState& photo) { return photo.used; });
-  if (first == state->photos.end()) return false;
-  state->first = static_cast<int>(first - state->photos.begin());
-  const double shift = first->log_exposure;
-  const double exif = first->exif;
-  for (PhotoState& photo : state->photos) {
-    photo.log_exposure -= shift;
-    if (exif > 0) photo.exif /= exif;
-  }
-  for (int c = 0; c < 3; ++c) state->log_q[c] += shift;
-  return true;
-}
-
-// Robust solutions until nothing changes sides, then plain least squares. False: nothing is left.
-bool SolveRobustly(const LightOptions& options, State* state, int* rounds) {
-  for (bool robust : {true, false}) {
-    for (int round = 0; round < kMostRounds; ++round) {
-      SetGivenAmbient(options, state);
-      Solve(options, robust, state);
-      Reweigh(state);
-      ++*rounds;
-      const bool changed = Reject(options, state);
-      if (!DropPhotos(options, state)) return false;
-      if (!changed && round > 0) break;
-    }
-  }
-  SetGivenAmbient(options, state);
-  Solve(options, false, state);
-  return true;
-}
-
 State StartState(const LightProblem& problem, const LightOptions& options) {
   State state;
   state.flash_mm = options.offset_mm;
@@ -205,17 +154,70 @@ State StartState(const LightProblem& problem, const LightOptions& options) {
 
 }  // namespace
 
+void Reweigh(State* state) {
+  std::vector<double> sizes;
+  for (PhotoState& photo : state->photos) {
+    if (!photo.used) continue;
+    for (Spot& spot : photo.spots) {
+      const auto predicted = state->Prediction(photo, spot);
+      if (predicted.empty()) continue;
+      for (int c = 0; c < 3; ++c) {
+        spot.sigma[c] = SigmaOf(predicted[c], spot.pixels);
+        if (spot.inlier) sizes.push_back(std::abs(spot.seen[c] - predicted[c]) / spot.sigma[c]);
+      }
+    }
+  }
+  state->scale = std::max(1e-6, 1.4826 * Median(sizes));
+}
+
+bool DropPhotos(const LightOptions& options, State* state) {
+  for (PhotoState& photo : state->photos) {
+    if (photo.used && Inliers(photo) < options.min_samples) photo.used = false;
+  }
+  const auto first = std::find_if(state->photos.begin(), state->photos.end(),
+                                  [](const PhotoState& photo) { return photo.used; });
+  if (first == state->photos.end()) return false;
+  state->first = static_cast<int>(first - state->photos.begin());
+  const Eigen::Vector3d shift = first->log_exposure;
+  const double exif = first->exif;
+  for (PhotoState& photo : state->photos) {
+    photo.log_exposure -= shift;
+    if (exif > 0) photo.exif /= exif;
+  }
+  state->log_q += shift;
+  return true;
+}
+
+bool SolveRobustly(const LightOptions& options, State* state, int* rounds) {
+  for (bool robust : {true, false}) {
+    for (int round = 0; round < kMostRounds; ++round) {
+      SetGivenAmbient(options, state);
+      Solve(options, robust, state);
+      Reweigh(state);
+      ++*rounds;
+      const bool changed = Reject(options, state);
+      if (!DropPhotos(options, state)) return false;
+      if (!changed && round > 0) break;
+    }
+  }
+  SetGivenAmbient(options, state);
+  Solve(options, false, state);
+  return true;
+}
+
 std::vector<double> State::Prediction(const PhotoState& photo, const Spot& spot) const {
   std::vector<double> radiance(3);
   if (!Predict(spot.geometry, reference, flash_mm.data(), log_q.data(), ambient.data(),
-               vignetting[photo.camera].data(), &gloss, &smear, &photo.log_exposure,
-               radiance.data())) {
+               vignetting[photo.camera].data(), &gloss, &smear, tone.data(),
+               photo.log_exposure.data(), radiance.data())) {
     return {};
   }
   return radiance;
 }
 
 }  // namespace light
+
+constexpr const char* kNoFlash = "the white paper's brightness fits no flash near the lens";
 
 LightEstimate EstimateLight(const LightProblem& problem, const LightOptions& options) {
   LightEstimate estimate;
@@ -225,23 +227,29 @@ LightEstimate EstimateLight(const LightProblem& problem, const LightOptions& opt
     return estimate;
   }
   light::Start(options, &start);
+  if (!light::Settle(problem, options, &start, &estimate.rounds)) {
+    estimate.problem = kNoFlash;
+    return estimate;
+  }
+  light::State full = start;
+  start = light::Thinned(full, options.spots_per_photo);
   while (true) {
     light::State state = start;
     if (!light::SolveRobustly(options, &state, &estimate.rounds)) {
-      estimate.problem = "the white paper's brightness fits no flash near the lens";
+      estimate.problem = kNoFlash;
       return estimate;
-    }
-    const double along_mm = state.flash_mm.z() - options.offset_mm.z();
-    if (!start.flash_along_free && std::abs(along_mm) > 3 * light::kPrior.flash_along_mm) {
-      start.flash_along_free = true;
-      continue;
     }
     const light::Layout layout = light::LayoutOf(state);
     const Eigen::MatrixXd covariance = light::Covariance(problem, options, state, layout);
-    if (light::HoldOne(state, layout, covariance, &start, &estimate.held)) continue;
-    estimate.known = true;
-    light::FillEstimate(problem, options, state, layout, covariance, &estimate);
-    return estimate;
+    if (!light::HoldOne(state, layout, covariance, &start, &estimate.held)) {
+      estimate.known = true;
+      light::Adopt(state, &full);
+      light::Reweigh(&full);
+      light::Reject(options, &full);
+      light::ExplainContradictions(&full);
+      light::FillEstimate(problem, options, full, layout, covariance, &estimate);
+      return estimate;
+    }
   }
 }
 

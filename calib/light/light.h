@@ -28,6 +28,7 @@
 #include "calib/camera/camera_model.h"
 #include "calib/camera/rigid3.h"
 #include "calib/light/paper.h"
+#include "calib/light/tone_curve.h"
 
 namespace glint {
 
@@ -36,7 +37,11 @@ struct LightPhoto {
   int camera = 0;             // index into LightProblem::cameras
   Rigid3 camera_from_sample;  // of the stored picture
   double exposure = 0;        // by EXIF, up to a common factor; 0: not known
-  bool clips = true;          // at radiance 1
+  // Clockwise quarter turns that its pixels may have had without EXIF's knowledge, the expected one
+  // first; surely: none of them is expected more.
+  std::vector<int> possible_turns{0};
+  bool surely_turned = false;
+  bool clips = true;  // at radiance 1
   std::vector<PaperSample> samples;
 };
 
@@ -51,18 +56,22 @@ struct LightOptions {
   Eigen::Vector3d power{0, 0, 0};      // given; then the paper's reflectance is free. Zeros: free
   std::optional<Eigen::Vector3d> ambient;  // irradiance, given; nullopt: free
   double reject_sigmas = 5;                // a spot is an outlier beyond
+  bool tone_known = false;                 // the encoding is linear by nature, or was measured
+  size_t spots_per_photo = 1200;           // that are solved for; all are judged by the solution
   int min_samples = 12;                    // a photo with fewer inliers gets no exposure
-};
-
-// A value with its standard deviation; 0: held.
-struct Estimate {
-  double value = 0, sigma = 0;
 };
 
 struct LightOfPhoto {
   std::string name;
   bool used = false;
-  Estimate exposure{1, 0};  // relative to the first used photo's
+  Estimate exposure{1, 0};          // relative to the first used photo's
+  double exif_exposure = 0;         // the same by EXIF; 0: not known
+  Eigen::Vector3d colour{1, 1, 1};  // exposures of R, G, B over their mean: the white balance
+  int turns = 0;                    // of its pixels
+  // Its exposure contradicts EXIF and all others: it has no say. `zoom`: the enlargement, unknown
+  // to EXIF, that would explain it and its own fall-off of the light; 1: none does.
+  bool contradicts = false;
+  double zoom = 1;
   int samples = 0, inliers = 0;
   double rms_percent = 0;  // of the inliers' residuals, relative to what is predicted
   struct Spot {
@@ -80,6 +89,8 @@ struct LightEstimate {
   std::array<Estimate, 3> power_rgb;    // σ without that of the paper's reflectance
   std::array<Estimate, 3> ambient_rgb;  // irradiance; never negative
   std::array<Estimate, 3> paper_rgb;    // reflectance; σ 0 unless the power is given
+  std::optional<ToneCurve> tone;        // where the paper contradicts the encoding
+  bool flash_along_free = false;        // the paper insists on a flash before or behind the lens
   Estimate smear;  // share of its light that paper beside ink loses to blur and JPEG
   Estimate gloss;  // the lobe's reflectance at normal incidence
   // Per camera: v1, v2, v3, and the largest σ of V(r) up to the farthest spot that was seen.

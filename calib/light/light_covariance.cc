@@ -23,11 +23,12 @@ std::vector<double*> BlocksOf(const Layout& layout, State* state) {
   if (layout.ambient >= 0) blocks.push_back(state->ambient.data());
   if (layout.gloss >= 0) blocks.push_back(&state->gloss);
   blocks.push_back(&state->smear);
+  if (layout.tone >= 0) blocks.push_back(state->tone.data());
   for (size_t c = 0; c < layout.vignetting.size(); ++c) {
     if (layout.vignetting[c] >= 0) blocks.push_back(state->vignetting[c].data());
   }
   for (size_t i = 0; i < layout.exposure.size(); ++i) {
-    if (layout.exposure[i] >= 0) blocks.push_back(&state->photos[i].log_exposure);
+    if (layout.exposure[i] >= 0) blocks.push_back(state->photos[i].log_exposure.data());
   }
   return blocks;
 }
@@ -116,6 +117,7 @@ Layout LayoutOf(const State& state) {
   layout.ambient = take(state.hold_ambient, 3);
   layout.gloss = take(state.hold_gloss, 1);
   layout.smear = take(false, 1);
+  layout.tone = take(state.hold_tone, 3);
   std::vector<bool> seen(state.vignetting.size(), false);
   for (const PhotoState& photo : state.photos) {
     if (photo.used) seen[photo.camera] = true;
@@ -124,7 +126,7 @@ Layout LayoutOf(const State& state) {
     layout.vignetting.push_back(take(!seen[c] || state.hold_vignetting[c], 3));
   }
   for (size_t i = 0; i < state.photos.size(); ++i) {
-    layout.exposure.push_back(take(!state.photos[i].used || static_cast<int>(i) == state.first, 1));
+    layout.exposure.push_back(take(!state.photos[i].used || static_cast<int>(i) == state.first, 3));
   }
   return layout;
 }

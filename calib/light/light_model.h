@@ -54,19 +54,30 @@ T Falloff(const SpotGeometry& geometry, const T* v) {
   return T(1) + T(r2) * (v[0] + T(r2) * (v[1] + T(r2) * v[2]));
 }
 
+// What a camera that is read with the wrong curve makes of radiance L: L^(1 + t1 + t2·x + t3·x²),
+// x = ln L: phones' curves lift shadows and dim highlights within a factor of five. Black
+// and what clips, 1, stay what they are.
+template <class T>
+T Toned(const T* tone, const T& radiance) {
+  const T log_radiance = log(radiance);
+  return radiance *
+         exp(log_radiance * (tone[0] + log_radiance * (tone[1] + log_radiance * tone[2])));
+}
+
 // Parameter blocks: flash_mm[3], log_q[3], ambient[3] (a · reference), vignetting[3], gloss[1],
-// smear[1] (the share of its light that ink takes from paper beside it), log_exposure[1].
-// `reference` (1/mm²) brings a to the size of 1.
+// smear[1] (the share of its light that ink takes from paper beside it), tone[3] (see Toned),
+// log_exposure[3] (of R, G, B). `reference` (1/mm²) brings a to the size of 1.
 template <class T>
 bool Predict(const SpotGeometry& geometry, double reference, const T* flash_mm, const T* log_q,
-             const T* ambient, const T* vignetting, const T* gloss, const T* smear,
+             const T* ambient, const T* vignetting, const T* gloss, const T* smear, const T* tone,
              const T* log_exposure, T* radiance) {
   T flash;
   if (!FlashOnSpot(geometry, flash_mm, gloss[0], &flash)) return false;
-  const T seen =
-      exp(log_exposure[0]) * Falloff(geometry, vignetting) * (T(1) - smear[0] * T(geometry.smear));
+  const T seen = Falloff(geometry, vignetting) * (T(1) - smear[0] * T(geometry.smear));
   for (int c = 0; c < 3; ++c) {
-    radiance[c] = seen * exp(log_q[c]) * (flash + ambient[c] * T(reference));
+    const T linear = seen * exp(log_exposure[c] + log_q[c]) * (flash + ambient[c] * T(reference));
+    if (!(linear > T(0))) return false;
+    radiance[c] = Toned(tone, linear);
   }
   return true;
 }

@@ -27,6 +27,18 @@ double VignettingSigma(const State& state, int camera, const Eigen::Matrix3d& co
   return largest;
 }
 
+// The mean of the channels, and what they differ by.
+void FillExposure(const PhotoState& photo, int column, const Eigen::MatrixXd& covariance,
+                  LightOfPhoto* of) {
+  const double mean = photo.log_exposure.mean();
+  of->exposure.value = std::exp(mean);
+  of->exif_exposure = photo.exif;
+  of->colour = (photo.log_exposure.array() - mean).exp();
+  if (column < 0) return;
+  const double variance = covariance.block<3, 3>(column, column).sum() / 9;
+  of->exposure.sigma = of->exposure.value * std::sqrt(variance);
+}
+
 void FillPhotos(const LightProblem& problem, const State& state, const Layout& layout,
                 const Eigen::MatrixXd& covariance, LightEstimate* estimate) {
   double all = 0;
@@ -35,6 +47,10 @@ void FillPhotos(const LightProblem& problem, const State& state, const Layout& l
     LightOfPhoto of;
     of.name = problem.photos[i].name;
     of.used = photo.used;
+    of.turns = photo.turns;
+    of.contradicts = photo.contradicts;
+    of.zoom = photo.zoom;
+    if (photo.contradicts) FillExposure(photo, -1, covariance, &of);
     of.samples = static_cast<int>(photo.spots.size());
     double squares = 0;
     for (const Spot& spot : photo.spots) {
@@ -49,10 +65,7 @@ void FillPhotos(const LightProblem& problem, const State& state, const Layout& l
       of.spots.push_back(shown);
     }
     if (photo.used) {
-      of.exposure.value = std::exp(photo.log_exposure);
-      const int column = layout.exposure[i];
-      if (column >= 0)
-        of.exposure.sigma = of.exposure.value * std::sqrt(covariance(column, column));
+      FillExposure(photo, layout.exposure[i], covariance, &of);
       of.rms_percent = 100 * std::sqrt(squares / std::max(1, of.inliers));
       estimate->samples += of.samples;
       estimate->inliers += of.inliers;
@@ -89,6 +102,23 @@ void FillRadiometry(const LightOptions& options, const State& state, const Layou
     }
     estimate->ambient_rgb[c] = {std::max(0.0, ambient), sigma};
   }
+  if (layout.tone >= 0) {
+    const auto sigma = [&](int i) {
+      return std::sqrt(covariance(layout.tone + i, layout.tone + i));
+    };
+    estimate->tone = ToneCurve{
+        {Estimate{state.tone[0], sigma(0)}, {state.tone[1], sigma(1)}, {state.tone[2], sigma(2)}},
+        1,
+        0};
+    for (const PhotoState& photo : state.photos) {
+      for (const Spot& spot : photo.spots) {
+        if (!photo.used || !spot.inlier) continue;
+        estimate->tone->lowest = std::min(estimate->tone->lowest, spot.seen.minCoeff());
+        estimate->tone->highest = std::max(estimate->tone->highest, spot.seen.maxCoeff());
+      }
+    }
+  }
+  estimate->flash_along_free = state.flash_along_free;
   estimate->smear = {state.smear, std::sqrt(covariance(layout.smear, layout.smear))};
   estimate->gloss.value = state.gloss * options.paper_reflectance;
   if (layout.gloss >= 0) {

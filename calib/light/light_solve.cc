@@ -13,9 +13,10 @@ class SpotCost {
       : spot_(spot), reference_(reference), scale_(scale) {}
   template <class T>
   bool operator()(const T* flash, const T* log_q, const T* ambient, const T* vignetting,
-                  const T* gloss, const T* smear, const T* log_exposure, T* residual) const {
+                  const T* gloss, const T* smear, const T* tone, const T* log_exposure,
+                  T* residual) const {
     T radiance[3];
-    if (!Predict(spot_.geometry, reference_, flash, log_q, ambient, vignetting, gloss, smear,
+    if (!Predict(spot_.geometry, reference_, flash, log_q, ambient, vignetting, gloss, smear, tone,
                  log_exposure, radiance)) {
       return false;
     }
@@ -60,6 +61,27 @@ struct FalloffPrior {
   }
 };
 
+// Exposures hold to what EXIF says, mostly: the tail is for what EXIF does not know of.
+struct ExifPrior {
+  template <class T>
+  bool operator()(const T* log_exposure, T* residual) const {
+    const T mean = (log_exposure[0] + log_exposure[1] + log_exposure[2]) / T(3);
+    residual[0] = (mean - T(log_exif)) / T(kPrior.exif);
+    return true;
+  }
+  double log_exif;
+};
+
+// White balance is locked, mostly.
+struct WhiteBalancePrior {
+  template <class T>
+  bool operator()(const T* log_exposure, T* residual) const {
+    residual[0] = (log_exposure[0] - log_exposure[1]) / T(kPrior.white_balance);
+    residual[1] = (log_exposure[2] - log_exposure[1]) / T(kPrior.white_balance);
+    return true;
+  }
+};
+
 template <int N>
 void AddPrior(const Eigen::Matrix<double, N, 1>& expected, const Eigen::Matrix<double, N, 1>& sigma,
               double* block, ceres::Problem* problem) {
@@ -77,20 +99,26 @@ void AddSpots(bool robust, State* state, ceres::Problem* problem) {
     if (!photo.used) continue;
     for (const Spot& spot : photo.spots) {
       if (!spot.inlier) continue;
-      problem->AddResidualBlock(new ceres::AutoDiffCostFunction<SpotCost, 3, 3, 3, 3, 3, 1, 1, 1>(
-                                    new SpotCost(spot, state->reference, state->weighing_scale())),
-                                robust ? new ceres::CauchyLoss(2.0 / State::kShared) : nullptr,
-                                state->flash_mm.data(), state->log_q.data(), state->ambient.data(),
-                                state->vignetting[photo.camera].data(), &state->gloss,
-                                &state->smear, &photo.log_exposure);
+      problem->AddResidualBlock(
+          new ceres::AutoDiffCostFunction<SpotCost, 3, 3, 3, 3, 3, 1, 1, 3, 3>(
+              new SpotCost(spot, state->reference, state->weighing_scale())),
+          robust ? new ceres::CauchyLoss(2.0 / state->shared) : nullptr,
+          state->own_flashes ? photo.flash_mm.data() : state->flash_mm.data(), state->log_q.data(),
+          state->ambient.data(), state->vignetting[photo.camera].data(), &state->gloss,
+          &state->smear, state->tone.data(), photo.log_exposure.data());
     }
   }
 }
 
 void AddPriors(const LightOptions& options, State* state, ceres::Problem* problem) {
   const double along = state->flash_along_free ? kPrior.flash_free_mm : kPrior.flash_along_mm;
-  AddPrior<3>(options.offset_mm, {kPrior.flash_across_mm, kPrior.flash_across_mm, along},
-              state->flash_mm.data(), problem);
+  const Eigen::Vector3d flash_sigma(kPrior.flash_across_mm, kPrior.flash_across_mm, along);
+  if (!state->own_flashes) {
+    AddPrior<3>(options.offset_mm, flash_sigma, state->flash_mm.data(), problem);
+  }
+  AddPrior<3>(Eigen::Vector3d::Zero(),
+              Eigen::Vector3d(kPrior.tone[0], kPrior.tone[1], kPrior.tone[2]), state->tone.data(),
+              problem);
   AddPrior<3>(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(kPrior.ambient),
               state->ambient.data(), problem);
   AddPrior<1>(Vector1::Zero(), Vector1::Constant(kPrior.gloss), &state->gloss, problem);
@@ -101,9 +129,17 @@ void AddPriors(const LightOptions& options, State* state, ceres::Problem* proble
                               nullptr, state->vignetting[c].data());
   }
   for (PhotoState& photo : state->photos) {
-    if (!photo.used || photo.exif <= 0) continue;
-    AddPrior<1>(Vector1(std::log(photo.exif)), Vector1::Constant(kPrior.exif), &photo.log_exposure,
-                problem);
+    if (!photo.used) continue;
+    problem->AddResidualBlock(
+        new ceres::AutoDiffCostFunction<WhiteBalancePrior, 2, 3>(new WhiteBalancePrior),
+        new ceres::CauchyLoss(2.0), photo.log_exposure.data());
+    if (state->own_flashes) {
+      AddPrior<3>(options.offset_mm, flash_sigma, photo.flash_mm.data(), problem);
+    }
+    if (photo.exif <= 0) continue;
+    problem->AddResidualBlock(
+        new ceres::AutoDiffCostFunction<ExifPrior, 1, 3>(new ExifPrior{std::log(photo.exif)}),
+        new ceres::CauchyLoss(2.0), photo.log_exposure.data());
   }
 }
 
@@ -114,10 +150,11 @@ void HoldBlocks(State* state, ceres::Problem* problem) {
   if (state->hold_flash) hold(state->flash_mm.data());
   if (state->hold_ambient) hold(state->ambient.data());
   if (state->hold_gloss) hold(&state->gloss);
+  if (state->hold_tone) hold(state->tone.data());
   for (size_t c = 0; c < state->vignetting.size(); ++c) {
     if (state->hold_vignetting[c]) hold(state->vignetting[c].data());
   }
-  hold(&state->photos[state->first].log_exposure);
+  hold(state->photos[state->first].log_exposure.data());
 }
 
 void Solve(const LightOptions& options, bool robust, State* state) {
@@ -134,6 +171,20 @@ void Solve(const LightOptions& options, bool robust, State* state) {
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
+}
+
+double Misfit(const LightOptions& options, const State& solved, double scale) {
+  State state = solved;
+  state.scale = scale;
+  for (PhotoState& photo : state.photos) {
+    for (Spot& spot : photo.spots) spot.inlier = true;
+  }
+  ceres::Problem problem;
+  AddSpots(true, &state, &problem);
+  AddPriors(options, &state, &problem);
+  double cost = 0;
+  problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  return cost;
 }
 
 }  // namespace glint::light

@@ -90,6 +90,20 @@ BoardWindow PlanWindow(const SheetOptions& options, const Board& board) {
   return {(board.squares_x - columns) / 2, (board.squares_y - rows) / 2, columns, rows};
 }
 
+// Of an odd by an even number of squares a checkerboard looks different upside down. `free`: the
+// number may be changed.
+void GiveOneWayUp(bool free, Board* board) {
+  if ((board->squares_x + board->squares_y) % 2 == 1) return;
+  if (!free) {
+    throw UserError(
+        fmt::format("--squares: found {},{}, a checkerboard that looks the same upside down, so "
+                    "that photographs "
+                    "from the other side cannot be told; use {},{}, or --kind charuco",
+                    board->squares_x, board->squares_y, board->squares_x, board->squares_y - 1));
+  }
+  --(board->squares_x > board->squares_y ? board->squares_x : board->squares_y);
+}
+
 Board PlanSquares(const SheetOptions& options, const Space& space) {
   Board board;
   board.kind = options.kind == "charuco" ? BoardKind::kCharuco : BoardKind::kCheckerboard;
@@ -109,7 +123,10 @@ Board PlanSquares(const SheetOptions& options, const Space& space) {
   };
   board.squares_x = squares.empty() ? fit(space.width_mm) : squares[0];
   board.squares_y = squares.empty() ? fit(space.height_mm) : squares[1];
-  if (board.kind == BoardKind::kCheckerboard) return board;
+  if (board.kind == BoardKind::kCheckerboard) {
+    GiveOneWayUp(squares.empty(), &board);
+    return board;
+  }
   board.dictionary = DictionaryFromAnyName(options.dictionary);
   board.legacy_layout = options.legacy_layout;
   const double wanted = 0.74 * board.square_mm;
@@ -130,6 +147,7 @@ Board PlanMarkers(const SheetOptions& options, const Space& space) {
                           : HalfMillimetres(std::min(space.width_mm / (2 * count[0] - 1),
                                                      space.height_mm / (2 * count[1] - 1)));
   std::vector<std::pair<int, int>> places;
+  places.reserve(2 * static_cast<size_t>(count[0] + count[1]));
   for (int i = 0; i < count[0]; ++i) places.push_back({i, 0});
   for (int j = 1; j < count[1]; ++j) places.push_back({count[0] - 1, j});
   for (int i = count[0] - 2; i >= 0; --i) places.push_back({i, count[1] - 1});

@@ -73,24 +73,6 @@ void CheckLens(const PhotoMeasures& photo, std::vector<Remark>* remarks) {
   }
 }
 
-void CheckColours(const PhotoMeasures& photo, std::vector<Remark>* remarks) {
-  const ColourProfile& colour = photo.file.colour;
-  constexpr int kUncalibrated = 65535;
-  if (!colour.ignored.empty()) {
-    Say(photo,
-        fmt::format("its colour profile '{}' is not used ({}), its colours are read as sRGB; "
-                    "convert the photographs to sRGB, or to 16-bit TIFF in linear Rec.709",
-                    colour.name, colour.ignored),
-        remarks);
-  } else if (colour.name.empty() && photo.file.exif.colour_space == kUncalibrated &&
-             photo.file.format != "raw") {
-    Say(photo,
-        "EXIF says that its colours are not sRGB's, and no profile says whose they are: read as "
-        "sRGB; set the camera to sRGB, or let the profile in the file",
-        remarks);
-  }
-}
-
 void CheckExposure(const PhotoMeasures& photo, std::vector<Remark>* remarks) {
   const Photo& file = photo.file;
   if (Differ(file.exposure_time_s, file.exif.shutter_s, kStops)) {
@@ -120,6 +102,34 @@ std::string Listed(const std::vector<std::string>& names) {
 
 void SayAll(std::string text, std::vector<Remark>* remarks) {
   remarks->push_back({"", RemarkKind::kExif, std::move(text)});
+}
+
+// One sentence for all that lack the same.
+void CheckColours(const std::vector<PhotoMeasures>& photos, std::vector<Remark>* remarks) {
+  constexpr int kUncalibrated = 65535;
+  std::vector<std::string> unknown;
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> ignored;
+  for (const PhotoMeasures& photo : photos) {
+    const ColourProfile& colour = photo.file.colour;
+    if (!colour.ignored.empty()) {
+      ignored[{colour.name, colour.ignored}].push_back(photo.name);
+    } else if (colour.name.empty() && photo.file.exif.colour_space == kUncalibrated &&
+               photo.file.format != "raw") {
+      unknown.push_back(photo.name);
+    }
+  }
+  for (const auto& [profile, names] : ignored) {
+    SayAll(fmt::format("{}: the colour profile '{}' is not used ({}), colours are read as sRGB; "
+                       "convert the photographs to sRGB, or to 16-bit TIFF in linear Rec.709",
+                       Listed(names), profile.first, profile.second),
+           remarks);
+  }
+  if (unknown.empty()) return;
+  SayAll(
+      fmt::format("{}: EXIF says that the colours are not sRGB's, and no profile says whose they "
+                  "are: read as sRGB; set the camera to sRGB, or let the profile in the file",
+                  Listed(unknown)),
+      remarks);
 }
 
 void CheckModels(const std::vector<PhotoMeasures>& photos, std::vector<Remark>* remarks) {
@@ -233,9 +243,9 @@ std::vector<Remark> CheckExif(const std::vector<PhotoMeasures>& photos) {
   for (const PhotoMeasures& photo : photos) {
     CheckSize(photo, &remarks);
     CheckLens(photo, &remarks);
-    CheckColours(photo, &remarks);
     CheckExposure(photo, &remarks);
   }
+  CheckColours(photos, &remarks);
   CheckFlash(photos, &remarks);
   CheckWhiteBalance(photos, &remarks);
   CheckModels(photos, &remarks);

@@ -85,6 +85,14 @@ CalibratedPhoto ReadPhoto(const std::filesystem::path& file, const Json& json,
                       "it must be positive; run calib again");
     }
   }
+  if (json.contains("white_balance_rgb")) {
+    const auto balance = RequireNumbers(file, json, name, "white_balance_rgb", 3);
+    photo.white_balance_rgb = Eigen::Map<const Eigen::Vector3d>(balance.data());
+    if (photo.white_balance_rgb.minCoeff() <= 0) {
+      throw UserError(file, name + ".white_balance_rgb", json["white_balance_rgb"].dump(),
+                      "it must be positive; run calib again");
+    }
+  }
   photo.rms_px = RequireNumber(file, json, name, "rms_px");
   photo.corners = RequireCount(file, json, name, "corners");
   photo.inliers = RequireCount(file, json, name, "inliers");
@@ -105,6 +113,7 @@ Json ToJson(const Calibration& calibration) {
   }
   data["light_rgb"] = List(calibration.light_rgb);
   data["light_power_known"] = calibration.light_power_known;
+  if (!calibration.tone_curve.empty()) data["tone_curve"] = calibration.tone_curve;
   if (calibration.light_sd_mm) data["light_sd_mm"] = *calibration.light_sd_mm;
   if (calibration.ambient_rgb) data["ambient_rgb"] = List(*calibration.ambient_rgb);
   data["board_from_sample"] = ToJson(calibration.board_from_sample);
@@ -119,6 +128,9 @@ Json ToJson(const Calibration& calibration) {
                               {"corners", photo.corners},
                               {"inliers", photo.inliers}});
     if (photo.exposure > 0) data["photos"].back()["exposure"] = photo.exposure;
+    if (photo.white_balance_rgb != Eigen::Vector3d::Ones()) {
+      data["photos"].back()["white_balance_rgb"] = List(photo.white_balance_rgb);
+    }
   }
   return data;
 }
@@ -154,6 +166,9 @@ Calibration ReadCalibration(const std::filesystem::path& manifest_file) {
                     "true or false is expected");
   }
   calibration.light_power_known = known.get<bool>();
+  if (manifest.data.contains("tone_curve")) {
+    calibration.tone_curve = RequireString(manifest_file, manifest.data, "data", "tone_curve");
+  }
   calibration.light_sd_mm =
       PositiveNumberIfAny(manifest_file, manifest.data, "data", "light_sd_mm");
   if (manifest.data.contains("ambient_rgb")) {

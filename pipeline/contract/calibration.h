@@ -19,7 +19,9 @@ struct CalibratedPhoto {
   Rigid3 camera_from_sample;
   Eigen::Vector3d light_in_camera_mm{0, 0, 0};  // flash position in the camera frame
   double exposure = 0;                          // relative to the first photo's; 0: not estimated
-  double rms_px = 0;                            // reprojection error of its inlier corners
+  // R, G, B as stored over those of a photo whose white balance is the first photo's.
+  Eigen::Vector3d white_balance_rgb{1, 1, 1};
+  double rms_px = 0;  // reprojection error of its inlier corners
   int corners = 0, inliers = 0;
   // The sample's point (x, y) is shown where the pose puts the plane's point registration ·
   // (x, y, 1), millimetres: what pose and lens leave of its place.
@@ -30,7 +32,10 @@ struct Calibration {
   std::vector<Camera> cameras;
   std::vector<CalibratedPhoto> photos;  // accepted flash photographs, in capture order
   Eigen::Vector3d light_rgb{1, 1, 1};  // power, radiance·mm² in units where the sensor clips at 1
-  bool light_power_known = false;      // false: light_rgb is a first guess
+  // A response curve beside the manifest by which the photos are to be read, where the board's
+  // paper contradicts [radiometry] encoding = "auto"; empty: as capture.toml says.
+  std::string tone_curve;
+  bool light_power_known = false;  // false: light_rgb is a first guess
   // Standard deviation of the flash's position, where it was estimated: its least certain axis.
   std::optional<double> light_sd_mm;
   // The sample's frame in the board's: the sample may lie higher or lower, and tilted. Poses are

@@ -145,12 +145,16 @@ class Resampler {
     if (!(sum.weight > 1e-3)) return TexelStatus::kOutside;
     const size_t texels = view_->status.size();
     double gain = 1, ceiling = std::numeric_limits<double>::infinity();
-    if (options_.vignetting && !sum.saturated) {
-      gain = 1 / Vignetting(*options_.vignetting, centre);
-      if (!photo_.is_float()) ceiling = 1;
+    std::array<double, 3> gain_rgb{1, 1, 1};
+    if (!sum.saturated) {
+      gain_rgb = options_.gain_rgb;
+      if (options_.vignetting) gain = 1 / Vignetting(*options_.vignetting, centre);
+      if (!photo_.is_float() && (options_.vignetting || gain_rgb != ResampleOptions().gain_rgb)) {
+        ceiling = 1;
+      }
     }
     for (int c = 0; c < 3; ++c) {
-      const double value = gain * std::max(sum.rgb[c] / sum.weight, 0.0);
+      const double value = gain * gain_rgb[c] * std::max(sum.rgb[c] / sum.weight, 0.0);
       view_->rgb[c * texels + texel] = static_cast<float>(std::min(value, ceiling));
     }
     return sum.saturated ? TexelStatus::kSaturated : TexelStatus::kUsable;

@@ -1,6 +1,7 @@
 // From a photograph to the top view of the sample, in one resampling.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -21,6 +22,8 @@ struct ResampleOptions {
   int threads = 1;  // never changes a value
   // The lens's fall-off, which is divided out; its principal point and size are those of the photo.
   std::optional<Camera> vignetting;
+  // What R, G, B are multiplied by: a white balance that changed between photographs.
+  std::array<double, 3> gain_rgb{1, 1, 1};
 };
 
 enum class TexelStatus : uint8_t {
@@ -42,10 +45,10 @@ struct ResampledView {
 // photo is finer than the texels, at any tilt; interpolates when it is coarser. Weights are
 // normalised, so that constants stay constants; negative results (the kernel's lobes beside a
 // highlight) become 0. Threaded by tiles; the result does not depend on the number of threads.
-// With `vignetting` the value is what reached the lens; a photo of 8 or 16 bit keeps 1 as its
-// ceiling (what clips says "at least 1", and later stages compare with renderings clamped to 1), so
-// values above it become 1, and saturated texels stay as they are.
-// Texels marked kMasked in `status_before` (empty, or [H·W]) are passed over.
+// With `vignetting` or gains the value is what reached the lens; a photo of 8 or 16 bit keeps 1 as
+// its ceiling (what clips says "at least 1", and later stages compare with renderings clamped to
+// 1), so values above it become 1, and saturated texels stay as they are. Texels marked kMasked in
+// `status_before` (empty, or [H·W]) are passed over.
 ResampledView ResampleToPlane(const LinearPhoto& photo, const PlaneProjection& projection,
                               const SamplePlane& plane, const ResampleOptions& options,
                               const std::vector<TexelStatus>& status_before = {});

@@ -108,8 +108,10 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
   for (const CalibratedPhoto& photo : calibration.photos) {
     files.push_back(capture.folder / photo.photo);
   }
-  PhotoStream stream(files, capture.resolved_encoding(), SaturationRuleOf(options),
-                     common.threads > 1);
+  const std::string encoding = calibration.tone_curve.empty()
+                                   ? capture.resolved_encoding()
+                                   : (capture.work() / "calib" / calibration.tone_curve).string();
+  PhotoStream stream(files, encoding, SaturationRuleOf(options), common.threads > 1);
   LightGuess guess(set.plane, set.convention.falloff);
   std::vector<double> exposures;
   summary.metrics["views"] = Json::array();
@@ -130,6 +132,7 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     const MovedProjection projection(posed, calibrated.registration);
     ResampleOptions resample = ResampleOptionsOf(options, common.threads);
     if (camera.vignetting != std::array<double, 3>{}) resample.vignetting = camera;
+    for (int c = 0; c < 3; ++c) resample.gain_rgb[c] = 1 / calibrated.white_balance_rgb[c];
     RectifiedWriter writer(stage->Output(view.file), set, view);
     guess.BeginView();
     const ViewCounts counts =

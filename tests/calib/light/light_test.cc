@@ -49,7 +49,8 @@ LightProblem MakeProblem(int photos, const Truth& truth, bool turned, int seed) 
     const Rigid3 sample_from_camera = Inverse(photo.camera_from_sample);
     const Vector3d light_mm = sample_from_camera * truth.flash_mm;
     for (int k = 0; k < 18 * 14; ++k) {
-      const Vector3d spot(13.0 * (k % 18) - 110, 13.0 * (k / 18) - 84, 0);
+      const int column = k % 18, row = k / 18;
+      const Vector3d spot(13.0 * column - 110, 13.0 * row - 84, 0);
       if (std::abs(spot.x()) < 52 && std::abs(spot.y()) < 52) continue;
       const Vector2d pixel = ImageFromCamera(camera, photo.camera_from_sample * spot);
       if ((pixel.array() < 4).any() || pixel.x() > 1996 || pixel.y() > 1496) continue;
@@ -88,7 +89,8 @@ TEST(EstimateLight, FindsFlashFalloffExposuresAndRoomLightOfTurnedPhotos) {
     ExpectWithin(light.ambient_rgb[i], kShown * truth.ambient[i], 0.15 * kShown * truth.ambient[i],
                  "ambient");
   }
-  for (double r = 0.1; r < 0.75; r += 0.1) {  // as far as paper is seen
+  for (int tenth = 1; tenth <= 7; ++tenth) {  // as far as paper is seen
+    const double r = tenth / 10.0;
     double found = 1, right = 1;
     for (int i = 0; i < 3; ++i) {
       found += light.vignetting[0][i].value * std::pow(r, 2 * i + 2);
@@ -167,6 +169,136 @@ TEST(EstimateLight, KeepsTheGivenPowerAndFindsThePaperInstead) {
     EXPECT_EQ(light.power_rgb[c].value, 1e5);
     ExpectWithin(light.paper_rgb[c], 0.85 * kShown * truth.power[c] / 1e5, 0.01, "paper");
   }
+}
+
+// Of photographs as they should be.
+void ExpectUncontradicted(const LightEstimate& light) {
+  ASSERT_TRUE(light.known) << light.problem;
+  EXPECT_FALSE(light.tone);
+  EXPECT_FALSE(light.flash_along_free);
+  for (const LightOfPhoto& photo : light.photos) {
+    EXPECT_FALSE(photo.contradicts) << photo.name;
+    EXPECT_EQ(photo.turns, 0) << photo.name;
+    EXPECT_LT(photo.colour.maxCoeff() / photo.colour.minCoeff(), 1.01) << photo.name;
+  }
+}
+
+// `exposure`: of the first photograph that is used, over the first's.
+void ExpectTheLight(const LightEstimate& light, const Truth& truth, double exposure = 1) {
+  ASSERT_TRUE(light.known) << light.problem;
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(light.flash_in_camera_mm[c].value, truth.flash_mm[c], 5) << c;
+    EXPECT_NEAR(light.power_rgb[c].value / (exposure * kShown * truth.power[c]), 1, 0.08) << c;
+  }
+}
+
+void MayBeUpsideDown(LightProblem* problem) {
+  for (LightPhoto& photo : problem->photos) photo.possible_turns = {0, 2};
+}
+
+TEST(EstimateLight, FindsNothingWrongWithGoodPhotographs) {
+  for (int photos : {6, 12}) {
+    LightProblem problem = MakeProblem(photos, {}, false, photos);
+    MayBeUpsideDown(&problem);
+    ExpectUncontradicted(EstimateLight(problem));
+  }
+}
+
+TEST(EstimateLight, FindsPixelsThatWereTurned) {
+  for (int photos : {6, 12}) {
+    LightProblem problem = MakeProblem(photos, {}, false, 2);
+    MayBeUpsideDown(&problem);
+    for (const int i : {1, 4}) {
+      problem.photos[i].camera_from_sample = TurnedPose(problem.photos[i].camera_from_sample, 2);
+    }
+    const LightEstimate light = EstimateLight(problem);
+    ExpectTheLight(light, {});
+    for (int i = 0; i < photos; ++i) EXPECT_EQ(light.photos[i].turns, i == 1 || i == 4 ? 2 : 0);
+  }
+}
+
+TEST(EstimateLight, LeavesOutAnEnlargedPhotographAndTellsByHowMuch) {
+  for (int photos : {6, 12}) {
+    LightProblem problem = MakeProblem(photos, {}, false, 4);
+    problem.photos[0].camera_from_sample.translation.z() /= 1.25;  // as its corners say
+    const LightEstimate light = EstimateLight(problem);
+    ExpectTheLight(light, {}, ExposureOf(1) / ExposureOf(0));
+    EXPECT_TRUE(light.photos[0].contradicts);
+    EXPECT_FALSE(light.photos[0].used);
+    EXPECT_NEAR(light.photos[0].zoom, 1.25, 0.07);
+    for (int i = 1; i < photos; ++i) EXPECT_TRUE(light.photos[i].used) << i;
+  }
+}
+
+TEST(EstimateLight, KeepsAPhotographOfAnotherFlashPowerWithItsOwnExposure) {
+  LightProblem problem = MakeProblem(8, {}, false, 6);
+  for (PaperSample& sample : problem.photos[3].samples) sample.radiance *= 1.4;
+  const LightEstimate light = EstimateLight(problem);
+  ExpectTheLight(light, {});
+  EXPECT_TRUE(light.photos[3].contradicts);
+  EXPECT_EQ(light.photos[3].zoom, 1);
+  EXPECT_NEAR(light.photos[3].exposure.value / (1.4 * ExposureOf(3) / ExposureOf(0)), 1, 0.02);
+}
+
+TEST(EstimateLight, FindsTheToneCurveInPlaceOfAFlashElsewhere) {
+  for (int photos : {6, 12}) {
+    LightProblem problem = MakeProblem(photos, {}, false, 8);
+    for (LightPhoto& photo : problem.photos) {
+      for (PaperSample& sample : photo.samples) {
+        for (double& value : sample.radiance) {  // shadows lifted, as phones do
+          const double x = std::pow(value, 1 / 2.2);
+          value = std::pow(x + 0.18 * std::sin(std::numbers::pi * x) * (0.6 - x), 2.2);
+        }
+      }
+    }
+    const LightEstimate light = EstimateLight(problem);
+    ExpectTheLight(light, {});
+    ASSERT_TRUE(light.tone);
+    for (const double radiance : {0.2, 0.4, 0.6}) {  // of the paper
+      const double x = std::pow(radiance, 1 / 2.2);
+      const double read = std::pow(x + 0.18 * std::sin(std::numbers::pi * x) * (0.6 - x), 2.2);
+      EXPECT_NEAR(light.tone->Linear(read) / radiance, 1, 0.08) << radiance;
+    }
+    LightOptions linear;
+    linear.tone_known = true;
+    EXPECT_FALSE(EstimateLight(problem, linear).tone);
+  }
+}
+
+TEST(EstimateLight, BelievesAFlashBehindTheLensThatThePaperShows) {
+  Truth truth;
+  truth.flash_mm = {5, 60, -40};
+  const LightEstimate light = EstimateLight(MakeProblem(12, truth, false, 9));
+  ExpectTheLight(light, truth);
+  EXPECT_TRUE(light.flash_along_free);
+  EXPECT_FALSE(light.tone);
+}
+
+TEST(EstimateLight, FindsAWhiteBalanceThatDrifts) {
+  LightProblem problem = MakeProblem(6, {}, false, 10);
+  for (PaperSample& sample : problem.photos[2].samples) sample.radiance[2] *= 1.06;
+  const LightEstimate light = EstimateLight(problem);
+  ExpectTheLight(light, {});
+  EXPECT_NEAR(light.photos[2].colour[2] / light.photos[2].colour[1], 1.06, 0.01);
+  EXPECT_LT(light.photos[3].colour.maxCoeff() / light.photos[3].colour.minCoeff(), 1.01);
+}
+
+TEST(ToneCurve, IsInvertedAndRisesFromBlackToWhite) {
+  ToneCurve tone;
+  tone.t = {Estimate{0.1, 0}, {0.25, 0}, {0.03, 0}};
+  tone.lowest = 0.15, tone.highest = 0.7;
+  for (const double linear : {0.25, 0.4, 0.6}) {
+    const double x = std::log(linear);
+    EXPECT_NEAR(tone.Linear(std::exp(x * (1 + 0.1 + 0.25 * x + 0.03 * x * x))), linear, 1e-9);
+  }
+  double before = -1;
+  for (int i = 0; i <= 255; ++i) {
+    const double now = tone.Linear(i / 255.0);
+    EXPECT_GT(now, before);
+    before = now;
+  }
+  EXPECT_EQ(tone.Linear(0), 0);
+  EXPECT_EQ(tone.Linear(1), 1);
 }
 
 TEST(EstimateLight, IsUnknownWithoutPaper) {

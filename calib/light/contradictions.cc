@@ -1,0 +1,189 @@
+#include "calib/light/contradictions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+namespace glint::light {
+namespace {
+
+constexpr double kContradiction = 0.182;  // ln 1.2: exposure against EXIF
+constexpr double kAgree = 0.06;           // median deviation of those that agree
+// Half of the squared residuals that a freedom must save: e⁵ : 1, against odds of one capture in
+// ten in which EXIF, encoding or [light] are wrong.
+constexpr double kInsists = 5;
+constexpr double kSignificant = 5;  // standard deviations
+
+double Middle(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// ln(exposure by the paper / by EXIF), less the median over photos; 0: not used.
+std::vector<double> Deviations(const State& state, int* used) {
+  std::vector<double> deviations(state.photos.size(), 0), all;
+  for (size_t i = 0; i < state.photos.size(); ++i) {
+    const PhotoState& photo = state.photos[i];
+    if (!photo.used || photo.exif <= 0) continue;
+    deviations[i] = photo.log_exposure.mean() - std::log(photo.exif);
+    all.push_back(deviations[i]);
+  }
+  *used = static_cast<int>(all.size());
+  if (all.empty()) return deviations;
+  const double middle = Middle(all);
+  for (size_t i = 0; i < state.photos.size(); ++i) {
+    if (state.photos[i].used) deviations[i] -= middle;
+  }
+  return deviations;
+}
+
+// RMS of ln(seen / predicted) about its mean over a photo's spots, were it enlarged by `zoom`.
+double FalloffMisfit(const State& state, const PhotoState& photo, double zoom) {
+  double depth = 0;
+  for (const Spot& spot : photo.spots) depth += spot.geometry.spot_in_camera_mm.z();
+  depth /= static_cast<double>(std::max<size_t>(1, photo.spots.size()));
+  std::vector<double> logs;
+  for (const Spot& spot : photo.spots) {
+    Spot moved = spot;
+    moved.geometry.spot_in_camera_mm.z() += (zoom - 1) * depth;
+    moved.geometry.r2 /= zoom * zoom;
+    const auto predicted = state.Prediction(photo, moved);
+    if (predicted.empty() || !(spot.seen[1] > 0)) continue;
+    logs.push_back(std::log(spot.seen[1] / predicted[1]));
+  }
+  if (logs.empty()) return 0;
+  const double middle = Middle(logs);
+  for (double& value : logs) value = std::abs(value - middle);
+  return 1.4826 * Middle(logs);
+}
+
+// Median of ln(seen / predicted).
+double LogBrightness(const State& state, const PhotoState& photo) {
+  std::vector<double> logs;
+  for (const Spot& spot : photo.spots) {
+    const auto predicted = state.Prediction(photo, spot);
+    if (!predicted.empty() && spot.seen[1] > 0)
+      logs.push_back(std::log(spot.seen[1] / predicted[1]));
+  }
+  return logs.empty() ? 0 : Middle(logs);
+}
+
+// The enlargement that explains the exposure: as much farther off, paper is darker by its square.
+double ZoomOf(const State& state, const PhotoState& photo, double deviation) {
+  constexpr double kBetter = 0.7;  // of the misfit
+  const double zoom = std::exp(-deviation / 2);
+  return FalloffMisfit(state, photo, zoom) < kBetter * FalloffMisfit(state, photo, 1) ? zoom : 1;
+}
+
+// Of photos that are used: blocks of squares, whose spots share their errors.
+int Blocks(const State& state) {
+  std::set<int> blocks;
+  for (const PhotoState& photo : state.photos) {
+    for (const Spot& spot : photo.spots) {
+      if (photo.used && spot.inlier) blocks.insert(spot.cluster);
+    }
+  }
+  return static_cast<int>(blocks.size());
+}
+
+// Half of the squared residuals by which `solved` is better than `other`, were a block of squares
+// one sample.
+double Saved(const LightOptions& options, const State& solved, const State& other) {
+  const double scale = std::min(solved.scale, other.scale);
+  return 0.5 * Blocks(other) *
+         std::log(Misfit(options, other, scale) / Misfit(options, solved, scale));
+}
+
+bool LeaveOut(const LightOptions& options, size_t photo, State* start) {
+  start->photos[photo].used = false;
+  start->photos[photo].contradicts = true;
+  return DropPhotos(options, start);
+}
+
+}  // namespace
+
+bool LeaveOutContradiction(const LightOptions& options, const State& solved, State* start) {
+  for (size_t i = 0; i < start->photos.size(); ++i) {  // whose paper is an outlier as a whole
+    if (start->photos[i].used && !solved.photos[i].used) return LeaveOut(options, i, start);
+  }
+  int used = 0;
+  const std::vector<double> deviations = Deviations(solved, &used);
+  if (used < 3) return false;
+  std::vector<double> sizes;
+  for (size_t i = 0; i < deviations.size(); ++i) {
+    if (solved.photos[i].used) sizes.push_back(std::abs(deviations[i]));
+  }
+  if (Middle(sizes) > kAgree) return false;  // EXIF's exposures do not hold at all
+  const auto worst = std::max_element(deviations.begin(), deviations.end(),
+                                      [](double a, double b) { return std::abs(a) < std::abs(b); });
+  if (std::abs(*worst) < kContradiction) return false;
+  const size_t index = static_cast<size_t>(worst - deviations.begin());
+  return LeaveOut(options, index, start);
+}
+
+void ExplainContradictions(State* solved) {
+  for (PhotoState& photo : solved->photos) {
+    if (!photo.contradicts) continue;
+    photo.log_exposure += Eigen::Vector3d::Constant(LogBrightness(*solved, photo));
+    if (photo.exif > 0) {
+      photo.zoom = ZoomOf(*solved, photo, photo.log_exposure.mean() - std::log(photo.exif));
+    }
+  }
+}
+
+namespace {
+
+// A solution with one term more, beside those that hold it.
+struct Freedom {
+  State start, solved;
+  // Of the term: its length in standard deviations, smooth errors counted; 0: there is no solution.
+  double significance = 0;
+};
+
+Freedom Try(const LightProblem& problem, const LightOptions& options, State start) {
+  Freedom freedom;
+  freedom.solved = freedom.start = std::move(start);
+  int rounds = 0;
+  if (!SolveRobustly(options, &freedom.solved, &rounds)) return freedom;
+  const State& solved = freedom.solved;
+  const Layout layout = LayoutOf(solved);
+  const Eigen::MatrixXd covariance = Covariance(problem, options, solved, layout);
+  if (layout.tone >= 0) {
+    const Eigen::Matrix3d block = covariance.block<3, 3>(layout.tone, layout.tone);
+    freedom.significance = std::sqrt(solved.tone.dot(block.ldlt().solve(solved.tone)));
+  } else if (layout.flash >= 0) {
+    const int z = layout.flash + 2;
+    freedom.significance =
+        std::abs(solved.flash_mm.z() - options.offset_mm.z()) / std::sqrt(covariance(z, z));
+  }
+  return freedom;
+}
+
+}  // namespace
+
+bool Insists(const LightOptions& options, const State& solved, const State& other) {
+  return Saved(options, solved, other) > kInsists;
+}
+
+void FreeWhatThePaperInsistsOn(const LightProblem& problem, const LightOptions& options,
+                               State* start, State* solved) {
+  State with_tone = *start, with_along = *start;
+  with_tone.hold_tone = false;
+  with_along.flash_along_free = true;
+  Freedom tone, along = Try(problem, options, with_along);
+  if (!options.tone_known) tone = Try(problem, options, with_tone);
+  const bool tone_insists =
+      tone.significance > kSignificant && Insists(options, tone.solved, *solved);
+  const bool along_insists =
+      along.significance > kSignificant && Insists(options, along.solved, *solved);
+  if (!tone_insists && !along_insists) return;
+  const bool take_tone =
+      tone_insists && (!along_insists || Saved(options, tone.solved, along.solved) > 0);
+  Freedom& taken = take_tone ? tone : along;
+  *start = std::move(taken.start);
+  *solved = std::move(taken.solved);
+}
+
+}  // namespace glint::light

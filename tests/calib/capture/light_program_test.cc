@@ -1,0 +1,182 @@
+// Synthetic captures whose photographs are changed as apps, zooms and tone curves change them.
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/contract/calibration.h"
+#include "pipeline/contract/manifest.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string Program(const std::string& name) { return std::string(GLINT_BIN_DIR) + "/" + name; }
+
+class BoardLight : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    good_ = new test::TemporaryFolder;
+    const test::Outcome made = test::RunProgram(
+        {Program("glint-synth"), "capture", Good().string(), "--megapixels", "2", "--photos", "6",
+         "--resolution", "128", "--family", "leather", "--seed", "3"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    std::string toml = test::ReadAll(Good() / "capture.toml");
+    const size_t at = toml.find("encoding");
+    ASSERT_NE(at, std::string::npos);
+    toml.replace(at, toml.find('\n', at) - at, "encoding = \"auto\"");
+    test::WriteAll(Good() / "capture.toml", toml);
+    truth_ = ReadCalibration(Good() / "truth/calib/manifest.json");
+  }
+  static void TearDownTestSuite() { delete good_; }
+  static fs::path Good() { return good_->path() / "good"; }
+
+  BoardLight() : capture_(folder_.path() / "capture") {
+    fs::copy(Good(), capture_, fs::copy_options::recursive);
+  }
+
+  // The picture changed, its EXIF kept.
+  void Change(int photo, const std::function<cv::Mat(const cv::Mat&)>& change) const {
+    const std::string file = (capture_ / truth_.photos[photo].photo).string();
+    OIIO::ImageBuf before(file);
+    OIIO::ImageSpec spec = before.spec();
+    cv::Mat pixels(spec.height, spec.width, CV_8UC3);
+    ASSERT_TRUE(before.get_pixels(OIIO::ROI(), OIIO::TypeDesc::UINT8, pixels.data));
+    const cv::Mat after = change(pixels);
+    spec.width = spec.full_width = after.cols;
+    spec.height = spec.full_height = after.rows;
+    spec.attribute("Compression", "jpeg:97");
+    OIIO::ImageBuf changed(spec);
+    ASSERT_TRUE(changed.set_pixels(OIIO::ROI(), OIIO::TypeDesc::UINT8, after.data));
+    ASSERT_TRUE(changed.write(file)) << changed.geterror();
+  }
+
+  test::Outcome Calibrate(const std::string& option = "") const {
+    std::vector<std::string> command = {Program("glint-calib"), capture_.string()};
+    if (!option.empty()) command.push_back(option);
+    test::Outcome outcome = test::RunProgram(command);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome;
+  }
+
+  Manifest Result() const { return ReadManifest(capture_ / "glint/calib/manifest.json"); }
+
+  void ExpectTheLight() const {
+    const Json light = Result().metrics["light"]["board"];
+    const double expected[3] = {10, 0, 0};
+    for (size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(light["flash_in_camera_mm"]["value"][i].get<double>(), expected[i], 5) << i;
+      const double power = light["power_rgb"]["value"][i].get<double>();
+      EXPECT_NEAR(power / truth_.light_rgb[static_cast<long>(i)], 1, 0.08) << i;
+    }
+  }
+
+  static test::TemporaryFolder* good_;
+  static Calibration truth_;
+  test::TemporaryFolder folder_;
+  fs::path capture_;
+};
+
+test::TemporaryFolder* BoardLight::good_ = nullptr;
+Calibration BoardLight::truth_;
+
+cv::Mat Turned(const cv::Mat& picture, cv::RotateFlags turn) {
+  cv::Mat turned;
+  cv::rotate(picture, turned, turn);
+  return turned;
+}
+
+TEST_F(BoardLight, GoodPhotographsHaveNothingSaidOfThem) {
+  const test::Outcome outcome = Calibrate();
+  ExpectTheLight();
+  EXPECT_THAT(outcome.err, Not(HasSubstr("warning")));
+  EXPECT_FALSE(Result().data.contains("tone_curve"));
+}
+
+TEST_F(BoardLight, PixelsThatAnAppTurnedAreOfTheSameCamera) {
+  const auto turn = [](cv::RotateFlags flags) {
+    return [flags](const cv::Mat& picture) { return Turned(picture, flags); };
+  };
+  Change(1, turn(cv::ROTATE_90_CLOCKWISE));
+  Change(3, turn(cv::ROTATE_90_COUNTERCLOCKWISE));
+  Change(5, turn(cv::ROTATE_180));
+  const test::Outcome outcome = Calibrate();
+  ExpectTheLight();
+  EXPECT_THAT(outcome.err, HasSubstr("photo_001.jpg, photos/photo_003.jpg, photos/photo_005.jpg: "
+                                     "the pixels were turned"));
+  const Calibration found = ReadCalibration(capture_ / "glint/calib/manifest.json");
+  ASSERT_EQ(found.photos.size(), 6u);
+  for (size_t i = 0; i < 6; ++i) {  // the light is where it was
+    const Eigen::Vector3d light =
+        Inverse(found.photos[i].camera_from_sample) * found.photos[i].light_in_camera_mm;
+    const Eigen::Vector3d expected =
+        Inverse(truth_.photos[i].camera_from_sample) * truth_.photos[i].light_in_camera_mm;
+    EXPECT_LT((light - expected).norm(), 5) << i;
+  }
+}
+
+TEST_F(BoardLight, AnEnlargedPhotographIsLeftOutByName) {
+  Change(0, [](const cv::Mat& picture) {
+    const double scale = 1.25;
+    const cv::Mat about = (cv::Mat_<double>(2, 3) << scale, 0, (1 - scale) * picture.cols / 2,  //
+                           0, scale, (1 - scale) * picture.rows / 2);
+    cv::Mat enlarged;
+    cv::warpAffine(picture, enlarged, about, picture.size(), cv::INTER_LANCZOS4);
+    return enlarged;
+  });
+  const test::Outcome outcome = Calibrate();
+  ExpectTheLight();
+  EXPECT_THAT(outcome.err, HasSubstr("photo_000.jpg is left out: its paper is"));
+  EXPECT_THAT(outcome.err, HasSubstr("it was taken with a zoom of about 1.2 that EXIF does not"));
+  EXPECT_THAT(Calibrate("--check").out, HasSubstr("photo_000.jpg: its paper is"));
+}
+
+TEST_F(BoardLight, APhonesToneCurveIsFoundAndUsed) {
+  for (int i = 0; i < 6; ++i) {
+    Change(i, [](const cv::Mat& picture) {
+      cv::Mat curve(1, 256, CV_8U), toned;
+      for (int code = 0; code < 256; ++code) {
+        const double x = code / 255.0;
+        const double lifted = x + 0.18 * std::sin(std::numbers::pi * x) * (0.6 - x);
+        curve.at<unsigned char>(code) = cv::saturate_cast<unsigned char>(255 * lifted);
+      }
+      cv::LUT(picture, curve, toned);
+      return toned;
+    });
+  }
+  const test::Outcome outcome = Calibrate();
+  ExpectTheLight();
+  const std::string words = "the paper's brightness contradicts the tone curve";
+  EXPECT_THAT(outcome.err, HasSubstr(words));
+  EXPECT_THAT(Calibrate("--check").out, HasSubstr(words));
+  EXPECT_EQ(Result().data["tone_curve"], "tone_curve.json");
+  const test::Outcome rectified = test::RunProgram({Program("glint-rectify"), capture_.string()});
+  EXPECT_EQ(rectified.code, 0) << rectified.err;
+}
+
+TEST_F(BoardLight, AWhiteBalanceThatDriftsIsToldAndTakenOut) {
+  Change(2, [](const cv::Mat& picture) {
+    cv::Mat tinted;
+    cv::multiply(picture, cv::Scalar(1, 1, 1.03), tinted);  // R, G, B as stored
+    return tinted;
+  });
+  const test::Outcome outcome = Calibrate();
+  ExpectTheLight();
+  EXPECT_THAT(outcome.err, HasSubstr("photo_002.jpg: the white paper has another colour"));
+  const Calibration found = ReadCalibration(capture_ / "glint/calib/manifest.json");
+  const Eigen::Vector3d& balance = found.photos[2].white_balance_rgb;
+  EXPECT_NEAR(balance[2] / balance[1], std::pow(1.03, 2.2), 0.015);
+  EXPECT_EQ(found.photos[3].white_balance_rgb, Eigen::Vector3d::Ones());
+}
+
+}  // namespace
+}  // namespace glint
