@@ -1,14 +1,15 @@
 #include "calib/board/dictionary.h"
 
 #include <algorithm>
-#include <opencv2/aruco.hpp>
 #include <utility>
+
+#include "calib/board/aruco.h"
 
 namespace glint {
 namespace {
 
 cv::Ptr<cv::aruco::Dictionary> OpenCvDictionary(const std::string& name) {
-  return cv::aruco::getPredefinedDictionary(DictionaryNumber(name).value());
+  return aruco::Dictionary(DictionaryNumber(name).value());
 }
 
 }  // namespace
@@ -46,12 +47,16 @@ MarkerCells CellsOfMarker(const std::string& name, int id) {
   const auto dictionary = OpenCvDictionary(name);
   MarkerCells marker;
   marker.cells = dictionary->markerSize + 2;
-  cv::Mat picture;  // one pixel a cell
-  dictionary->drawMarker(id, marker.cells, picture, 1);
+  const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(
+      dictionary->bytesList.rowRange(id, id + 1), dictionary->markerSize);
+  const cv::Rect inside(1, 1, bits.cols, bits.rows);  // of a rim of ink
   marker.paper.reserve(static_cast<size_t>(marker.cells) * marker.cells);
   for (int row = 0; row < marker.cells; ++row) {
     for (int column = 0; column < marker.cells; ++column) {
-      marker.paper.push_back(picture.at<unsigned char>(row, column) > 127 ? 1 : 0);
+      marker.paper.push_back(inside.contains({column, row}) &&
+                                     bits.at<unsigned char>(row - 1, column - 1) != 0
+                                 ? 1
+                                 : 0);
     }
   }
   return marker;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <map>
-#include <opencv2/aruco.hpp>
 
+#include "calib/board/aruco.h"
 #include "calib/board/dictionary.h"
 
 namespace glint {
@@ -16,7 +16,7 @@ std::vector<SeenMarker> FindInReduced(const GrayImage& image, const std::string&
   // OpenCV does not write to its input.
   const cv::Mat picture(small.height, small.width, CV_8U,
                         const_cast<unsigned char*>(small.samples.data()));
-  const auto parameters = cv::aruco::DetectorParameters::create();
+  const auto parameters = cv::makePtr<cv::aruco::DetectorParameters>();
   parameters->adaptiveThreshWinSizeMin = 5;
   parameters->adaptiveThreshWinSizeMax = 45;
   parameters->adaptiveThreshWinSizeStep = 10;
@@ -24,8 +24,7 @@ std::vector<SeenMarker> FindInReduced(const GrayImage& image, const std::string&
   parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
   std::vector<int> ids;
   std::vector<std::vector<cv::Point2f>> corners;
-  cv::aruco::detectMarkers(picture,
-                           cv::aruco::getPredefinedDictionary(DictionaryNumber(dictionary).value()),
+  cv::aruco::detectMarkers(picture, aruco::Dictionary(DictionaryNumber(dictionary).value()),
                            corners, ids, parameters);
   std::map<int, int> seen;
   for (int id : ids) ++seen[id];

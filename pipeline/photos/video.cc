@@ -97,8 +97,7 @@ class Video {
 
   // EXIF orientation of the display matrix: a phone held upright writes a turned video.
   int Orientation() const {
-    const auto* matrix = reinterpret_cast<const std::int32_t*>(
-        av_stream_get_side_data(stream(), AV_PKT_DATA_DISPLAYMATRIX, nullptr));
+    const auto* matrix = reinterpret_cast<const std::int32_t*>(DisplayMatrix());
     if (matrix == nullptr) return 1;
     const double anticlockwise_deg = av_display_rotation_get(matrix);
     if (!std::isfinite(anticlockwise_deg)) return 1;
@@ -108,6 +107,19 @@ class Video {
   }
 
  private:
+  // null: none.
+  const std::uint8_t* DisplayMatrix() const {
+#if LIBAVCODEC_VERSION_INT >= AV_VERSION_INT(60, 29, 100)  // FFmpeg 6.1
+    const AVCodecParameters* parameters = stream()->codecpar;
+    const AVPacketSideData* data =
+        av_packet_side_data_get(parameters->coded_side_data, parameters->nb_coded_side_data,
+                                AV_PKT_DATA_DISPLAYMATRIX);
+    return data == nullptr ? nullptr : data->data;
+#else
+    return av_stream_get_side_data(stream(), AV_PKT_DATA_DISPLAYMATRIX, nullptr);
+#endif
+  }
+
   void CheckStream() const {
     const AVCodecParameters& codec = this->codec();
     if (codec.width < 16 || codec.height < 16 ||

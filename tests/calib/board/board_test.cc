@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <opencv2/aruco.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 
+#include "calib/board/aruco.h"
 #include "tests/support/data_folder.h"
 
 namespace glint {
@@ -97,8 +97,7 @@ TEST_P(PaintedMarkers, AreWhereTheDescriptionSays) {
     if (board.dictionary == name) {
       std::vector<int> ids;
       std::vector<std::vector<cv::Point2f>> seen;
-      cv::aruco::detectMarkers(picture, cv::aruco::getPredefinedDictionary(numbers[number]), seen,
-                               ids);
+      cv::aruco::detectMarkers(picture, aruco::Dictionary(numbers[number]), seen, ids);
       const auto markers = BoardMarkers(board);
       ASSERT_EQ(ids.size(), markers.size());
       for (size_t i = 0; i < ids.size(); ++i) {
