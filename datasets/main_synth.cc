@@ -148,7 +148,7 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   SyntheticCaptureOptions capture;
   CapturePlanOptions& plan = capture.plan;
   int texels = 1024;
-  std::vector<double> distance_mm{plan.nearest_mm, plan.farthest_mm};
+  std::vector<double> distance_mm;
   std::vector<double> flash_mm(plan.flash_offset_mm.begin(), plan.flash_offset_mm.end());
   std::vector<double> tint(plan.flash_tint.begin(), plan.flash_tint.end());
   std::string board;
@@ -164,7 +164,9 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   options.AddRange("megapixels", &plan.megapixels, 0.05, 60, "size of a photograph, 4:3");
   options.AddRange("sample-mm", &plan.sample_mm, 10, 1000, "side of the square sample");
   options.AddRange("texels", &texels, 16, 8192, "texels per side of a procedural material");
-  options.Add("distance-mm", &distance_mm, "camera's distance: nearest,farthest");
+  options.Add("distance-mm", &distance_mm,
+              "camera's distance: nearest,farthest (default: 270,330 for a sample of 100 mm and for "
+              "boards of your own, in proportion for others)");
   options.AddRange("tilt-deg", &plan.largest_tilt_deg, 0, 65, "largest tilt of the later views");
   options.Add("flash-offset-mm", &flash_mm, "flash in the camera frame: right,down,forward");
   options.Add("flash-tint", &tint, "colour of the flash: r,g,b in (0, 1]");
@@ -192,15 +194,20 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   options.AddRange("resolution", &capture.resolution_px, 8, 8192,
                    "resolution_px that capture.toml asks for");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
-    if (distance_mm.size() != 2) {
+    if (!distance_mm.empty() && distance_mm.size() != 2) {
       throw UserError("distance-mm: give two numbers, as in 270,330");
     }
     plan.has_board = board != "none";
     if (plan.has_board && !board.empty()) plan.board = ReadBoardFile(board).board;
     plan.seed = common.seed;
     capture.overwrite = common.force;
-    plan.nearest_mm = distance_mm[0];
-    plan.farthest_mm = distance_mm[1];
+    if (!distance_mm.empty()) {
+      plan.nearest_mm = distance_mm[0];
+      plan.farthest_mm = distance_mm[1];
+    } else if (!plan.board) {  // the frame is as large as the sample asks for
+      plan.nearest_mm *= plan.sample_mm / 100;
+      plan.farthest_mm *= plan.sample_mm / 100;
+    }
     plan.flash_offset_mm = Triple(flash_mm, "flash-offset-mm");
     plan.flash_tint = Triple(tint, "flash-tint");
     const MaterialSource material = choice.Load(common.seed, choice.maps.empty() ? texels : 0);

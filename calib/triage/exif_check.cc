@@ -107,16 +107,23 @@ void SayAll(std::string text, std::vector<Remark>* remarks) {
 // One sentence for all that lack the same.
 void CheckColours(const std::vector<PhotoMeasures>& photos, std::vector<Remark>* remarks) {
   constexpr int kUncalibrated = 65535;
-  std::vector<std::string> unknown;
+  std::vector<std::string> unknown, grey;
   std::map<std::pair<std::string, std::string>, std::vector<std::string>> ignored;
   for (const PhotoMeasures& photo : photos) {
     const ColourProfile& colour = photo.file.colour;
+    if (photo.flash_photo && photo.file.grey) grey.push_back(photo.name);
     if (!colour.ignored.empty()) {
       ignored[{colour.name, colour.ignored}].push_back(photo.name);
     } else if (colour.name.empty() && photo.file.exif.colour_space == kUncalibrated &&
                photo.file.format != "raw") {
       unknown.push_back(photo.name);
     }
+  }
+  if (!grey.empty()) {
+    SayAll(fmt::format("{}: stored in grey: the maps will have no colour. Copy the camera's own "
+                       "files, or switch its monochrome mode off",
+                       Listed(grey)),
+           remarks);
   }
   for (const auto& [profile, names] : ignored) {
     SayAll(fmt::format("{}: the colour profile '{}' is not used ({}), colours are read as sRGB; "

@@ -381,6 +381,32 @@ void ReadBoard(const fs::path& file, const toml::table& document, Capture* captu
   }
 }
 
+// A sample many times as large as its board, or smaller than a grain of sand beside it, is one of
+// them in another unit.
+void CheckUnits(const fs::path& file, const Capture& capture) {
+  if (!capture.has_board || capture.board.square_mm <= 0) return;
+  const BoardRectangle board = OutlineInSample(capture.board);
+  const double board_mm = std::max(board.right_mm - board.left_mm, board.top_mm - board.bottom_mm);
+  const double sample_mm = std::max(capture.sample_size_mm[0], capture.sample_size_mm[1]);
+  constexpr double kMost = 2.5, kLeast = 1.0 / 200;
+  if (board_mm <= 0 || sample_mm <= 0) return;
+  if (sample_mm > kMost * board_mm) {
+    const double in_cm = 10 * capture.board.square_mm, in_m = 1000 * capture.board.square_mm;
+    throw UserError(
+        file, "board.square_mm",
+        fmt::format("{:g}, which makes a board of {:.3g} mm beside a sample of {:g} mm",
+                    capture.board.square_mm, board_mm, sample_mm),
+        fmt::format("give lengths in millimetres: {:g} centimetres are {:g}, {:g} metres are {:g}",
+                    capture.board.square_mm, in_cm, capture.board.square_mm, in_m));
+  }
+  if (sample_mm < kLeast * board_mm) {
+    throw UserError(file, "sample.size_mm",
+                    fmt::format("{:g} mm beside a board of {:.3g} mm", sample_mm, board_mm),
+                    fmt::format("give lengths in millimetres: {:g} metres are {:g}", sample_mm,
+                                1000 * sample_mm));
+  }
+}
+
 void ReadRadiometry(const fs::path& file, const toml::table& document, Capture* capture) {
   TableReader radiometry(file, document, "radiometry");
   capture->encoding = radiometry.Text("encoding", "auto");
@@ -510,6 +536,7 @@ Capture ReadCapture(const fs::path& folder) {
   capture.photos = ReadPhotos(capture.folder, "files", &photos, capture.file);
   photos.RejectUnknown();
   ReadBoard(capture.file, *document, &capture);
+  CheckUnits(capture.file, capture);
   capture.tiles = document->contains("tile");
   ReadPoses(capture.file, *document, &capture);
   ReadRadiometry(capture.file, *document, &capture);

@@ -38,10 +38,15 @@ const std::vector<ImageFormat>& ImageFormats() {
        }},
       {"openexr", {".exr"}, [](Head head) { return head.starts_with("\x76\x2f\x31\x01"sv); }},
       {"heif",
-       {".heic", ".heif"},
+       {".heic", ".heif", ".avif"},
        [](Head head) {
          return BeginsIsoMedia(head, {"heic", "heix", "heim", "heis", "hevc", "hevx", "hevm",
                                       "hevs", "mif1", "msf1", "avif", "avis"});
+       }},
+      {"webp",
+       {".webp"},
+       [](Head head) {
+         return head.size() >= 12 && head.starts_with("RIFF"sv) && head.substr(8, 4) == "WEBP";
        }},
       {"hdr", {}, [](Head head) { return head.starts_with("#?"sv); }},
       {"pnm", {}, [](Head head) { return head.starts_with("P5"sv) || head.starts_with("P6"sv); }},

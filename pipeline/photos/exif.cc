@@ -1,10 +1,13 @@
 #include "pipeline/photos/exif.h"
 
+#include <OpenImageIO/tiffutils.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
 #include "pipeline/photos/heic_turn.h"
+#include "pipeline/photos/webp_facts.h"
 
 namespace glint {
 namespace {
@@ -52,7 +55,13 @@ Orientation OrientationOf(const std::filesystem::path& file, const OIIO::ImageIn
   const std::string_view format = input.format_name();
   if (format == "raw") return {ExifFromRawFlip(spec.get_int_attribute("raw:flip", 0)), true};
   if (format == "heif") return {HeicOrientation(file), true};
-  const int orientation = spec.get_int_attribute("Orientation", 1);
+  int orientation = spec.get_int_attribute("Orientation", 1);
+  if (format == "webp") {
+    OIIO::ImageSpec with_exif = spec;
+    const WebpFacts facts = ReadWebpFacts(file);
+    if (!facts.exif.empty()) OIIO::decode_exif(OIIO::string_view(facts.exif), with_exif);
+    orientation = with_exif.get_int_attribute("Orientation", 1);
+  }
   return {orientation >= 1 && orientation <= 8 ? orientation : 1, false};
 }
 
@@ -83,6 +92,7 @@ void ReadExif(const OIIO::ImageSpec& spec, std::string_view format, Photo* photo
   if (av > 0 && av < 30) exif.aperture_f = std::exp2(0.5 * av);
   exif.colour_space = spec.get_int_attribute("Exif:ColorSpace", 0);
   exif.flash = spec.get_int_attribute("Exif:Flash", -1);
+  if (format == "raw" && exif.flash == 0) exif.flash = -1;  // LibRaw's 0 is "not told", too
   ReadWhiteBalance(spec, photo);
 }
 

@@ -19,6 +19,7 @@
 #include "pipeline/photos/photo_name.h"
 #include "pipeline/photos/upright.h"
 #include "pipeline/photos/video.h"
+#include "pipeline/photos/webp_facts.h"
 
 namespace glint {
 namespace {
@@ -89,10 +90,15 @@ void ReadFacts(const std::filesystem::path& file, const OIIO::ImageInput& input,
     photo->colour = facts.colour;
   } else if (format == "jpeg") {
     photo->colour = ReadColourProfile(IccOfJpeg(jpeg));
+  } else if (format == "webp") {
+    const WebpFacts facts = ReadWebpFacts(file);
+    if (!facts.exif.empty()) OIIO::decode_exif(OIIO::string_view(facts.exif), spec);
+    photo->colour = ReadColourProfile(facts.icc);
   } else if (format != "raw") {
     photo->colour = ReadColourProfile(IccOf(spec));
   }
   ReadExif(spec, format, photo);
+  photo->grey = spec.nchannels < 3;
   constexpr int kExifAdobeRgb = 2;
   if (photo->colour.name.empty() && photo->exif.colour_space == kExifAdobeRgb) {
     photo->colour = AdobeRgbProfile();

@@ -75,6 +75,14 @@ TEST_F(CaptureTest, SyntaxErrorNamesLine) {
   EXPECT_THAT(Complaint("[sample]\nsize_mm = [100,\n[photos]"), HasSubstr("line 3"));
 }
 
+TEST_F(CaptureTest, LengthsInCentimetresOrMetresAreToldByWhatTheyWouldMean) {
+  std::string metres = Replaced("square_mm = 15", "square_mm = 0.015");
+  metres.replace(metres.find("marker_mm = 11"), 14, "marker_mm = 0.011");
+  EXPECT_THAT(Complaint(metres),
+              AllOf(HasSubstr("board.square_mm: found 0.015, which makes a board of"),
+                    HasSubstr("0.015 metres are 15")));
+}
+
 TEST_F(CaptureTest, UnknownKeysAreNamedWithTheKnownOnes) {
   EXPECT_THAT(Complaint(Replaced("square_mm", "square_cm")),
               AllOf(HasSubstr("board.square_cm"), HasSubstr("line 10")));

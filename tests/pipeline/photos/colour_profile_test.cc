@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <lcms2.h>
 #include <libheif/heif.h>
+#include <webp/mux.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "base/colour/srgb.h"
+#include "pipeline/images/image_format.h"
 #include "pipeline/images/jpeg_segments.h"
 #include "pipeline/photos/photo.h"
 #include "tests/support/process.h"
@@ -143,6 +145,77 @@ TEST_F(PhotoColours, AreReadFromEachFormat) {
     const Photo photo = ReadPhoto(Write(name, type, icc));
     EXPECT_EQ(photo.colour.rec709_from_rgb, wanted.rec709_from_rgb) << name;
   }
+}
+
+TEST_F(PhotoColours, AndExifAreReadFromWebp) {
+  const fs::path plain = folder_ / "plain.webp", file = folder_ / "a.webp";
+  const auto output = OIIO::ImageOutput::create(plain.string());
+  if (!output) GTEST_SKIP() << "OpenImageIO writes no WebP";
+  const std::vector<std::uint8_t> samples(48 * 32 * 3, 128);
+  ASSERT_TRUE(output->open(plain.string(), OIIO::ImageSpec(48, 32, 3, OIIO::TypeUInt8)));
+  ASSERT_TRUE(output->write_image(OIIO::TypeUInt8, samples.data()));
+  output->close();
+  const std::string bytes = test::ReadAll(plain), icc = Profile(kP3, 0);
+  // Two tags: the make, and a quarter turn.
+  const unsigned char exif[] = {'I', 'I', 42, 0, 8, 0,   0,   0,   2, 0, 0x0F, 1, 2, 0, 4, 0, 0, 0, 'A',
+                                'b', 'c', 0,  0x12, 1, 3, 0, 1, 0, 0, 0, 6, 0, 0, 0, 0, 0, 0, 0};
+  const auto data = [](const void* from, std::size_t size) {
+    return WebPData{static_cast<const std::uint8_t*>(from), size};
+  };
+  const WebPData whole = data(bytes.data(), bytes.size());
+  WebPMux* mux = WebPMuxCreate(&whole, 1);
+  ASSERT_NE(mux, nullptr);
+  const WebPData profile = data(icc.data(), icc.size()), block = data(exif, sizeof exif);
+  ASSERT_EQ(WebPMuxSetChunk(mux, "ICCP", &profile, 1), WEBP_MUX_OK);
+  ASSERT_EQ(WebPMuxSetChunk(mux, "EXIF", &block, 1), WEBP_MUX_OK);
+  WebPData assembled{nullptr, 0};
+  ASSERT_EQ(WebPMuxAssemble(mux, &assembled), WEBP_MUX_OK);
+  test::WriteAll(file, {reinterpret_cast<const char*>(assembled.bytes), assembled.size});
+  WebPDataClear(&assembled);
+  WebPMuxDelete(mux);
+
+  const Photo photo = ReadPhoto(file);
+  EXPECT_EQ(photo.format, "webp");
+  EXPECT_EQ(photo.colour.rec709_from_rgb, ReadColourProfile(icc).rec709_from_rgb);
+  EXPECT_EQ(photo.camera_model, "Abc");
+  EXPECT_EQ(photo.orientation, 6);
+  EXPECT_EQ(photo.image.width, 32);  // upright
+  EXPECT_EQ(PhotoSize(file), (std::pair{32, 48}));
+  EXPECT_TRUE(IsPhotoFileName("a.webp"));
+}
+
+TEST_F(PhotoColours, AvifIsRead) {
+  const fs::path file = folder_ / "a.avif";
+  heif_context* context = heif_context_alloc();
+  heif_encoder* encoder = nullptr;
+  if (heif_context_get_encoder_for_format(context, heif_compression_AV1, &encoder).code !=
+      heif_error_Ok) {
+    heif_context_free(context);
+    GTEST_SKIP() << "libheif has no encoder";
+  }
+  heif_image* image = nullptr;
+  heif_image_create(64, 48, heif_colorspace_RGB, heif_chroma_interleaved_RGB, &image);
+  heif_image_add_plane(image, heif_channel_interleaved, 64, 48, 8);
+  ASSERT_EQ(heif_context_encode_image(context, image, encoder, nullptr, nullptr).code,
+            heif_error_Ok);
+  ASSERT_EQ(heif_context_write_to_file(context, file.c_str()).code, heif_error_Ok);
+  heif_image_release(image);
+  heif_encoder_release(encoder);
+  heif_context_free(context);
+  const Photo photo = ReadPhoto(file);
+  EXPECT_EQ(photo.image.width, 64);
+  EXPECT_TRUE(IsPhotoFileName("a.AVIF"));
+}
+
+TEST_F(PhotoColours, GreyPicturesAreKnown) {
+  const fs::path file = folder_ / "grey.jpg";
+  const auto output = OIIO::ImageOutput::create(file.string());
+  const std::vector<std::uint8_t> samples(32 * 32, 128);
+  ASSERT_TRUE(output->open(file.string(), OIIO::ImageSpec(32, 32, 1, OIIO::TypeUInt8)));
+  ASSERT_TRUE(output->write_image(OIIO::TypeUInt8, samples.data()));
+  output->close();
+  EXPECT_TRUE(ReadPhoto(file).grey);
+  EXPECT_FALSE(ReadPhoto(Write("colour.jpg", OIIO::TypeUInt8, Profile(kP3, 0))).grey);
 }
 
 // EXIF of which the TIFF header follows its offset at once, as libheif writes it.
