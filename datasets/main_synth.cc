@@ -164,9 +164,10 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   options.AddRange("megapixels", &plan.megapixels, 0.05, 60, "size of a photograph, 4:3");
   options.AddRange("sample-mm", &plan.sample_mm, 10, 1000, "side of the square sample");
   options.AddRange("texels", &texels, 16, 8192, "texels per side of a procedural material");
-  options.Add("distance-mm", &distance_mm,
-              "camera's distance: nearest,farthest (default: 270,330 for a sample of 100 mm and for "
-              "boards of your own, in proportion for others)");
+  options.Add(
+      "distance-mm", &distance_mm,
+      "camera's distance: nearest,farthest (default: 270,330 for a sample of 100 mm and for "
+      "boards of your own, in proportion for others)");
   options.AddRange("tilt-deg", &plan.largest_tilt_deg, 0, 65, "largest tilt of the later views");
   options.Add("flash-offset-mm", &flash_mm, "flash in the camera frame: right,down,forward");
   options.Add("flash-tint", &tint, "colour of the flash: r,g,b in (0, 1]");

@@ -53,10 +53,9 @@ MarkerCells CellsOfMarker(const std::string& name, int id) {
   marker.paper.reserve(static_cast<size_t>(marker.cells) * marker.cells);
   for (int row = 0; row < marker.cells; ++row) {
     for (int column = 0; column < marker.cells; ++column) {
-      marker.paper.push_back(inside.contains({column, row}) &&
-                                     bits.at<unsigned char>(row - 1, column - 1) != 0
-                                 ? 1
-                                 : 0);
+      marker.paper.push_back(
+          inside.contains({column, row}) && bits.at<unsigned char>(row - 1, column - 1) != 0 ? 1
+                                                                                             : 0);
     }
   }
   return marker;

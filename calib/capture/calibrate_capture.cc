@@ -98,6 +98,21 @@ void Adjust(const Capture& capture, const CalibOptions& options, BundleProblem p
   }
 }
 
+// Where too few photographs are left, the reason is why the others left.
+void AdjustWhatIsLeft(const Capture& capture, const CalibOptions& options,
+                      const BundleProblem& problem, CalibSummary* summary) {
+  try {
+    Adjust(capture, options, problem, summary);
+  } catch (const Error& error) {
+    if (summary->left_out_by_light.empty()) throw;
+    std::string reasons;
+    for (const RejectedPhoto& photo : summary->left_out_by_light) {
+      reasons += "\n  " + photo.name + ": " + photo.reason;
+    }
+    throw UserError(std::string(error.what()) + "\nLeft out before:" + reasons);
+  }
+}
+
 // A print that is not to scale spoils nothing once its ruler is measured, but the person should
 // know.
 void TellOfPrintScale(const Board& board) {
@@ -268,7 +283,9 @@ CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, 
     spdlog::warn("{}", word);
     summary.board_findings.push_back(word);
   }
-  summary.groups = GroupCameras(capture.file, options.cameras, summary.photos);
+  // Only the light tells to which side pixels were turned.
+  summary.groups =
+      GroupCameras(capture.file, options.cameras, summary.photos, options.light == "board");
   if (options.cameras == "auto") LeaveOutStrays(summary.groups, &summary.photos);
   RequireBoard(capture, options, summary.photos);
   return summary;
@@ -282,7 +299,7 @@ void SolveCapture(const Capture& capture, const CalibOptions& options,
     summary->photo_index.clear();
     problem = MakeProblem(summary->photos, summary->groups, &summary->photo_index);
     for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
-    Adjust(capture, options, problem, summary);
+    AdjustWhatIsLeft(capture, options, problem, summary);
     if (!EstimateBoardLight(capture, options, round < kMostRounds, summary)) break;
   }
   WarnOfUncertainty(summary->bundle);

@@ -72,7 +72,8 @@ CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::
   for (size_t i = 0; i < photos.size(); ++i) {
     const int turns = QuarterTurns(photos[i].orientation).value_or(0);
     Key key = KeyOf(photos[i], turns);
-    const bool turned = turned_pixels && cameras != "each" && IsTurned(key, stored);
+    const bool turned =
+        turned_pixels && !photos[i].board_photo && cameras != "each" && IsTurned(key, stored);
     if (turned) key = TurnedKey(key);
     groups.surely_turned.push_back(turned);
     groups.pixel_turns.push_back(turned ? 1 : 0);

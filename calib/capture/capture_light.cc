@@ -73,12 +73,19 @@ LightProblem ProblemOf(const CalibSummary& summary) {
   return problem;
 }
 
-// RAW and floats are linear by nature, and a response curve was measured.
+// RAW and floats are linear by nature, a response curve was measured, and photographs with several
+// profiles have no curve in common.
 bool MayHaveToneCurve(const Capture& capture, const CalibSummary& summary) {
   if (IsResponseFileName(capture.encoding) || capture.encoding == "linear") return false;
-  return std::all_of(summary.photos.begin(), summary.photos.end(), [](const DetectedPhoto& photo) {
-    return photo.board_photo || (photo.clips && photo.measures.file.format != "raw");
-  });
+  const std::string* profile = nullptr;
+  for (const DetectedPhoto& photo : summary.photos) {
+    if (photo.board_photo) continue;
+    const Photo& file = photo.measures.file;
+    if (!photo.clips || file.format == "raw") return false;
+    if (profile != nullptr && file.colour.name != *profile) return false;
+    profile = &file.colour.name;
+  }
+  return true;
 }
 
 LightEstimate EstimateFromBoard(const Capture& capture, const CalibOptions& options,
@@ -203,13 +210,15 @@ bool EstimateBoardLight(const Capture& capture, const CalibOptions& options, boo
     const std::string reason = ContradictionOf(photo);
     if (reason.empty()) continue;
     LeaveOut(reason, &summary->photos[i]);
+    summary->left_out_by_light.push_back({photo.name, reason});
     changed = true;
   }
   return changed;
 }
 
 void FillLight(const Capture& capture, const CalibOptions& options, CalibSummary* summary) {
-  if (summary->light.photos.empty()) EstimateBoardLight(capture, options, false, summary);
+  const bool estimated = summary->light.known || !summary->light.problem.empty();
+  if (!estimated) EstimateBoardLight(capture, options, false, summary);
   summary->light_findings = LightFindings(capture, *summary);
   for (const std::string& word : summary->light_findings) spdlog::warn("{}", word);
   if (options.light == "board") {
@@ -247,14 +256,19 @@ void WriteLightPicture(const CalibSummary& summary, Stage* stage) {
 
 std::optional<ResponseCurve> ToneCurveOf(const Capture& capture, const CalibSummary& summary) {
   if (!summary.light.tone || capture.encoding != "auto") return std::nullopt;
-  const Photo& file = summary.photos[summary.FlashPhotos()[0]].measures.file;
-  const Encoding encoding = ResolveEncoding("auto", summary.photos[0].name, file);
+  const DetectedPhoto& first = summary.photos[summary.FlashPhotos()[0]];
+  const Encoding encoding = ResolveEncoding("auto", first.name, first.measures.file);
   ResponseCurve curve;
   for (int c = 0; c < 3; ++c) {
     curve.linear[c] = LinearTable(encoding, kResponseCodes, c);
+    float before = -1;
     for (float& value : curve.linear[c]) {
       value = static_cast<float>(summary.light.tone->Linear(value));
+      value = std::max(value, std::nextafter(before, 2.0f));  // profiles' tables begin with zeros
+      if (before < 0) value = 0;
+      before = value;
     }
+    curve.linear[c].back() = 1;
   }
   return curve;
 }

@@ -38,7 +38,7 @@ constexpr double kWorthAWord = 0.182;  // ln 1.2: of exposures against EXIF
 
 void AddExposures(const LightEstimate& light, std::vector<std::string>* words) {
   for (const LightOfPhoto& photo : light.photos) {
-    if (!photo.contradicts || photo.zoom != 1) continue;
+    if (!photo.contradicts) continue;
     const double factor = photo.exif_exposure > 0 ? photo.exposure.value / photo.exif_exposure : 1;
     if (std::abs(std::log(factor)) < kWorthAWord) {
       words->push_back(fmt::format(
@@ -52,12 +52,10 @@ void AddExposures(const LightEstimate& light, std::vector<std::string>* words) {
         "brightness is used. Did the flash fire at another power, or was the photograph edited?",
         photo.name, Against(factor)));
   }
-  std::vector<double> sizes;
   double largest = 1;
   for (const LightOfPhoto& photo : light.photos) {
     if (!photo.used || photo.exif_exposure <= 0) continue;
     const double factor = photo.exposure.value / photo.exif_exposure;
-    sizes.push_back(std::abs(std::log(factor)));
     if (std::abs(std::log(factor)) > std::abs(std::log(largest))) largest = factor;
   }
   if (std::abs(std::log(largest)) < kWorthAWord) return;

@@ -9,8 +9,8 @@
 namespace glint {
 
 // Photographs' pixels that were turned, exposures, white balance, tone curve and flash that
-// contradict EXIF, [radiometry] or [light], each with its likely cause and remedy. Empty where the
-// board did not tell the light.
+// contradict EXIF, [radiometry] or [light], each with its likely cause and remedy. Turned pixels
+// alone where the board did not tell the light.
 std::vector<std::string> LightFindings(const Capture& capture, const CalibSummary& summary);
 
 // Why a photograph that contradicts all others is left out; "": it stays.

@@ -59,15 +59,18 @@ double FalloffMisfit(const State& state, const PhotoState& photo, double zoom) {
   return 1.4826 * Middle(logs);
 }
 
-// Median of ln(seen / predicted).
-double LogBrightness(const State& state, const PhotoState& photo) {
-  std::vector<double> logs;
+// Medians of ln(seen / predicted) of R, G, B.
+Eigen::Vector3d LogBrightness(const State& state, const PhotoState& photo) {
+  std::vector<double> logs[3];
   for (const Spot& spot : photo.spots) {
     const auto predicted = state.Prediction(photo, spot);
-    if (!predicted.empty() && spot.seen[1] > 0)
-      logs.push_back(std::log(spot.seen[1] / predicted[1]));
+    for (int c = 0; c < 3 && !predicted.empty(); ++c) {
+      if (spot.seen[c] > 0) logs[c].push_back(std::log(spot.seen[c] / predicted[c]));
+    }
   }
-  return logs.empty() ? 0 : Middle(logs);
+  Eigen::Vector3d brightness(0, 0, 0);
+  for (int c = 0; c < 3; ++c) brightness[c] = logs[c].empty() ? 0 : Middle(logs[c]);
+  return brightness;
 }
 
 // The enlargement that explains the exposure: as much farther off, paper is darker by its square.
@@ -88,12 +91,49 @@ int Blocks(const State& state) {
   return static_cast<int>(blocks.size());
 }
 
+int Used(const State& state) {
+  return static_cast<int>(std::count_if(state.photos.begin(), state.photos.end(),
+                                        [](const PhotoState& photo) { return photo.used; }));
+}
+
+// Photographs that `a` explains and `b` does not.
+int LostBy(const State& b, const State& a) {
+  int lost = 0;
+  for (size_t i = 0; i < a.photos.size(); ++i) lost += a.photos[i].used && !b.photos[i].used;
+  return lost;
+}
+
 // Half of the squared residuals by which `solved` is better than `other`, were a block of squares
-// one sample.
-double Saved(const LightOptions& options, const State& solved, const State& other) {
+// one sample; who explains more photographs is better beyond comparison.
+double Saved(const LightOptions& options, State solved, State other) {
+  constexpr double kBeyond = 1e9;
+  const int lost = LostBy(solved, other), gained = LostBy(other, solved);
+  if (lost != gained) return lost > gained ? -kBeyond : kBeyond;
+  for (size_t i = 0; i < solved.photos.size(); ++i) {
+    const bool both = solved.photos[i].used && other.photos[i].used;
+    solved.photos[i].used = other.photos[i].used = both;
+  }
   const double scale = std::min(solved.scale, other.scale);
-  return 0.5 * Blocks(other) *
-         std::log(Misfit(options, other, scale) / Misfit(options, solved, scale));
+  const double ours = Misfit(options, solved, scale), theirs = Misfit(options, other, scale);
+  if (!std::isfinite(ours) || !(ours > 0)) return -kBeyond;
+  if (!std::isfinite(theirs)) return kBeyond;
+  return 0.5 * Blocks(other) * std::log(theirs / ours);
+}
+
+// Whether the curve rises as far as the paper shows it.
+bool ToneRises(const State& state) {
+  constexpr double kLeastSlope = 0.05;
+  ToneCurve curve;
+  for (int i = 0; i < 3; ++i) curve.t[i].value = state.tone[i];
+  for (const PhotoState& photo : state.photos) {
+    for (const Spot& spot : photo.spots) {
+      if (!photo.used || !spot.inlier) continue;
+      for (const double radiance : spot.seen) {
+        if (curve.ExponentAt(std::max(radiance, 1e-3)) < kLeastSlope) return false;
+      }
+    }
+  }
+  return true;
 }
 
 bool LeaveOut(const LightOptions& options, size_t photo, State* start) {
@@ -124,9 +164,11 @@ bool LeaveOutContradiction(const LightOptions& options, const State& solved, Sta
 }
 
 void ExplainContradictions(State* solved) {
+  constexpr int kRounds = 4;  // a tone curve's exponent is not 1
   for (PhotoState& photo : solved->photos) {
     if (!photo.contradicts) continue;
-    photo.log_exposure += Eigen::Vector3d::Constant(LogBrightness(*solved, photo));
+    for (int round = 0; round < kRounds; ++round)
+      photo.log_exposure += LogBrightness(*solved, photo);
     if (photo.exif > 0) {
       photo.zoom = ZoomOf(*solved, photo, photo.log_exposure.mean() - std::log(photo.exif));
     }
@@ -167,23 +209,25 @@ bool Insists(const LightOptions& options, const State& solved, const State& othe
   return Saved(options, solved, other) > kInsists;
 }
 
-void FreeWhatThePaperInsistsOn(const LightProblem& problem, const LightOptions& options,
+bool FreeWhatThePaperInsistsOn(const LightProblem& problem, const LightOptions& options,
                                State* start, State* solved) {
   State with_tone = *start, with_along = *start;
   with_tone.hold_tone = false;
   with_along.flash_along_free = true;
   Freedom tone, along = Try(problem, options, with_along);
-  if (!options.tone_known) tone = Try(problem, options, with_tone);
-  const bool tone_insists =
-      tone.significance > kSignificant && Insists(options, tone.solved, *solved);
+  // One or two photographs' fall-off is the lens's as well as a curve's.
+  if (!options.tone_known && Used(*start) > 2) tone = Try(problem, options, with_tone);
+  const bool tone_insists = tone.significance > kSignificant && ToneRises(tone.solved) &&
+                            Insists(options, tone.solved, *solved);
   const bool along_insists =
       along.significance > kSignificant && Insists(options, along.solved, *solved);
-  if (!tone_insists && !along_insists) return;
+  if (!tone_insists && !along_insists) return false;
   const bool take_tone =
       tone_insists && (!along_insists || Saved(options, tone.solved, along.solved) > 0);
   Freedom& taken = take_tone ? tone : along;
   *start = std::move(taken.start);
   *solved = std::move(taken.solved);
+  return true;
 }
 
 }  // namespace glint::light

@@ -22,8 +22,8 @@ void ExplainContradictions(State* solved);
 bool Insists(const LightOptions& options, const State& solved, const State& other);
 
 // Frees, in `start`, the tone curve or the flash's place along the axis where the paper insists on
-// either, and replaces `solved`.
-void FreeWhatThePaperInsistsOn(const LightProblem& problem, const LightOptions& options,
+// either, and replaces `solved`. True: it did.
+bool FreeWhatThePaperInsistsOn(const LightProblem& problem, const LightOptions& options,
                                State* start, State* solved);
 
 }  // namespace glint::light

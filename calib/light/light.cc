@@ -172,7 +172,9 @@ void Reweigh(State* state) {
 
 bool DropPhotos(const LightOptions& options, State* state) {
   for (PhotoState& photo : state->photos) {
-    if (photo.used && Inliers(photo) < options.min_samples) photo.used = false;
+    // A photo of which a share of the spots was kept needs that share.
+    const double least = std::max(4.0, photo.kept_share * options.min_samples);
+    if (photo.used && Inliers(photo) < least) photo.used = false;
   }
   const auto first = std::find_if(state->photos.begin(), state->photos.end(),
                                   [](const PhotoState& photo) { return photo.used; });
@@ -207,7 +209,8 @@ bool SolveRobustly(const LightOptions& options, State* state, int* rounds) {
 
 std::vector<double> State::Prediction(const PhotoState& photo, const Spot& spot) const {
   std::vector<double> radiance(3);
-  if (!Predict(spot.geometry, reference, flash_mm.data(), log_q.data(), ambient.data(),
+  const double* flash = own_flashes ? photo.flash_mm.data() : flash_mm.data();
+  if (!Predict(spot.geometry, reference, flash, log_q.data(), ambient.data(),
                vignetting[photo.camera].data(), &gloss, &smear, tone.data(),
                photo.log_exposure.data(), radiance.data())) {
     return {};

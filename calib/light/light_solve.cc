@@ -1,5 +1,6 @@
 #include <ceres/ceres.h>
 
+#include <limits>
 #include <memory>
 
 #include "calib/light/light_cost.h"
@@ -183,8 +184,8 @@ double Misfit(const LightOptions& options, const State& solved, double scale) {
   AddSpots(true, &state, &problem);
   AddPriors(options, &state, &problem);
   double cost = 0;
-  problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
-  return cost;
+  if (problem.Evaluate({}, &cost, nullptr, nullptr, nullptr)) return cost;
+  return std::numeric_limits<double>::infinity();  // a spot that no light reaches
 }
 
 }  // namespace glint::light

@@ -30,6 +30,7 @@ struct PhotoState {
   int turns = 0;                          // of the pixels, see turned_photos.h
   bool contradicts = false;               // left out: see contradictions.h
   double zoom = 1;                        // that explains the contradiction
+  double kept_share = 1;                  // of its spots, see thinned.h
   std::vector<Spot> spots;
 };
 
@@ -93,7 +94,7 @@ bool SolveRobustly(const LightOptions& options, State* state, int* rounds);
 void Solve(const LightOptions& options, bool robust, State* state);
 
 // Half of the squared residuals of all spots of used photos, with Cauchy's loss, and of the priors:
-// to compare solutions under one scale of residuals.
+// to compare solutions under one scale of residuals. Infinite where a spot cannot be predicted.
 double Misfit(const LightOptions& options, const State& state, double scale);
 
 // Covariance of the layout's columns, see light.h.

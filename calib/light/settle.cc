@@ -12,12 +12,23 @@ constexpr size_t kSpots = 120;  // of a photo, to decide by
 // One solution: turns, contradictions and what the paper insists on follow from it.
 bool SettleWith(const LightProblem& problem, const LightOptions& options, State* start,
                 State* solved, int* rounds) {
-  do {
-    *solved = *start;
-    if (!SolveRobustly(options, solved, rounds)) return false;
-  } while (LeaveOutContradiction(options, *solved, start));
-  FreeWhatThePaperInsistsOn(problem, options, start, solved);
-  return true;
+  const auto leave_out = [&] {
+    do {
+      *solved = *start;
+      if (!SolveRobustly(options, solved, rounds)) return false;
+    } while (LeaveOutContradiction(options, *solved, start));
+    return true;
+  };
+  if (!leave_out()) return false;
+  if (!FreeWhatThePaperInsistsOn(problem, options, start, solved)) return true;
+  // What contradicted the others may go with them now.
+  bool again = false;
+  for (PhotoState& photo : start->photos) {
+    again = again || photo.contradicts;
+    photo.used = photo.used || photo.contradicts;
+    photo.contradicts = false;
+  }
+  return !again || leave_out();
 }
 
 // Turns that neither EXIF nor the picture's size tells of must explain the paper better in the end:

@@ -16,6 +16,10 @@ State Thinned(const State& full, size_t spots) {
     const size_t step = (photo.spots.size() + spots - 1) / spots;
     std::vector<Spot> kept;
     for (size_t i = step / 2; i < photo.spots.size(); i += step) kept.push_back(photo.spots[i]);
+    if (!photo.spots.empty()) {
+      photo.kept_share *=
+          static_cast<double>(kept.size()) / static_cast<double>(photo.spots.size());
+    }
     before += photo.spots.size();
     after += kept.size();
     photo.spots = std::move(kept);
@@ -32,6 +36,7 @@ void Adopt(const State& thin, State* full) {
   adopted.shared = full->shared;
   for (size_t i = 0; i < adopted.photos.size(); ++i) {
     adopted.photos[i].spots = std::move(full->photos[i].spots);
+    adopted.photos[i].kept_share = full->photos[i].kept_share;
     TurnSpots(adopted.photos[i].turns - full->photos[i].turns, &adopted.photos[i]);
   }
   *full = std::move(adopted);

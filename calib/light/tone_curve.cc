@@ -15,7 +15,7 @@ std::pair<double, double> LogStored(const ToneCurve& tone, double x) {
 
 // Its inverse, by Newton's method: the curve rises where photographs show paper.
 double LogLinear(const ToneCurve& tone, double log_stored) {
-  constexpr int kSteps = 20;
+  constexpr int kSteps = 60;
   double x = log_stored;
   for (int i = 0; i < kSteps; ++i) {
     const auto [value, slope] = LogStored(tone, x);

@@ -135,6 +135,33 @@ void Discount(double badness, std::vector<SeenFlash>* seen) {
   for (SeenFlash& one : *seen) one.information /= std::max(1.0, badness);
 }
 
+struct Found {
+  Explanation explanation;
+  double badness = 0;
+};
+
+Found FindWith(const LightProblem& problem, const LightOptions& options, const State& start,
+               bool hold_tone) {
+  constexpr int kRounds = 3;  // of weights by the solution
+  State own = start;
+  own.own_flashes = true;
+  own.hold_tone = hold_tone;
+  for (PhotoState& photo : own.photos) photo.flash_mm = options.offset_mm;
+  for (int round = 0; round < kRounds; ++round) {
+    Solve(options, true, &own);
+    Reweigh(&own);
+  }
+  std::vector<SeenFlash> seen;
+  for (const PhotoState& photo : own.photos) {
+    seen.push_back(photo.used ? Seen(own, photo) : SeenFlash());
+  }
+  Found found{BestExplanation(problem, own, seen), 0};
+  found.badness = BadnessOf(own, seen, found.explanation);
+  Discount(found.badness, &seen);
+  found.explanation = BestExplanation(problem, own, seen);
+  return found;
+}
+
 }  // namespace
 
 void TurnSpots(int turns, PhotoState* photo) {
@@ -154,24 +181,16 @@ bool FindTurns(const LightProblem& given, const LightOptions& options, bool unex
     any = any || photo.possible_turns.size() > 1;
   }
   if (!any) return false;
-  State own = *state;
-  own.own_flashes = true;
-  own.hold_tone = options.tone_known;  // or a wrong curve would move flashes
-  for (PhotoState& photo : own.photos) photo.flash_mm = options.offset_mm;
-  Solve(options, true, &own);
-  Reweigh(&own);
-  std::vector<SeenFlash> seen;
-  for (const PhotoState& photo : own.photos) {
-    seen.push_back(photo.used ? Seen(own, photo) : SeenFlash());
+  Found best = FindWith(problem, options, *state, true);
+  if (!options.tone_known) {  // or a wrong curve would move flashes
+    Found toned = FindWith(problem, options, *state, false);
+    if (toned.badness < best.badness) best = std::move(toned);
   }
-  Explanation best = BestExplanation(problem, own, seen);
-  Discount(BadnessOf(own, seen, best), &seen);
-  best = BestExplanation(problem, own, seen);
   any = false;
-  for (size_t i = 0; i < best.turns.size(); ++i) {
-    if (!state->photos[i].used || best.turns[i] == 0) continue;
-    state->photos[i].turns = best.turns[i];
-    TurnSpots(best.turns[i], &state->photos[i]);
+  for (size_t i = 0; i < best.explanation.turns.size(); ++i) {
+    if (!state->photos[i].used || best.explanation.turns[i] == 0) continue;
+    state->photos[i].turns = best.explanation.turns[i];
+    TurnSpots(best.explanation.turns[i], &state->photos[i]);
     any = any || !problem.photos[i].surely_turned;
   }
   return any;

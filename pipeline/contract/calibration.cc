@@ -168,6 +168,11 @@ Calibration ReadCalibration(const std::filesystem::path& manifest_file) {
   calibration.light_power_known = known.get<bool>();
   if (manifest.data.contains("tone_curve")) {
     calibration.tone_curve = RequireString(manifest_file, manifest.data, "data", "tone_curve");
+    const std::filesystem::path name = calibration.tone_curve;
+    if (name.filename() != name || name.extension() != ".json") {
+      throw UserError(manifest_file, "data.tone_curve", "'" + calibration.tone_curve + "'",
+                      "the name of a .json file beside the manifest is expected; run calib again");
+    }
   }
   calibration.light_sd_mm =
       PositiveNumberIfAny(manifest_file, manifest.data, "data", "light_sd_mm");

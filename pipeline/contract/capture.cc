@@ -388,7 +388,8 @@ void CheckUnits(const fs::path& file, const Capture& capture) {
   const BoardRectangle board = OutlineInSample(capture.board);
   const double board_mm = std::max(board.right_mm - board.left_mm, board.top_mm - board.bottom_mm);
   const double sample_mm = std::max(capture.sample_size_mm[0], capture.sample_size_mm[1]);
-  constexpr double kMost = 2.5, kLeast = 1.0 / 200;
+  constexpr double kMost = 8,
+                   kLeast = 1.0 / 200;  // a sample may lie beside a board that gives scale
   if (board_mm <= 0 || sample_mm <= 0) return;
   if (sample_mm > kMost * board_mm) {
     const double in_cm = 10 * capture.board.square_mm, in_m = 1000 * capture.board.square_mm;

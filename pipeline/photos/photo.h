@@ -34,7 +34,7 @@ struct Photo {
   int bits = 8;        // 8, 16, or 32 for float
   std::string format;  // OpenImageIO's name: "jpeg", "heif", "raw", "tiff"…; "video" for a frame
   bool is_float() const { return bits == 32; }
-  bool grey = false;  // it was stored without colour; R, G and B are the same
+  bool grey = false;             // it was stored without colour; R, G and B are the same
   ColourProfile colour;          // what R, G and B are; RAW is developed to Rec.709
   double focal_length_35mm = 0;  // EXIF; 0: absent
   double exposure_time_s = 0, iso = 0, f_number = 0;

@@ -111,9 +111,8 @@ class Video {
   const std::uint8_t* DisplayMatrix() const {
 #if LIBAVCODEC_VERSION_INT >= AV_VERSION_INT(60, 29, 100)  // FFmpeg 6.1
     const AVCodecParameters* parameters = stream()->codecpar;
-    const AVPacketSideData* data =
-        av_packet_side_data_get(parameters->coded_side_data, parameters->nb_coded_side_data,
-                                AV_PKT_DATA_DISPLAYMATRIX);
+    const AVPacketSideData* data = av_packet_side_data_get(
+        parameters->coded_side_data, parameters->nb_coded_side_data, AV_PKT_DATA_DISPLAYMATRIX);
     return data == nullptr ? nullptr : data->data;
 #else
     return av_stream_get_side_data(stream(), AV_PKT_DATA_DISPLAYMATRIX, nullptr);

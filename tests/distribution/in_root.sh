@@ -6,23 +6,26 @@ set -euo pipefail
 suite=$1 task=${2:-test}
 root=$PWD/build/root-$suite
 mirror=${GLINT_DEBIAN_MIRROR:-http://deb.debian.org/debian}
+registry=$(npm config get registry 2>/dev/null || true)
 in_root() {
   chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
-    ${http_proxy:+http_proxy="$http_proxy"} ${https_proxy:+https_proxy="$https_proxy"} "$@"
+    ${http_proxy:+http_proxy="$http_proxy"} ${https_proxy:+https_proxy="$https_proxy"} ${registry:+npm_config_registry="$registry"} "$@"
 }
 
-if [ ! -x "$root/usr/bin/env" ]; then
+if [ ! -e "$root/complete" ]; then
+  rm -rf --one-file-system "$root"
   mkdir -p "$root"
   debootstrap --variant=minbase "$suite" "$root" "$mirror" >/dev/null
   # Apt as this machine has it set up (proxies); the release's own updates.
   cp -r /etc/apt/apt.conf.d "$root/etc/apt/" 2>/dev/null || true
   cp /etc/resolv.conf "$root/etc/" 2>/dev/null || true
-  cp -r /root/.npmrc /root/.config "$root/root/" 2>/dev/null || true
+  touch "$root/complete"
 fi
 mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
 trap 'umount "$root/proc" 2>/dev/null || true' EXIT
 mkdir -p "$root/srv/glint"
-git archive HEAD | tar -x -C "$root/srv/glint"
+find "$root/srv/glint" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
+git archive HEAD | tar -x -m -C "$root/srv/glint"  # newer than what was built before
 if [ "$task" = build ]; then
   in_root bash -c 'cd /srv/glint && ./dev build'
 else

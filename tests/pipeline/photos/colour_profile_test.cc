@@ -157,8 +157,9 @@ TEST_F(PhotoColours, AndExifAreReadFromWebp) {
   output->close();
   const std::string bytes = test::ReadAll(plain), icc = Profile(kP3, 0);
   // Two tags: the make, and a quarter turn.
-  const unsigned char exif[] = {'I', 'I', 42, 0, 8, 0,   0,   0,   2, 0, 0x0F, 1, 2, 0, 4, 0, 0, 0, 'A',
-                                'b', 'c', 0,  0x12, 1, 3, 0, 1, 0, 0, 0, 6, 0, 0, 0, 0, 0, 0, 0};
+  const unsigned char exif[] = {'I', 'I', 42, 0, 8, 0,   0,   0,   2, 0,    0x0F, 1, 2,
+                                0,   4,   0,  0, 0, 'A', 'b', 'c', 0, 0x12, 1,    3, 0,
+                                1,   0,   0,  0, 6, 0,   0,   0,   0, 0,    0,    0};
   const auto data = [](const void* from, std::size_t size) {
     return WebPData{static_cast<const std::uint8_t*>(from), size};
   };
