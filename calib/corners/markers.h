@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@ namespace glint {
 
 struct SeenMarker {
   int id = 0;
-  Eigen::Vector2d corners_px[4];  // clockwise from the marker's own top left, ± a few pixels
+  // Clockwise from the marker's own top left, ± a few pixels.
+  std::array<Eigen::Vector2d, 4> corners_px;
 
   Eigen::Vector2d centre_px() const;
   double side_px() const;  // mean length of the four sides

@@ -71,7 +71,7 @@ class TableReader {
     for (const std::string& choice : choices) list += (list.empty() ? "" : ", ") + choice;
     if (!node->is_string())
       Reject(*node, key, list.empty() ? "give text in quotes" : "use one of: " + list);
-    const std::string text = node->as_string()->get();
+    std::string text = node->as_string()->get();
     if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end()) {
       Reject(*node, key, "use one of: " + list);
     }

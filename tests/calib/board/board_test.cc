@@ -147,8 +147,9 @@ TEST(Board, OpenCv47sPrintedBoardIsReproduced) {
   while (printed.at<unsigned char>(top, left + 2) > 127) ++top;
   const double scale = (printed.cols - 2.0 * left) / 210.0;
   int compared = 0, different = 0;
-  for (double y = 0.5; y < 150; y += 0.5) {
-    for (double x = 0.5; x < 210; x += 0.5) {
+  for (int row = 1; row < 300; ++row) {
+    for (int column = 1; column < 420; ++column) {
+      const double x = 0.5 * column, y = 0.5 * row;
       const unsigned char seen = printed.at<unsigned char>(static_cast<int>(top + y * scale),
                                                            static_cast<int>(left + x * scale));
       different += (seen > 127) != (painter.ReflectanceAt(x - 105, 75 - y).value() > 0.5);
