@@ -86,6 +86,22 @@ TEST(Resample, DividesTheLensesFalloffOut) {
   for (const float value : view.rgb) ASSERT_NEAR(value, 254 / 255.0f, 2e-5);
 }
 
+TEST(Resample, MultipliesChannelsByTheirGainsButNotWhatClips) {
+  const CameraProjection projection(TestCamera(400, 420, 0, 0), LookAtSample(100, 20, 20));
+  ResampleOptions options;
+  options.gain_rgb = {1.1, 1.0, 0.9};
+  const LinearPhoto photo(FlatPhoto(400, 400, 102 / 255.0f, 8), Encoding::kLinear);
+  const ResampledView view = ResampleToPlane(photo, projection, Plane(64, 50), options);
+  const size_t texels = view.rgb.size() / 3;
+  for (size_t i = 0; i < view.rgb.size(); ++i) {
+    ASSERT_NEAR(view.rgb[i], options.gain_rgb[i / texels] * 102 / 255, 2e-5);
+  }
+  const LinearPhoto clipped(FlatPhoto(400, 400, 254 / 255.0f, 8), Encoding::kLinear);
+  for (const float value : ResampleToPlane(clipped, projection, Plane(64, 50), options).rgb) {
+    ASSERT_NEAR(value, 254 / 255.0f, 2e-5);
+  }
+}
+
 // Centres of mass of Gaussian blobs come out where they were painted, to a tenth of a texel, under
 // lens distortion, tilt and roll.
 TEST(Resample, BlobsLandWhereTheyWerePainted) {
