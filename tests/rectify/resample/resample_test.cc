@@ -69,9 +69,10 @@ TEST(Resample, DividesTheLensesFalloffOut) {
   for (const float wall : {0.6f, 1.5f}) {
     Photo photo = FlatPhoto(400, 400, 0, 32);
     for (size_t i = 0; i < photo.image.samples.size(); ++i) {
-      const size_t pixel = i % photo.image.pixels();
+      const size_t pixel = i % photo.image.pixels(), column = pixel % 400, row = pixel / 400;
       photo.image.samples[i] =
-          static_cast<float>(wall * Vignetting(camera, {pixel % 400 + 0.5, pixel / 400 + 0.5}));
+          static_cast<float>(wall * Vignetting(camera, {static_cast<double>(column) + 0.5,
+                                                        static_cast<double>(row) + 0.5}));
     }
     const ResampledView view =
         ResampleToPlane(LinearPhoto(photo, Encoding::kLinear), projection, Plane(64, 50), options);
