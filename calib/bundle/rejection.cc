@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/statistics/median.h"
 #include "calib/bundle/bundle_internal.h"
 
 namespace glint::bundle {
 namespace {
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 std::vector<double> Lengths(const std::vector<Eigen::Vector2d>& residuals) {
   std::vector<double> lengths;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "base/text/name_list.h"
 #include "calib/corners/local_homography.h"
 
 namespace glint {
@@ -125,14 +126,6 @@ void TurnCorners(const Board& board, DetectedPhoto* photo) {
   }
 }
 
-std::string Listed(const std::vector<std::string>& names) {
-  constexpr size_t kMost = 4;
-  std::string text;
-  for (size_t i = 0; i < std::min(kMost, names.size()); ++i) text += (i > 0 ? ", " : "") + names[i];
-  if (names.size() > kMost) text += fmt::format(" and {} more", names.size() - kMost);
-  return text;
-}
-
 }  // namespace
 
 bool LooksTheSameUpsideDown(const Board& board) {
@@ -170,14 +163,14 @@ std::vector<std::string> SettleBoardSides(const Capture& capture,
     words.push_back(fmt::format(
         "{}: taken from the other side of the checkerboard, which looks the same upside down; the "
         "sample's texture tells, and they are turned. {}",
-        Listed(turned), "For certainty: " + remedy));
+        NameList(turned, 4), "For certainty: " + remedy));
   }
   if (!untold.empty()) {
     words.push_back(fmt::format(
         "the checkerboard looks the same upside down, and the sample's texture does not tell which "
         "way round it lies in {}: if you walked round the table, photographs are upside down; "
         "{}",
-        Listed(untold), remedy));
+        NameList(untold, 4), remedy));
   }
   return words;
 }

@@ -46,9 +46,7 @@ Eigen::Vector3d Values(const std::array<Estimate, 3>& estimates) {
 }
 
 // COLMAP's poses, and a stated one, are what they are.
-bool PosesFollowTheLight(const CalibSummary& summary) {
-  return !summary.groups.pixel_turns.empty();
-}
+bool PosesFollowTheLight(const CalibSummary& summary) { return summary.from_board(); }
 
 LightProblem ProblemOf(const CalibSummary& summary) {
   LightProblem problem;

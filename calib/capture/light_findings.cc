@@ -5,16 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text/name_list.h"
+
 namespace glint {
 namespace {
-
-std::string Named(const std::vector<std::string>& names) {
-  constexpr size_t kMost = 3;
-  std::string text;
-  for (size_t i = 0; i < std::min(kMost, names.size()); ++i) text += (i > 0 ? ", " : "") + names[i];
-  if (names.size() > kMost) text += fmt::format(" and {} more", names.size() - kMost);
-  return text;
-}
 
 // In per cent, with its direction: "36 % darker".
 std::string Against(double factor) {
@@ -31,7 +25,7 @@ void AddTurned(const CalibSummary& summary, std::vector<std::string>* words) {
       "{}: the pixels were turned after the photograph was taken, and EXIF's orientation does not "
       "tell so (a gallery app or an export does that); lens and flash are taken to be turned with "
       "them. The camera's own files leave no doubt",
-      Named(names)));
+      NameList(names)));
 }
 
 constexpr double kWorthAWord = 0.182;  // ln 1.2: of exposures against EXIF
@@ -82,7 +76,7 @@ void AddWhiteBalance(const LightEstimate& light, std::vector<std::string>* words
   words->push_back(fmt::format(
       "{}: the white paper has another colour than in the first photograph (up to {:.0f} % between "
       "channels), which is taken out: the white balance changed. Fix it in the camera's settings",
-      Named(names), 100 * largest));
+      NameList(names), 100 * largest));
 }
 
 void AddTone(const Capture& capture, const LightEstimate& light, std::vector<std::string>* words) {
@@ -96,7 +90,8 @@ void AddTone(const Capture& capture, const LightEstimate& light, std::vector<std
       capture.encoding, light.tone->ExponentAt(light.tone->highest),
       light.tone->ExponentAt(light.tone->lowest),
       automatic ? "The curve that the paper tells is used."
-                : "With encoding = \"auto\" the curve that the paper tells is used."));
+                : "The light is found with the curve that the paper tells; with encoding = "
+                  "\"auto\" the photographs are read by it, too."));
 }
 
 void AddFlash(const Capture& capture, const LightEstimate& light, std::vector<std::string>* words) {
@@ -129,9 +124,8 @@ std::string ContradictionOf(const LightOfPhoto& photo) {
   if (!photo.contradicts || photo.zoom == 1) return "";
   return fmt::format(
       "its paper is {} than EXIF's exposure and the other photographs say, and falls off as from "
-      "{:.1f} times as far as its corners say: it was taken with a zoom of about {:.1f} that EXIF "
-      "does "
-      "not tell, or cropped and enlarged; photograph without zoom",
+      "{:.1f} times as far as its corners say: it was taken with a zoom of about {:.1f} that "
+      "EXIF does not tell, or cropped and enlarged; photograph without zoom",
       Against(photo.exposure.value / photo.exif_exposure), photo.zoom, photo.zoom);
 }
 

@@ -5,20 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text/name_list.h"
 #include "calib/guidance/expected_error.h"
 
 namespace glint {
 namespace {
 
 using List = std::vector<Advice>;
-
-// "a.jpg, b.jpg and 3 more".
-std::string Names(const std::vector<std::string>& names, size_t most = 3) {
-  std::string text;
-  for (size_t i = 0; i < std::min(most, names.size()); ++i) text += (i > 0 ? ", " : "") + names[i];
-  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
-  return text;
-}
 
 std::string Counted(size_t count) {
   return fmt::format("{} photograph{}", count, count == 1 ? "" : "s");
@@ -151,7 +144,7 @@ void AddClipped(const Verdict& v, List* list) {
   list->push_back({"clipped", Importance::kUseful,
                    fmt::format("up to {} % of the sample is clipped in {} ({}): expose shorter or "
                                "step back",
-                               Percent(worst), Counted(names.size()), Names(names))});
+                               Percent(worst), Counted(names.size()), NameList(names))});
 }
 
 void AddResolution(const GuidanceInput& input, const Verdict& v, List* list) {
@@ -180,7 +173,7 @@ void AddLeftOut(const GuidanceInput& input, const Verdict& v, List* list) {
   list->push_back({"left_out",
                    share > v.limits.left_out_share ? Importance::kUseful : Importance::kHint,
                    fmt::format("{} of {} photographs are left out ({}): take them again",
-                               input.left_out.size(), all, Names(reasons, 2))});
+                               input.left_out.size(), all, NameList(reasons, 2))});
 }
 
 void AddCut(const Verdict& v, List* list) {
@@ -193,7 +186,7 @@ void AddCut(const Verdict& v, List* list) {
   if (names.empty()) return;
   list->push_back({"cut", Importance::kHint,
                    fmt::format("{} show{} part of the sample only: {}", Counted(names.size()),
-                               names.size() == 1 ? "s" : "", Names(names))});
+                               names.size() == 1 ? "s" : "", NameList(names))});
 }
 
 }  // namespace

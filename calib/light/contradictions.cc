@@ -5,6 +5,8 @@
 #include <set>
 #include <vector>
 
+#include "base/statistics/median.h"
+
 namespace glint::light {
 namespace {
 
@@ -14,12 +16,6 @@ constexpr double kAgree = 0.06;           // median deviation of those that agre
 // ten in which EXIF, encoding or [light] are wrong.
 constexpr double kInsists = 5;
 constexpr double kSignificant = 5;  // standard deviations
-
-double Middle(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // ln(exposure by the paper / by EXIF), less the median over photos; 0: not used.
 std::vector<double> Deviations(const State& state, int* used) {
@@ -32,7 +28,7 @@ std::vector<double> Deviations(const State& state, int* used) {
   }
   *used = static_cast<int>(all.size());
   if (all.empty()) return deviations;
-  const double middle = Middle(all);
+  const double middle = Median(all);
   for (size_t i = 0; i < state.photos.size(); ++i) {
     if (state.photos[i].used) deviations[i] -= middle;
   }
@@ -54,9 +50,9 @@ double FalloffMisfit(const State& state, const PhotoState& photo, double zoom) {
     logs.push_back(std::log(spot.seen[1] / predicted[1]));
   }
   if (logs.empty()) return 0;
-  const double middle = Middle(logs);
+  const double middle = Median(logs);
   for (double& value : logs) value = std::abs(value - middle);
-  return 1.4826 * Middle(logs);
+  return 1.4826 * Median(logs);
 }
 
 // Medians of ln(seen / predicted) of R, G, B.
@@ -69,7 +65,7 @@ Eigen::Vector3d LogBrightness(const State& state, const PhotoState& photo) {
     }
   }
   Eigen::Vector3d brightness(0, 0, 0);
-  for (int c = 0; c < 3; ++c) brightness[c] = logs[c].empty() ? 0 : Middle(logs[c]);
+  for (int c = 0; c < 3; ++c) brightness[c] = logs[c].empty() ? 0 : Median(logs[c]);
   return brightness;
 }
 
@@ -155,7 +151,7 @@ bool LeaveOutContradiction(const LightOptions& options, const State& solved, Sta
   for (size_t i = 0; i < deviations.size(); ++i) {
     if (solved.photos[i].used) sizes.push_back(std::abs(deviations[i]));
   }
-  if (Middle(sizes) > kAgree) return false;  // EXIF's exposures do not hold at all
+  if (Median(sizes) > kAgree) return false;  // EXIF's exposures do not hold at all
   const auto worst = std::max_element(deviations.begin(), deviations.end(),
                                       [](double a, double b) { return std::abs(a) < std::abs(b); });
   if (std::abs(*worst) < kContradiction) return false;

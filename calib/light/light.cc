@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "base/statistics/median.h"
 #include "calib/light/contradictions.h"
 #include "calib/light/light_state.h"
 #include "calib/light/settle.h"
@@ -17,13 +18,6 @@ namespace {
 
 constexpr double kBrightest = 0.9;  // predicted radiance beyond which a sample may have clipped
 constexpr int kMostRounds = 6;
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Photon noise of a small sensor (8000 electrons), averaged over the disc, and 0.3 % of what no
 // model holds; only ratios count, since the whole is scaled by the residuals.

@@ -4,17 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/statistics/median.h"
+
 namespace glint {
 namespace {
 
 constexpr size_t kLeastSamples = 4;  // a photo with fewer has no say
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // cosθ/d² at a spot; 0 on the light's far side.
 double Irradiance(const Eigen::Vector2d& spot, const Eigen::Vector3d& light_in_sample_mm) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/statistics/median.h"
 #include "calib/camera/orientation.h"
 
 namespace glint::light {
@@ -125,10 +126,7 @@ double BadnessOf(const State& state, const std::vector<SeenFlash>& seen, const E
     const Eigen::Vector2d off = Turned(best.flash, best.turns[i]) - seen[i].at_mm;
     squares.push_back(off.dot(seen[i].information * off));
   }
-  if (squares.empty()) return 1;
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return *middle / (2 * std::log(2.0));
+  return Median(squares) / (2 * std::log(2.0));
 }
 
 void Discount(double badness, std::vector<SeenFlash>* seen) {

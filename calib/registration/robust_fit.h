@@ -9,6 +9,8 @@
 #include <memory>
 #include <vector>
 
+#include "base/statistics/median.h"
+
 namespace glint {
 
 // (value − expected) / σ of N numbers.
@@ -63,14 +65,6 @@ inline Eigen::Matrix3d CovarianceOfBlock(const double* block, ceres::Problem* pr
     covariance.GetCovarianceBlock(block, block, result.data());
   }
   return result;
-}
-
-// The upper one of an even number; 0 of none.
-inline double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace glint

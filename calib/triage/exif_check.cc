@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "base/text/name_list.h"
 #include "calib/camera/orientation.h"
 #include "calib/triage/triage.h"
 
@@ -92,14 +93,6 @@ void CheckExposure(const PhotoMeasures& photo, std::vector<Remark>* remarks) {
   if (file.exif.iso_is_zero) Say(photo, "EXIF tells an ISO of 0, which is none", remarks);
 }
 
-std::string Listed(const std::vector<std::string>& names) {
-  constexpr size_t kMost = 4;
-  std::string text;
-  for (size_t i = 0; i < std::min(kMost, names.size()); ++i) text += (i ? ", " : "") + names[i];
-  if (names.size() > kMost) text += fmt::format(" and {} more", names.size() - kMost);
-  return text;
-}
-
 void SayAll(std::string text, std::vector<Remark>* remarks) {
   remarks->push_back({"", RemarkKind::kExif, std::move(text)});
 }
@@ -122,20 +115,20 @@ void CheckColours(const std::vector<PhotoMeasures>& photos, std::vector<Remark>*
   if (!grey.empty()) {
     SayAll(fmt::format("{}: stored in grey: the maps will have no colour. Copy the camera's own "
                        "files, or switch its monochrome mode off",
-                       Listed(grey)),
+                       NameList(grey, 4)),
            remarks);
   }
   for (const auto& [profile, names] : ignored) {
     SayAll(fmt::format("{}: the colour profile '{}' is not used ({}), colours are read as sRGB; "
                        "convert the photographs to sRGB, or to 16-bit TIFF in linear Rec.709",
-                       Listed(names), profile.first, profile.second),
+                       NameList(names, 4), profile.first, profile.second),
            remarks);
   }
   if (unknown.empty()) return;
   SayAll(
       fmt::format("{}: EXIF says that the colours are not sRGB's, and no profile says whose they "
                   "are: read as sRGB; set the camera to sRGB, or let the profile in the file",
-                  Listed(unknown)),
+                  NameList(unknown, 4)),
       remarks);
 }
 
@@ -149,7 +142,7 @@ void CheckModels(const std::vector<PhotoMeasures>& photos, std::vector<Remark>* 
   std::string text = "photographs of several cameras in one capture: ";
   bool first = true;
   for (const auto& [model, names] : by_model) {
-    text += (first ? "" : "; ") + model + " (" + Listed(names) + ")";
+    text += (first ? "" : "; ") + model + " (" + NameList(names, 4) + ")";
     first = false;
   }
   SayAll(text + ". Each gets intrinsics of its own; their colours and exposures do not compare",
@@ -203,7 +196,7 @@ void CheckCompleteness(const std::vector<PhotoMeasures>& photos, std::vector<Rem
   } else {
     SayAll(fmt::format("{} of {} photographs do not tell their exposure: {}. All exposures are "
                        "taken as equal; give the camera's own files",
-                       missing.size(), flash, Listed(missing)),
+                       missing.size(), flash, NameList(missing, 4)),
            remarks);
   }
 }
@@ -238,7 +231,7 @@ void CheckFormats(const std::vector<PhotoMeasures>& photos, std::vector<Remark>*
     }
   }
   if (linear.empty() || others == 0) return;
-  SayAll("RAW or float photographs (" + Listed(linear) +
+  SayAll("RAW or float photographs (" + NameList(linear, 4) +
              ") beside developed ones: their brightness does not compare; use one kind",
          remarks);
 }

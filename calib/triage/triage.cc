@@ -5,14 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/statistics/median.h"
+
 namespace glint {
 namespace {
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 int Side(const PhotoMeasures& photo) {
   return std::max(photo.file.image.width, photo.file.image.height);

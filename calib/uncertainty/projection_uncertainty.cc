@@ -4,19 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "base/statistics/median.h"
 #include "calib/uncertainty/implied_motion.h"
 #include "calib/uncertainty/projection_jacobian.h"
 
 namespace glint {
-namespace {
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
-}  // namespace
+namespace {}  // namespace
 
 ProjectionUncertainty::ProjectionUncertainty(const CameraEstimate& estimate,
                                              const std::vector<Eigen::Vector3d>& points_in_camera)

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/errors/errors.h"
+#include "base/statistics/median.h"
 #include "calib/uncertainty/projection_jacobian.h"
 #include "calib/validation/cross_validation.h"
 
@@ -119,12 +120,6 @@ BundleResult LookForBend(const BundleProblem& problem, const BundleOptions& opti
     if (unbent.photos[i].rejected.empty()) unbent.photos[i] = bent->photos[i];
   }
   return unbent;
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
 }
 
 std::string Listed(const BundleResult& result, const std::vector<size_t>& photos) {

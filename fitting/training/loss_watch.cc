@@ -7,17 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "base/statistics/median.h"
+
 namespace glint {
 namespace {
 
 constexpr double kLeastLoss = 1e-12;
 constexpr double kNormalPerMad = 1.4826;  // a normal distribution's standard deviation by its MAD
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Column `name` of a CSV file's lines; empty when there is none.
 std::vector<double> ReadColumn(const std::filesystem::path& csv, const std::string& name) {

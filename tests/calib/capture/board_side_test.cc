@@ -7,7 +7,7 @@
 
 #include "calib/capture/board_side.h"
 #include "pipeline/contract/calibration.h"
-#include "tests/support/process.h"
+#include "tests/calib/testing/synthetic_capture.h"
 
 namespace glint {
 namespace {
@@ -16,26 +16,15 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string Program(const std::string& name) { return std::string(GLINT_BIN_DIR) + "/" + name; }
-
-class BoardSide : public ::testing::Test {
+class BoardSide : public testing::SyntheticCapture {
  protected:
   static void SetUpTestSuite() {
-    good_ = new test::TemporaryFolder;
-    test::WriteAll(good_->path() / "board.json",
-                   R"({"glint_board": 1, "kind": "checkerboard", "squares": [13, 17],)"
-                   R"( "square_mm": 15.0})");
-    const test::Outcome made =
-        test::RunProgram({Program("glint-synth"), "capture", Good().string(), "--board",
-                          (good_->path() / "board.json").string(), "--megapixels", "2", "--photos",
-                          "5", "--resolution", "64", "--family", "leather", "--seed", "3"});
-    ASSERT_EQ(made.code, 0) << made.err;
-  }
-  static void TearDownTestSuite() { delete good_; }
-  static fs::path Good() { return good_->path() / "good"; }
-
-  BoardSide() : capture_(folder_.path() / "capture") {
-    fs::copy(Good(), capture_, fs::copy_options::recursive);
+    const test::TemporaryFolder folder;
+    const fs::path board = folder.path() / "board.json";
+    test::WriteAll(board, R"({"glint_board": 1, "kind": "checkerboard", "squares": [13, 17],)"
+                          R"( "square_mm": 15.0})");
+    Make({"--board", board.string(), "--megapixels", "2", "--photos", "5", "--resolution", "64",
+          "--family", "leather", "--seed", "3"});
   }
 
   // As if the camera had been held the other way up, on the other side: the stored picture is the
@@ -55,23 +44,19 @@ class BoardSide : public ::testing::Test {
     const Calibration found = ReadCalibration(capture / "glint/calib/manifest.json");
     return Inverse(found.photos[photo].camera_from_sample).translation;
   }
-
-  static test::TemporaryFolder* good_;
-  test::TemporaryFolder folder_;
-  fs::path capture_;
 };
 
-test::TemporaryFolder* BoardSide::good_ = nullptr;
-
 TEST_F(BoardSide, TheSamplesTextureTellsIt) {
-  const test::Outcome as_it_is = test::RunProgram({Program("glint-calib"), capture_.string()});
+  const test::Outcome as_it_is =
+      test::RunProgram({testing::Program("glint-calib"), capture_.string()});
   ASSERT_EQ(as_it_is.code, 0) << as_it_is.err;
   EXPECT_THAT(as_it_is.err, Not(HasSubstr("upside down")));
   std::vector<Eigen::Vector3d> cameras;
   for (size_t i = 0; i < 5; ++i) cameras.push_back(Camera(capture_, i));
   FromTheOtherSide(1);
   FromTheOtherSide(3);
-  const test::Outcome turned = test::RunProgram({Program("glint-calib"), capture_.string()});
+  const test::Outcome turned =
+      test::RunProgram({testing::Program("glint-calib"), capture_.string()});
   ASSERT_EQ(turned.code, 0) << turned.err;
   EXPECT_THAT(turned.err, HasSubstr("photos/photo_001.jpg, photos/photo_003.jpg: taken from the "
                                     "other side of the checkerboard"));

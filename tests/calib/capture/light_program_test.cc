@@ -11,39 +11,26 @@
 
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/manifest.h"
-#include "tests/support/process.h"
+#include "tests/calib/testing/synthetic_capture.h"
 
 namespace glint {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string Program(const std::string& name) { return std::string(GLINT_BIN_DIR) + "/" + name; }
-
-class BoardLight : public ::testing::Test {
+class BoardLight : public testing::SyntheticCapture {
  protected:
   static void SetUpTestSuite() {
-    good_ = new test::TemporaryFolder;
-    const test::Outcome made = test::RunProgram(
-        {Program("glint-synth"), "capture", Good().string(), "--megapixels", "2", "--photos", "6",
-         "--resolution", "128", "--family", "leather", "--seed", "3"});
-    ASSERT_EQ(made.code, 0) << made.err;
-    std::string toml = test::ReadAll(Good() / "capture.toml");
+    Make({"--megapixels", "2", "--photos", "6", "--resolution", "128", "--family", "leather",
+          "--seed", "3"});
+    std::string toml = test::ReadAll(Shared() / "capture.toml");
     const size_t at = toml.find("encoding");
     ASSERT_NE(at, std::string::npos);
     toml.replace(at, toml.find('\n', at) - at, "encoding = \"auto\"");
-    test::WriteAll(Good() / "capture.toml", toml);
-    truth_ = ReadCalibration(Good() / "truth/calib/manifest.json");
+    test::WriteAll(Shared() / "capture.toml", toml);
+    truth_ = ReadCalibration(Shared() / "truth/calib/manifest.json");
   }
-  static void TearDownTestSuite() { delete good_; }
-  static fs::path Good() { return good_->path() / "good"; }
-
-  BoardLight() : capture_(folder_.path() / "capture") {
-    fs::copy(Good(), capture_, fs::copy_options::recursive);
-  }
-
   // The picture changed, its EXIF kept.
   void Change(int photo, const std::function<cv::Mat(const cv::Mat&)>& change) const {
     const std::string file = (capture_ / truth_.photos[photo].photo).string();
@@ -61,7 +48,7 @@ class BoardLight : public ::testing::Test {
   }
 
   test::Outcome Calibrate(const std::string& option = "") const {
-    std::vector<std::string> command = {Program("glint-calib"), capture_.string()};
+    std::vector<std::string> command = {testing::Program("glint-calib"), capture_.string()};
     if (!option.empty()) command.push_back(option);
     test::Outcome outcome = test::RunProgram(command);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -80,13 +67,9 @@ class BoardLight : public ::testing::Test {
     }
   }
 
-  static test::TemporaryFolder* good_;
   static Calibration truth_;
-  test::TemporaryFolder folder_;
-  fs::path capture_;
 };
 
-test::TemporaryFolder* BoardLight::good_ = nullptr;
 Calibration BoardLight::truth_;
 
 cv::Mat Turned(const cv::Mat& picture, cv::RotateFlags turn) {
@@ -159,7 +142,8 @@ TEST_F(BoardLight, APhonesToneCurveIsFoundAndUsed) {
   EXPECT_THAT(outcome.err, HasSubstr(words));
   EXPECT_THAT(Calibrate("--check").out, HasSubstr(words));
   EXPECT_EQ(Result().data["tone_curve"], "tone_curve.json");
-  const test::Outcome rectified = test::RunProgram({Program("glint-rectify"), capture_.string()});
+  const test::Outcome rectified =
+      test::RunProgram({testing::Program("glint-rectify"), capture_.string()});
   EXPECT_EQ(rectified.code, 0) << rectified.err;
 }
 

@@ -9,7 +9,7 @@
 #include "calib/registration/sample_place.h"
 #include "pipeline/contract/calibration.h"
 #include "pipeline/contract/manifest.h"
-#include "tests/support/process.h"
+#include "tests/calib/testing/synthetic_capture.h"
 
 namespace glint {
 namespace {
@@ -19,34 +19,23 @@ using ::testing::HasSubstr;
 
 constexpr double kSide_mm = 100;
 
-std::string Program(const std::string& name) { return std::string(GLINT_BIN_DIR) + "/" + name; }
-
-class SampleHeight : public ::testing::Test {
+class SampleHeight : public testing::SyntheticCapture {
  protected:
   static void SetUpTestSuite() {
-    flat_ = new test::TemporaryFolder;
-    const test::Outcome made =
-        test::RunProgram({Program("glint-synth"), "capture", Flat().string(), "--megapixels", "2",
-                          "--photos", "9", "--texels", "512", "--family", "wood", "--seed", "5"});
-    ASSERT_EQ(made.code, 0) << made.err;
-  }
-  static void TearDownTestSuite() { delete flat_; }
-  static fs::path Flat() { return flat_->path() / "flat"; }
-
-  SampleHeight() : capture_(folder_.path() / "capture") {
-    fs::copy(Flat(), capture_, fs::copy_options::recursive);
+    Make({"--megapixels", "2", "--photos", "9", "--texels", "512", "--family", "wood", "--seed",
+          "5"});
   }
 
   // Every photograph as if the sample lay in that plane; `plain`: it is one colour, and fills the
   // board's window of 104 mm.
   void Lay(const PlaneValues& plane, bool plain = false) const {
-    const Calibration truth = ReadCalibration(Flat() / "truth/calib/manifest.json");
+    const Calibration truth = ReadCalibration(Shared() / "truth/calib/manifest.json");
     const Rigid3 board_from_sample = AssumedFromSample(plane);
     for (const CalibratedPhoto& photo : truth.photos) {
       const Camera& camera = truth.cameras[static_cast<size_t>(photo.camera)];
       const Rigid3 camera_from_sample = photo.camera_from_sample * board_from_sample;
       const Rigid3 sample_from_camera = Inverse(camera_from_sample);
-      const cv::Mat before = cv::imread((Flat() / photo.photo).string());
+      const cv::Mat before = cv::imread((Shared() / photo.photo).string());
       cv::Mat columns(before.size(), CV_32F), rows(before.size(), CV_32F), found;
       cv::Mat inside = cv::Mat::zeros(before.size(), CV_8U);
       for (int y = 0; y < before.rows; ++y) {
@@ -79,7 +68,7 @@ class SampleHeight : public ::testing::Test {
       toml.insert(toml.find("size_mm"), "height_mm = " + height + "\n");
       test::WriteAll(capture_ / "capture.toml", toml);
     }
-    return test::RunProgram({Program("glint-calib"), capture_.string()});
+    return test::RunProgram({testing::Program("glint-calib"), capture_.string()});
   }
 
   Json Plane() const {
@@ -97,13 +86,7 @@ class SampleHeight : public ::testing::Test {
                 3 * found["slope_sd"][i].get<double>());
     }
   }
-
-  static test::TemporaryFolder* flat_;
-  test::TemporaryFolder folder_;
-  fs::path capture_;
 };
-
-test::TemporaryFolder* SampleHeight::flat_ = nullptr;
 
 TEST_F(SampleHeight, FlatSamplesLieExactlyInTheBoardsPlane) {
   const test::Outcome outcome = Calibrate();
@@ -138,7 +121,7 @@ TEST_F(SampleHeight, CamerasAreThoseOfTheSamplesOwnPlane) {
   const PlaneValues plane{8, 0, 0};
   Lay(plane);
   ASSERT_EQ(Calibrate().code, 0);
-  const Calibration truth = ReadCalibration(Flat() / "truth/calib/manifest.json");
+  const Calibration truth = ReadCalibration(Shared() / "truth/calib/manifest.json");
   const Calibration found = ReadCalibration(capture_ / "glint/calib/manifest.json");
   for (size_t i = 0; i < truth.photos.size(); ++i) {
     const double right_mm = Inverse(truth.photos[i].camera_from_sample).translation.z() - 8;
