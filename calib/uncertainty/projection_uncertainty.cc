@@ -15,6 +15,7 @@ ProjectionUncertainty::ProjectionUncertainty(const CameraEstimate& estimate,
                                              const std::vector<Eigen::Vector3d>& points_in_camera)
     : estimate_(estimate), motion_(ImpliedMotion(estimate.camera, points_in_camera)) {
   std::vector<double> depths;
+  depths.reserve(points_in_camera.size());
   for (const Eigen::Vector3d& point : points_in_camera) depths.push_back(point.z());
   median_depth_mm_ = Median(std::move(depths));
 }

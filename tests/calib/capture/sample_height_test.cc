@@ -14,7 +14,6 @@
 namespace glint {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 constexpr double kSide_mm = 100;
