@@ -52,7 +52,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOpti
     throw UserError(capture.file, "calib.check", *check ? "true" : "false",
                     "take it out: request a check when you want one, with glint-calib --check");
   }
-  const PoseSource source = PoseSourceOf(*options);
+  const PoseSource source = PoseSourceOf(capture, *options);
   CheckTogether(source, *options);
   if (source == PoseSource::kBoard && !capture.has_board) {
     throw UserError(capture.file, "board", "no such table",
@@ -64,7 +64,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOpti
                     "give files = [\"photos/*.jpg\"] in [photos]");
   }
   if (asked) {
-    if (!capture.has_board) {
+    if (!capture.has_board && !capture.fixed_camera()) {
       throw UserError(capture.file, "board", "no such table",
                       "a check looks for the board; run without --check");
     }

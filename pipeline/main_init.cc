@@ -27,9 +27,17 @@ void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
                "one photograph from straight above, without a board; with --width-mm or "
                "--distance-mm");
   options->AddRange("width-mm", &o->width_mm, 0, 1e5,
-                    "with --single: width of the area that the picture shows");
+                    "with --single or --lights: width of the area that the picture shows");
   options->AddRange("distance-mm", &o->distance_mm, 0, 1e5,
                     "with --single: distance from the lens to the sample");
+  options->Add(
+      "lights", &o->lights,
+      "camera fixed, light moved (RTI): the file with the lights' directions or positions, "
+      ".lp, .relight or .dome, inside of DIR; with --width-mm or --sample-mm");
+  options->Add(
+      "balls-px", &o->balls_px,
+      "the same without such a file: X,Y of three points on the rim of a reflecting ball in "
+      "the photographs (of two balls: six points)");
   options->Add("light-offset-mm", &o->light_offset_mm,
                "X,Y,Z of the flash in the camera frame: x right, y down, z forward");
 }
@@ -51,6 +59,7 @@ int main(int argc, char** argv) {
        "options do.\nExamples:\n  glint init wood --squares 12,12 --square-mm "
        "15 --sample-mm 90,90\n"
        "  glint init wood --single --width-mm 120\n"
+       "  glint init icon --lights icon/dirs.lp --width-mm 180\n"
        "  glint init wood --list",
        false},
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {

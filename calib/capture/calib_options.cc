@@ -35,6 +35,16 @@ std::string PosesInOneLine(const Capture& capture) {
       fmt::join(poses.origin_px, " "), fmt::join(poses.x_axis_px, " "));
 }
 
+// The file of lights is an input of its own.
+std::string FixedCameraInOneLine(const Capture& capture) {
+  const LightsTable& lights = capture.lights;
+  return fmt::format(
+      "picture {} mm, points [{}] {} mm, lights in {} at {} mm, camera at {} mm, balls [{}]",
+      capture.poses.picture_width_mm, fmt::join(capture.poses.points_px, " "),
+      capture.poses.points_mm, lights.unit.empty() ? "directions" : lights.unit, lights.distance_mm,
+      lights.camera_mm, fmt::join(lights.balls_px, " "));
+}
+
 }  // namespace
 
 namespace {
@@ -122,6 +132,10 @@ CalibTask ResolveTask(const Capture& capture, const CalibOptions& options) {
   const bool colmap = options.poses.starts_with("colmap");
   task.poses = !colmap ? "board" : options.poses == "colmap" ? "colmap" : "model";
   if (colmap) task.poses_frame = PosesInOneLine(capture);
+  if (capture.fixed_camera()) {
+    task.poses = "fixed camera";
+    task.poses_frame = FixedCameraInOneLine(capture);
+  }
   task.board_centre_mm = {capture.board.board_centre_in_sample_mm.x(),
                           capture.board.board_centre_in_sample_mm.y()};
   task.encoding = capture.encoding;

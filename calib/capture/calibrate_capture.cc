@@ -16,6 +16,7 @@
 #include "calib/capture/board_side.h"
 #include "calib/capture/capture_light.h"
 #include "calib/capture/colmap_poses.h"
+#include "calib/capture/fixed_camera.h"
 #include "calib/capture/guide_capture.h"
 #include "calib/capture/phone_library.h"
 #include "calib/capture/place_sample.h"
@@ -264,11 +265,12 @@ std::vector<std::filesystem::path> CalibInputs(const Capture& capture,
   photos.insert(photos.end(), capture.board_photos.begin(), capture.board_photos.end());
   std::vector<std::filesystem::path> inputs = capture.FilesBehind(photos);
   if (!capture.board_file.empty()) inputs.push_back(capture.folder / capture.board_file);
+  if (!capture.lights.file.empty()) inputs.push_back(capture.folder / capture.lights.file);
   if (!options.fix_intrinsics.empty()) inputs.push_back(options.fix_intrinsics);
   if (!options.library.empty()) {
     for (const auto& file : LibraryFiles(options.library)) inputs.push_back(file);
   }
-  if (PoseSourceOf(options) == PoseSource::kColmapModel) {
+  if (PoseSourceOf(capture, options) == PoseSource::kColmapModel) {
     for (const auto& file : ColmapModelFiles(PosesFolder(capture, options))) inputs.push_back(file);
   }
   return inputs;
@@ -344,8 +346,10 @@ void SolveOnePhotograph(const Capture& capture, const CalibOptions& options, int
 CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& options,
                               const CommonOptions& common, Stage* stage) {
   CalibSummary summary;
-  const PoseSource source = PoseSourceOf(options);
-  if (source == PoseSource::kBoard) {
+  const PoseSource source = PoseSourceOf(capture, options);
+  if (source == PoseSource::kFixedCamera) {
+    CalibrateFixedCamera(capture, options, common.threads, &summary);
+  } else if (source == PoseSource::kBoard) {
     summary = DetectCapture(capture, options, common.threads);
     const bool given = !options.fix_intrinsics.empty() || !options.library.empty();
     if (summary.photos.size() == 1 && !given) {

@@ -12,6 +12,7 @@
 #include "calib/guidance/verdict.h"
 #include "calib/light/light.h"
 #include "calib/light/power.h"
+#include "calib/moving_light/lamp_strengths.h"
 #include "calib/registration/register_sample.h"
 #include "calib/triage/triage.h"
 #include "pipeline/contract/calibration.h"
@@ -43,6 +44,7 @@ struct CalibSummary {
   PowerEstimate power;                           // otherwise; photo_power as calibration.photos
   std::string power_source;      // "capture.toml", "board", "board, light at the lens" or "guess"
   SampleRegistration placement;  // of the sample above or below the board; see place_sample.h
+  LampStrengths lamps;           // of a fixed camera; photos as calibration.photos
   Verdict guidance;
 
   bool from_board() const { return poses.is_null(); }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/capture/capture_light.h"
@@ -85,6 +86,33 @@ std::string BoardText(const LightEstimate& light) {
   return text;
 }
 
+Json LampMetrics(const CalibSummary& summary) {
+  Json json = {{"point_sd", summary.lamps.point_sd},
+               {"colour_sd", summary.lamps.colour_sd},
+               {"photos", Json::array()}};
+  for (size_t i = 0; i < summary.lamps.lamps.size(); ++i) {
+    const LampStrength& lamp = summary.lamps.lamps[i];
+    json["photos"].push_back({{"photo", summary.calibration.photos[i].photo},
+                              {"exposure", lamp.exposure},
+                              {"colour", {lamp.colour.x(), lamp.colour.y(), lamp.colour.z()}},
+                              {"used_share", lamp.used_share}});
+  }
+  return json;
+}
+
+std::string LampText(const CalibSummary& summary) {
+  if (summary.lamps.lamps.empty()) return "light: exposures by EXIF, or all alike\n";
+  double least = 1e300, most = 0;
+  for (const LampStrength& lamp : summary.lamps.lamps) {
+    least = std::min(least, lamp.exposure);
+    most = std::max(most, lamp.exposure);
+  }
+  return fmt::format(
+      "light: strengths from {:.2f} to {:.2f} of the mean, colours differ by {:.1f} %, as the "
+      "sample's matte parts tell them\n",
+      least, most, 100 * summary.lamps.colour_sd);
+}
+
 }  // namespace
 
 Json LightMetrics(const CalibSummary& summary) {
@@ -97,6 +125,11 @@ Json LightMetrics(const CalibSummary& summary) {
     json["board"] = BoardLight(summary.light);
     return json;
   }
+  if (!summary.lamps.lamps.empty()) {
+    json["lamps"] = LampMetrics(summary);
+    return json;
+  }
+  if (summary.calibration.fixed_camera) return json;
   if (!summary.light.problem.empty()) json["problem"] = summary.light.problem;
   const Eigen::Vector3d& by_paper = summary.power.light_rgb;
   json["by_board"] =
@@ -111,7 +144,9 @@ Json LightMetrics(const CalibSummary& summary) {
 
 std::string LightText(const CalibSummary& summary) {
   std::string text;
-  if (summary.light.known) {
+  if (summary.calibration.fixed_camera) {
+    text = LampText(summary);
+  } else if (summary.light.known) {
     text = BoardText(summary.light);
   } else {
     const Eigen::Vector3d& power = summary.calibration.light_rgb;

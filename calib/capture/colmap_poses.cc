@@ -296,7 +296,7 @@ void PosesFromColmap(const Capture& capture, const CalibOptions& options,
                      const CommonOptions& common, Stage* stage, CalibSummary* summary) {
   ColmapRun run;
   fs::path source = capture.work() / "colmap-run" / "model";
-  if (PoseSourceOf(options) == PoseSource::kColmapProgram) {
+  if (PoseSourceOf(capture, options) == PoseSource::kColmapProgram) {
     run = RunOnCapture(capture, options, common, *summary);
   } else {
     source = PosesFolder(capture, options);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/errors/errors.h"
+#include "calib/capture/fixed_camera.h"
 
 namespace glint {
 namespace {
@@ -49,6 +50,7 @@ GuidanceInput GuidanceInputOf(const Capture& capture, const CalibSummary& summar
   input.sample_size_mm = capture.sample_size_mm;
   input.resolution_px = capture.resolution_px;
   input.focal_assumed = focal_assumed;
+  input.fixed_camera = summary.calibration.fixed_camera;
   input.over_board = ReachOverBoard(capture);
   input.board_findings = summary.board_findings;
   input.light_findings = summary.light_findings;
@@ -78,6 +80,11 @@ CalibSummary CheckCapture(const Capture& capture, const CalibOptions& given,
                           const CommonOptions& common) {
   CalibOptions options = given;
   options.quick_px = kQuick_px;
+  if (capture.fixed_camera()) {
+    CalibSummary fixed;
+    CalibrateFixedCamera(capture, given, common.threads, &fixed);
+    return fixed;
+  }
   CalibSummary summary = DetectCapture(capture, options, common.threads);
   try {
     SolveCapture(capture, options, {}, common.threads, &summary);

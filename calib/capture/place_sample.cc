@@ -94,7 +94,7 @@ TopView TopViewOf(const CalibSummary& summary, const CalibratedPhoto& photo, con
 
 void FillPriors(const Capture& capture, const CalibOptions& options, RegistrationProblem* problem) {
   problem->homography_sd_mm = kPlaceSpread * Longest_mm(capture);
-  const bool board = PoseSourceOf(options) == PoseSource::kBoard;
+  const bool board = PoseSourceOf(capture, options) == PoseSource::kBoard;
   problem->height_sd_mm = board ? kHeightSpread_mm : kPlaneThroughPoints * Longest_mm(capture);
   if (!capture.sample_height_mm) return;
   problem->height_mm = *capture.sample_height_mm;
@@ -158,7 +158,7 @@ Json PlacementMetrics(const CalibSummary& summary) {
 
 std::string PlacementText(const CalibSummary& summary) {
   const SampleRegistration& placement = summary.placement;
-  if (summary.calibration.photos.size() < 2) return "";
+  if (summary.calibration.photos.size() < 2 || summary.calibration.fixed_camera) return "";
   const std::string plane = summary.from_board() ? "the board" : "the plane of the model's points";
   if (!placement.told) {
     return fmt::format(

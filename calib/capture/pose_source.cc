@@ -17,7 +17,8 @@ constexpr char kPrefix[] = "colmap:";
 
 }  // namespace
 
-PoseSource PoseSourceOf(const CalibOptions& options) {
+PoseSource PoseSourceOf(const Capture& capture, const CalibOptions& options) {
+  if (capture.fixed_camera()) return PoseSource::kFixedCamera;
   if (options.poses == "board") return PoseSource::kBoard;
   if (options.poses == "above") return PoseSource::kAbove;
   if (options.poses == "colmap") return PoseSource::kColmapProgram;
@@ -37,7 +38,8 @@ fs::path PosesFolder(const Capture& capture, const CalibOptions& options) {
 
 void CheckPoses(const Capture& capture, const CalibOptions& options) {
   const PosesTable& poses = capture.poses;
-  if (PoseSourceOf(options) == PoseSource::kAbove) {
+  if (capture.fixed_camera()) return;
+  if (PoseSourceOf(capture, options) == PoseSource::kAbove) {
     if (poses.picture_width_mm > 0 || poses.height_mm > 0) return;
     throw UserError(capture.file, "poses", "no length",
                     "a photograph without a board has no scale: give picture_width_mm (how "
@@ -52,7 +54,7 @@ void CheckPoses(const Capture& capture, const CalibOptions& options) {
         "or height_mm in [poses] (docs/capture.md), or describe a [board] that some "
         "photographs show");
   }
-  if (PoseSourceOf(options) == PoseSource::kColmapProgram) FindColmap();
+  if (PoseSourceOf(capture, options) == PoseSource::kColmapProgram) FindColmap();
 }
 
 std::vector<int> MatchByName(const Capture& capture, const fs::path& source,

@@ -12,9 +12,10 @@
 namespace glint {
 
 // --poses: "board", "colmap" (the program is run), "colmap:DIR" (a model is read) or "above" (one
-// photograph from straight above). Throws UserError for another text.
-enum class PoseSource { kBoard, kColmapProgram, kColmapModel, kAbove };
-PoseSource PoseSourceOf(const CalibOptions& options);
+// photograph from straight above). The capture of a fixed camera has no other source than that it
+// stood still. Throws UserError for another text.
+enum class PoseSource { kBoard, kColmapProgram, kColmapModel, kAbove, kFixedCamera };
+PoseSource PoseSourceOf(const Capture& capture, const CalibOptions& options);
 // The folder after "colmap:", from the working folder or else from the capture's.
 std::filesystem::path PosesFolder(const Capture& capture, const CalibOptions& options);
 

@@ -123,6 +123,12 @@ Json ResidualsOf(const CalibSummary& summary) {
 // What COLMAP's model gave; "" where the board gave the poses.
 std::string PosesText(const Json& poses) {
   if (poses.is_null()) return "";
+  if (poses["source"] == "fixed camera") {
+    return fmt::format("camera fixed {:.4g} mm above the sample{}, the picture {:.4g} mm across\n",
+                       poses["camera_mm"].get<double>(),
+                       poses["camera_distance_known"].get<bool>() ? "" : " (assumed)",
+                       poses["picture_width_mm"].get<double>());
+  }
   if (poses["source"] == "above") {
     return fmt::format("pose as stated: from {:.4g} mm straight above, {:.4g} mm across\n",
                        poses["height_mm"].get<double>(), poses["picture_width_mm"].get<double>());

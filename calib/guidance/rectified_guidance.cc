@@ -13,6 +13,7 @@ Verdict JudgeRectifiedSet(const RectifiedSet& set) {
     photo.light_in_sample_mm = Eigen::Vector3d(view.view.light_in_sample_mm.data());
     input.photos.push_back(photo);
   }
+  input.fixed_camera = set.fixed_camera;
   return Judge(input);
 }
 

@@ -7,6 +7,7 @@
 
 #include "calib/guidance/advice.h"
 #include "calib/guidance/expected_error.h"
+#include "calib/guidance/light_advice.h"
 
 namespace glint {
 namespace {
@@ -79,6 +80,7 @@ std::string Verdict::Word() const {
 }
 
 std::string Verdict::Summary() const {
+  if (fixed_camera) return LightSummary(*this);
   double low = 180, high = 0;
   for (const ViewFacts& view : views) {
     low = std::min(low, view.camera.tilt_deg);
@@ -106,14 +108,18 @@ Verdict Judge(const GuidanceInput& input, const GuidanceLimits& limits) {
   }
   verdict.gap = LargestGap(input.photos, limits.tilted_deg);
   verdict.coverage = ComputeCoverage(grid, input.photos);
+  verdict.fixed_camera = input.fixed_camera;
+  if (input.fixed_camera) DescribeLights(input, &verdict);
   verdict.shown_share = verdict.coverage.ShownShare();
   verdict.highlight_share = verdict.coverage.HighlightShare(limits.highlight_deg);
-  verdict.suggestions = SuggestForHighlights(verdict.coverage, input.photos, limits.highlight_deg);
+  if (!input.fixed_camera)
+    verdict.suggestions =
+        SuggestForHighlights(verdict.coverage, input.photos, limits.highlight_deg);
   verdict.highlight_share_then = verdict.highlight_share;
   for (const Suggestion& one : verdict.suggestions) {
     verdict.highlight_share_then += one.gain_share;
   }
-  verdict.advice = AdviceFor(input, verdict);
+  verdict.advice = input.fixed_camera ? LightAdviceFor(input, verdict) : AdviceFor(input, verdict);
   return verdict;
 }
 
@@ -139,6 +145,11 @@ Json ToJson(const Verdict& verdict) {
   json["top_views"] = verdict.top_views;
   json["tilted_views"] = verdict.tilted_views;
   json["largest_gap_deg"] = verdict.gap.width_deg;
+  if (verdict.fixed_camera) {
+    json["lights"] = {{"largest_gap_deg", verdict.light_gap.width_deg},
+                      {"lowest_deg", verdict.lowest_light_deg},
+                      {"highest_deg", verdict.highest_light_deg}};
+  }
   json["highlight_deg"] = verdict.limits.highlight_deg;
   json["highlight_share"] = verdict.highlight_share;
   json["highlight_share_with_suggestions"] = verdict.highlight_share_then;

@@ -27,6 +27,8 @@ struct GuidanceInput {
   double focal_sigma = 0;
   // The photographs did not determine the focal length, and one was assumed.
   bool focal_assumed = false;
+  // The camera stood still and the light was moved: the advice is light_advice.h's.
+  bool fixed_camera = false;
   // How far the sample as described reaches over the printed board, on which sides; empty: not.
   std::string over_board;
   // What can be wrong with the board's place; a sentence each.
@@ -48,6 +50,11 @@ struct GuidanceLimits {
   double clipped_share = 0.2;  // Gao et al. 2019, fig. 14: 20 % are harmless
   double left_out_share = 0.25;
   double focal_sigma = 0.01;
+  // Of a fixed camera.
+  int few_lights = 8, enough_lights = 24;
+  double light_gap_deg = 90;  // between the sides from which it was lit
+  double high_deg = 60;       // the elevation of some lights, which show gloss
+  double low_deg = 35;        // and of others, which show relief
 };
 
 enum class Importance { kNeeded, kUseful, kHint };
@@ -74,6 +81,9 @@ struct Verdict {
   double sharpest_texel_px = 0;  // 0: unknown
   AzimuthGap gap;                // between tilted photographs
   int top_views = 0, tilted_views = 0;
+  bool fixed_camera = false;  // the light was moved; then
+  AzimuthGap light_gap;       // between lights that do not stand above the sample, and
+  double lowest_light_deg = 90, highest_light_deg = 0;  // elevation
   std::vector<Suggestion> suggestions;  // photographs that bring highlights where there are none
   double highlight_share_then = 0;      // with these
   std::vector<Advice> advice;           // most important first

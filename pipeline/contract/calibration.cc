@@ -114,6 +114,7 @@ Json ToJson(const Calibration& calibration) {
   data["light_rgb"] = List(calibration.light_rgb);
   data["light_power_known"] = calibration.light_power_known;
   if (!calibration.tone_curve.empty()) data["tone_curve"] = calibration.tone_curve;
+  if (calibration.fixed_camera) data["fixed_camera"] = true;
   if (calibration.light_sd_mm) data["light_sd_mm"] = *calibration.light_sd_mm;
   if (calibration.ambient_rgb) data["ambient_rgb"] = List(*calibration.ambient_rgb);
   data["board_from_sample"] = ToJson(calibration.board_from_sample);
@@ -160,12 +161,8 @@ Calibration ReadCalibration(const std::filesystem::path& manifest_file) {
   }
   const auto light = RequireNumbers(manifest_file, manifest.data, "data", "light_rgb", 3);
   calibration.light_rgb = Eigen::Map<const Eigen::Vector3d>(light.data());
-  const Json& known = RequireField(manifest_file, manifest.data, "data", "light_power_known");
-  if (!known.is_boolean()) {
-    throw UserError(manifest_file, "data.light_power_known", known.dump(),
-                    "true or false is expected");
-  }
-  calibration.light_power_known = known.get<bool>();
+  calibration.light_power_known =
+      RequireBool(manifest_file, manifest.data, "data", "light_power_known");
   if (manifest.data.contains("tone_curve")) {
     calibration.tone_curve = RequireString(manifest_file, manifest.data, "data", "tone_curve");
     const std::filesystem::path name = calibration.tone_curve;
@@ -174,6 +171,8 @@ Calibration ReadCalibration(const std::filesystem::path& manifest_file) {
                       "the name of a .json file beside the manifest is expected; run calib again");
     }
   }
+  calibration.fixed_camera = manifest.data.contains("fixed_camera") &&
+                             RequireBool(manifest_file, manifest.data, "data", "fixed_camera");
   calibration.light_sd_mm =
       PositiveNumberIfAny(manifest_file, manifest.data, "data", "light_sd_mm");
   if (manifest.data.contains("ambient_rgb")) {

@@ -36,6 +36,9 @@ struct Calibration {
   // paper contradicts [radiometry] encoding = "auto"; empty: as capture.toml says.
   std::string tone_curve;
   bool light_power_known = false;  // false: light_rgb is a first guess
+  // The camera stood still and the light was moved: each photograph has a light of its own, whose
+  // direction is given, and `exposure` and `white_balance_rgb` are its strength and colour.
+  bool fixed_camera = false;
   // Standard deviation of the flash's position, where it was estimated: its least certain axis.
   std::optional<double> light_sd_mm;
   // The sample's frame in the board's: the sample may lie higher or lower, and tilted. Poses are

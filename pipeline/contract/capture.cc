@@ -489,18 +489,94 @@ void ReadPoses(const fs::path& file, const toml::table& document, Capture* captu
 
 void RejectUnknownTables(const fs::path& file, const toml::table& document) {
   static const std::set<std::string, std::less<>> known = [] {
-    std::set<std::string, std::less<>> tables = {"sample", "photos",     "poses",
-                                                 "board",  "radiometry", "light"};
+    std::set<std::string, std::less<>> tables = {"sample",     "photos", "poses", "board",
+                                                 "radiometry", "light",  "lights"};
     for (const StageKind& stage : Stages()) tables.emplace(stage.name);
     return tables;
   }();
   for (const auto& [key, node] : document) {
-    if (known.count(std::string(key.str())) > 0) continue;
+    if (known.count(std::string(key.str())) > 0 || key.str() == "kind") continue;
     std::string list;
     for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
     throw UserError(file, TomlPlace{file, std::string(key.str())}.Field(node), "an unknown key",
-                    "use one of the tables: " + list);
+                    "use kind (in front of the first table) or one of the tables: " + list);
   }
+}
+
+// kind = "fixed camera", in front of the first table.
+void ReadKind(const fs::path& file, const toml::table& document, Capture* capture) {
+  const toml::node* node = document.get("kind");
+  if (node == nullptr) return;
+  const std::string kind = node->is_string() ? node->as_string()->get() : "";
+  if (kind == "fixed camera") {
+    capture->kind = CaptureKind::kFixedCamera;
+  } else if (kind != "moved camera") {
+    throw UserError(file, TomlPlace{file, "kind"}.Field(*node), DescribeToml(*node),
+                    "use \"moved camera\" (the flash is the camera's) or \"fixed camera\" (the "
+                    "light moves)");
+  }
+}
+
+// Three points on the rim of each ball: [[x, y], [x, y], [x, y]], or a list of two of these.
+std::vector<double> ReadBalls(TableReader* table) {
+  const std::string remedy =
+      "give three points [x, y] on the ball's rim in the upright photographs, or a list of two "
+      "such "
+      "triples";
+  const toml::node* node = table->Find("balls_px");
+  if (node == nullptr) return {};
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->empty()) table->Reject(*node, "balls_px", remedy);
+  std::vector<double> numbers;
+  const auto add = [&](const toml::node& points) {
+    const toml::array* triple = points.as_array();
+    if (triple == nullptr || triple->size() != 3) table->Reject(points, "balls_px", remedy);
+    for (const toml::node& point : *triple) {
+      const toml::array* pair = point.as_array();
+      if (pair == nullptr || pair->size() != 2) table->Reject(point, "balls_px", remedy);
+      for (const toml::node& element : *pair) {
+        if (!element.is_number()) table->Reject(element, "balls_px", remedy);
+        numbers.push_back(*element.value<double>());
+      }
+    }
+  };
+  const toml::array* first = (*array)[0].as_array();
+  const bool one = first != nullptr && !first->empty() && !(*first)[0].is_array();
+  if (one) {
+    add(*node);
+    return numbers;
+  }
+  if (array->size() > 2) table->Reject(*node, "balls_px", remedy);
+  for (const toml::node& ball : *array) add(ball);
+  return numbers;
+}
+
+void ReadLights(const fs::path& file, const toml::table& document, Capture* capture) {
+  TableReader table(file, document, "lights");
+  if (!capture->fixed_camera()) {
+    if (!table.present()) return;
+    throw UserError(file, "lights", "a table for a camera that stands still",
+                    "write kind = \"fixed camera\" in front of the first table, or take it out");
+  }
+  if (capture->has_board) {
+    throw UserError(file, "board", "a board beside kind = \"fixed camera\"",
+                    "take one of them out: a camera that stands still needs no board, the scale "
+                    "comes from [poses]");
+  }
+  LightsTable& lights = capture->lights;
+  lights.file = table.Text("file", "");
+  lights.unit = table.Text("unit", "", {"mm", "cm", "m"});
+  const std::string length = " of millimetres, greater than 0";
+  lights.distance_mm = table.Number("distance_mm", 0, 1e-3, 1e7, length);
+  lights.camera_mm = table.Number("camera_mm", 0, 1e-3, 1e7, length);
+  lights.balls_px = ReadBalls(&table);
+  table.RejectUnknown();
+  if (!lights.file.empty()) Match(capture->folder, lights.file, file, "lights.file");
+  if (lights.file.empty() != lights.balls_px.empty()) return;
+  throw UserError(file, "lights",
+                  lights.file.empty() ? "neither file nor balls_px" : "both file and balls_px",
+                  "give file = \"dirs.lp\", with the direction of each photograph's light, or "
+                  "balls_px, where reflecting balls lie in the photographs");
 }
 
 }  // namespace
@@ -540,6 +616,8 @@ Capture ReadCapture(const fs::path& folder) {
   CheckUnits(capture.file, capture);
   capture.tiles = document->contains("tile");
   ReadPoses(capture.file, *document, &capture);
+  ReadKind(capture.file, *document, &capture);
+  ReadLights(capture.file, *document, &capture);
   ReadRadiometry(capture.file, *document, &capture);
   if (photos.present() && capture.photos.empty()) {
     throw UserError(capture.file, "photos.files", "no photograph that matches",

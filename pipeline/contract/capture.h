@@ -27,6 +27,21 @@ struct PosesTable {
   std::vector<double> x_axis_px;  // x y of two points, from left to right along the sample
 };
 
+// [lights]: where the light stood in each photograph of a camera that stood still.
+struct LightsTable {
+  std::string file;  // relative to the folder: .lp, .relight or .dome (calib/moving_light)
+  // Of positions in an .lp file: "mm", "cm" or "m"; empty: it holds directions.
+  std::string unit;
+  double distance_mm = 0;  // of lights that are known by their direction; 0: not known
+  double camera_mm = 0;    // of the lens above the sample; 0: far
+  // x y of three points on the rim of each reflecting ball, in the upright photographs; in place of
+  // a file.
+  std::vector<double> balls_px;
+};
+
+// What moves from photograph to photograph.
+enum class CaptureKind { kMovedCamera, kFixedCamera };
+
 struct Capture {
   std::filesystem::path folder;  // as given
   std::filesystem::path file;    // folder / "capture.toml"
@@ -44,6 +59,9 @@ struct Capture {
 
   PosesTable poses;
 
+  CaptureKind kind = CaptureKind::kMovedCamera;  // kind = "moved camera" or "fixed camera"
+  LightsTable lights;                            // of a fixed camera
+
   std::array<double, 2> sample_size_mm{0, 0};  // [sample] size_mm = [width, height]
   // [sample] height_mm: of the sample's surface above the board's; nullopt: "auto", to be found.
   std::optional<double> sample_height_mm;
@@ -60,6 +78,7 @@ struct Capture {
 
   // Rectified by another program: nothing to calibrate or rectify.
   bool imported() const { return !has_board && photos.empty(); }
+  bool fixed_camera() const { return kind == CaptureKind::kFixedCamera; }
   std::filesystem::path work() const { return folder / "glint"; }
   bool encoding_is_file() const;
   // The encoding as programs resolve it: the folder stands before the name of a file.

@@ -129,6 +129,16 @@ int RequireCount(const std::filesystem::path& file, const Json& object,
                   "a whole number, 0 or more, is expected; run the stage again");
 }
 
+bool RequireBool(const std::filesystem::path& file, const Json& object,
+                 const std::string& object_name, const std::string& field) {
+  const Json& value = RequireField(file, object, object_name, field);
+  if (!value.is_boolean()) {
+    throw UserError(file, FieldName(object_name, field), Describe(value),
+                    "true or false is expected");
+  }
+  return value.get<bool>();
+}
+
 std::string RequireString(const std::filesystem::path& file, const Json& object,
                           const std::string& object_name, const std::string& field) {
   const Json& value = RequireField(file, object, object_name, field);

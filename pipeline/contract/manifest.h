@@ -62,6 +62,8 @@ std::optional<double> PositiveNumberIfAny(const std::filesystem::path& file, con
 // A whole number that an int holds, 0 or more.
 int RequireCount(const std::filesystem::path& file, const Json& object,
                  const std::string& object_name, const std::string& field);
+bool RequireBool(const std::filesystem::path& file, const Json& object,
+                 const std::string& object_name, const std::string& field);
 std::string RequireString(const std::filesystem::path& file, const Json& object,
                           const std::string& object_name, const std::string& field);
 // An array of exactly `count` finite numbers.

@@ -24,15 +24,6 @@ Vec3d RequireVec(const std::filesystem::path& file, const Json& object, const st
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-bool RequireBool(const std::filesystem::path& file, const Json& object, const std::string& name,
-                 const std::string& field) {
-  const Json& value = RequireField(file, object, name, field);
-  if (!value.is_boolean()) {
-    throw UserError(file, name + "." + field, value.dump(), "true or false is expected");
-  }
-  return value.get<bool>();
-}
-
 int RequireSide(const std::filesystem::path& file, const Json& data, const std::string& field) {
   const double value = RequireNumber(file, data, "data", field);
   if (value < 1 || value > kMaxSide_px || value != std::floor(value)) {
@@ -106,6 +97,7 @@ Json ToJson(const RectifiedSet& set) {
   data["height_mm"] = set.plane.height_mm;
   data["convention"] = ToString(set.convention);
   data["light_power_known"] = set.light_power_known;
+  if (set.fixed_camera) data["fixed_camera"] = true;
   if (set.light_sd_mm) data["light_sd_mm"] = *set.light_sd_mm;
   data["views"] = Json::array();
   for (const RectifiedView& view : set.views) {
@@ -147,6 +139,8 @@ RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file) {
   }
   set.plane.sampling = set.convention.sampling;
   set.light_power_known = RequireBool(manifest_file, data, "data", "light_power_known");
+  set.fixed_camera =
+      data.contains("fixed_camera") && RequireBool(manifest_file, data, "data", "fixed_camera");
   set.light_sd_mm = PositiveNumberIfAny(manifest_file, data, "data", "light_sd_mm");
   const Json& views = RequireField(manifest_file, data, "data", "views");
   if (!views.is_array() || views.empty()) {

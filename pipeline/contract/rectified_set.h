@@ -29,6 +29,8 @@ struct RectifiedSet {
   ReflectanceConvention convention;
   bool light_power_known =
       true;  // false: light_rgb is a first guess, common factor to be estimated
+  // The camera stood still and the light was moved, to directions that are given.
+  bool fixed_camera = false;
   // Standard deviation of the flash's position, where calibration estimated it.
   std::optional<double> light_sd_mm;
   std::vector<RectifiedView> views;

@@ -330,6 +330,88 @@ Surroundings FromAbove(const InitOptions& options) {
       {}};
 }
 
+// The lights' file, from the capture's folder.
+std::string LightsName(const InitOptions& options) {
+  std::error_code error;
+  fs::path file = options.lights;
+  if (!fs::exists(file)) file = options.folder / options.lights;
+  if (!fs::is_regular_file(file, error)) {
+    throw UserError("--lights: found no file " + options.lights.string() +
+                    "; give the list of the lights' directions, such as dirs.lp");
+  }
+  const fs::path inside =
+      fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(options.folder));
+  if (!inside.empty() && *inside.begin() != "..") return inside.generic_string();
+  throw UserError("--lights: found " + options.lights.string() + ", outside of " +
+                  options.folder.string() + "; put it into the capture's folder");
+}
+
+fs::path AnyPhoto(const InitOptions& options) {
+  const fs::path folder = options.folder / PhotoFolder(options.folder);
+  std::set<fs::path> photos;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.is_regular_file() && IsPhotoFileName(entry.path())) photos.insert(entry.path());
+  }
+  if (!photos.empty()) return *photos.begin();
+  throw UserError(folder, "", "no photographs", "put them there first; their size is needed");
+}
+
+std::string BallsText(const std::vector<double>& at) {
+  std::string text;
+  for (size_t i = 0; i + 5 < at.size(); i += 6) {
+    std::string ball;
+    for (size_t k = i; k < i + 6; k += 2) {
+      ball += (k > i ? ", " : "") + List({at[k], at[k + 1]});
+    }
+    text += (i > 0 ? ", " : "") + ("[" + ball + "]");
+  }
+  return at.size() > 6 ? "[" + text + "]" : text;
+}
+
+// Of what the photographs tell, where they are: EXIF knows no millimetres.
+constexpr double kAssumedWidth_mm = 100;
+
+// The whole picture, of a camera that stands still.
+Surroundings WithFixedCamera(const InitOptions& options, InitResult* result) {
+  if (!options.balls_px.empty() && options.balls_px.size() != 6 && options.balls_px.size() != 12) {
+    throw UserError(
+        "--balls-px: found " + std::to_string(options.balls_px.size()) +
+        " numbers; give x,y of three points on the ball's rim, or of six for two balls");
+  }
+  if (!options.lights.empty() && !options.balls_px.empty()) {
+    throw UserError("--lights: found it together with --balls-px; give one of them");
+  }
+  const auto [width_px, height_px] = PhotoSize(AnyPhoto(options));
+  result->size_assumed = options.width_mm == 0 && options.sample_mm.empty();
+  const double width_mm = options.width_mm > 0        ? options.width_mm
+                          : options.sample_mm.empty() ? kAssumedWidth_mm
+                                                      : options.sample_mm[0];
+  const double height_mm = std::floor(1e4 * width_mm * height_px / width_px) / 1e4;
+  std::string text = "[lights]                         # where the light was in each photograph\n";
+  text += options.lights.empty() ? "balls_px = " + BallsText(options.balls_px) +
+                                       "  # points on the rim of each reflecting ball\n"
+                                 : "file = " + TomlQuoted(LightsName(options)) + "\n";
+  text +=
+      "# distance_mm = 1000             # of the lights; if omitted, ten times the picture's "
+      "longer side\n";
+  text += "# camera_mm = 1000               # of the lens above the sample; likewise\n";
+  text += "# unit = \"mm\"                  # the file holds positions, not directions\n\n";
+  text += "[poses]\npicture_width_mm = " + NumberText(width_mm) +
+          "           # how much of the sample its width shows" +
+          (result->size_assumed ? ": ASSUMED, correct it" : "") + "\n";
+  text +=
+      "# photo = \"image00.jpg\"         # or the ends of a ruler in this photograph\n"
+      "# points_px = [[100, 200], [900, 210]]\n# points_mm = 50\n";
+  return {text, {width_mm, height_mm}, "the picture's middle", {width_mm, height_mm}};
+}
+
+// As many texels as pixels, up to a size that most machines can take.
+int TexelsOfPicture(const InitOptions& options) {
+  constexpr int kMost = 2048;
+  return std::min(PhotoSize(AnyPhoto(options)).first, kMost);
+}
+
 void CheckEncoding(const std::string& encoding) {
   constexpr std::array kNames = {"auto", "srgb", "gamma2.2", "linear"};
   if (std::find(kNames.begin(), kNames.end(), encoding) != kNames.end()) return;
@@ -377,8 +459,11 @@ std::string InitResult::BriefReport() const {
   if (photos == 0) {
     text += "put the photographs into " + (file.parent_path() / "photos").string() + "\n";
   }
-  text +=
-      has_board || single ? "check the measures in it" : "say in [poses] how large the sample is";
+  text += has_board || single || fixed_camera ? "check the measures in it"
+                                              : "say in [poses] how large the sample is";
+  if (size_assumed) {
+    text += "; the picture's width is taken to show 100 mm: correct size_mm and picture_width_mm";
+  }
   return text + ", then: glint run " + folder + "\n";
 }
 
@@ -393,20 +478,29 @@ std::string MaterialName(const fs::path& folder) {
 std::string CaptureText(const InitOptions& options, InitResult* result) {
   RequireCount(options.light_offset_mm, 3, "light-offset-mm", "X,Y,Z");
   CheckEncoding(options.encoding);
-  result->has_board = options.board != "none" && !options.single;
+  result->has_board = options.board != "none" && !options.single && !options.fixed_camera();
   result->single = options.single;
+  result->fixed_camera = options.fixed_camera();
+  if (options.single && options.fixed_camera()) {
+    throw UserError("--single: found it together with --lights or --balls-px; give one of them");
+  }
   std::string board_photos;
   if (result->has_board) {
     board_photos = Patterns(options.folder, "board", IsPhotoFileName, &result->board_photos);
   }
-  const Surroundings around = result->has_board ? WithBoard(options, board_photos)
-                              : options.single  ? FromAbove(options)
-                                                : WithoutBoard();
+  const Surroundings around = result->has_board        ? WithBoard(options, board_photos)
+                              : options.fixed_camera() ? WithFixedCamera(options, result)
+                              : options.single         ? FromAbove(options)
+                                                       : WithoutBoard();
   if (!options.sample_mm.empty()) CheckSampleSize(options.sample_mm);
   const std::vector<double>& size_mm =
       options.sample_mm.empty() ? around.sample_mm : options.sample_mm;
   for (size_t i = 0; i < around.most_mm.size(); ++i) {
     if (size_mm[i] <= around.most_mm[i]) continue;
+    if (options.fixed_camera()) {
+      throw UserError("--sample-mm: found " + List(size_mm) + ", while the picture shows " +
+                      List(around.most_mm) + "; give a smaller one, or --width-mm");
+    }
     throw UserError("--sample-mm: found " + List(size_mm) + ", which the board's window of " +
                     List(around.most_mm) +
                     " is too small to show whole; give only the part that lies in the window, or "
@@ -414,17 +508,26 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
                     "larger one (glint board --sample-mm)");
   }
   std::string text = "# A capture for Glint; docs/capture.md explains every key.\n\n";
+  if (options.fixed_camera()) {
+    text += "kind = \"fixed camera\"            # and the light moved; docs/rti.md\n\n";
+  }
   text += "[sample]                         # the part of the surface that becomes maps\n";
   text += "size_mm = " + List(size_mm) + "             # width, height\n";
   text += "# centre_mm = [0, 0]             # from " + around.centre_from + ", x right, y up\n";
-  text += "resolution_px = " + std::to_string(options.resolution_px) +
+  const int resolution_px =
+      options.fixed_camera() && options.resolution_px == InitOptions().resolution_px
+          ? TexelsOfPicture(options)
+          : options.resolution_px;
+  text += "resolution_px = " + std::to_string(resolution_px) +
           "             # width of the maps, or [width, height]\n\n";
   text += PhotoText(options, &result->photos);
   text += around.text + "\n";
   text += "[radiometry]\nencoding = \"" + options.encoding +
           "\"                # auto, srgb, gamma2.2, linear, a curve\n\n";
-  text += "[light]\noffset_mm = " + List(options.light_offset_mm) +
-          "           # the flash from the lens: x right, y down, z forward\n";
+  text += options.fixed_camera() ? "[light]\n"
+                                 : "[light]\noffset_mm = " + List(options.light_offset_mm) +
+                                       "           # the flash from the lens: x right, y down, z "
+                                       "forward\n";
   text += "# power = 30000                  # radiance times mm^2; if omitted, estimated\n";
   text += "# ambient = [0, 0, 0]\n\n";
   text += "# Options of the stages, as on their command lines (glint help fit):\n";

@@ -29,12 +29,18 @@ struct InitOptions {
   bool single = false;
   double width_mm = 0;     // how much of the sample's plane the picture's width shows, or …
   double distance_mm = 0;  // … the lens's height above it
+  // A camera that stands still and a light that moves: the file of its directions, or points on the
+  // rim of reflecting balls in the photographs (x, y of three; six for two balls).
+  std::filesystem::path lights;
+  std::vector<double> balls_px;
+  bool fixed_camera() const { return !lights.empty() || !balls_px.empty(); }
 };
 
 struct InitResult {
   std::filesystem::path file;
   size_t photos = 0, board_photos = 0;
-  bool has_board = true, single = false;
+  bool has_board = true, single = false, fixed_camera = false;
+  bool size_assumed = false;  // of a fixed camera's picture
   std::string BriefReport() const;
 };
 

@@ -102,6 +102,7 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
   set.plane = PlaneOf(task);
   set.convention = ReflectanceConvention::Photograph();
   set.light_power_known = calibration.light_power_known;
+  set.fixed_camera = calibration.fixed_camera;
   set.light_sd_mm = calibration.light_sd_mm;
 
   std::vector<fs::path> files;
