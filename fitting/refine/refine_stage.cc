@@ -8,6 +8,7 @@
 #include "base/errors/errors.h"
 #include "base/parallel/parallel.h"
 #include "fitting/refine/estimate_sample.h"
+#include "fitting/refine/held_out_exposures.h"
 #include "fitting/refine/light_power.h"
 #include "fitting/refine/refine_rows.h"
 #include "fitting/refine/residual_model.h"
@@ -198,11 +199,13 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStart& start,
   RefineOptions refine = options.refine;
   refine.kinds.metal_share = MetalShareOf(start.metals);
   if (set.light_power_known) return refine;
-  refine.flash_offset = options.flash_offset;
   refine.kinds.light_power_spread = options.light_power_spread;
   refine.exposure_spread = options.exposure_spread;
-  refine.light_spread = options.light_spread;
   refine.residual_sigma = options.residual_sigma;
+  // Directions are those that were measured, on a dome or a ball; lamps differ in strength.
+  if (set.fixed_camera) return refine;
+  refine.flash_offset = options.flash_offset;
+  refine.light_spread = options.light_spread;
   refine.flash_beam = options.flash_beam;
   refine.distance_power = options.distance_power;
   return refine;
@@ -211,6 +214,11 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStart& start,
 // A flash that was measured stands where it was found, to the accuracy that is stated.
 CorrectionOptions CorrectionFor(const RectifiedSet& set, const std::vector<RectifiedView>& views,
                                 CorrectionOptions options) {
+  // Nothing moved but the light, to where it is said to be: what is left to look for is the room's.
+  if (set.fixed_camera) {
+    if (options.when == "auto") options.when = "never";
+    options.view.light = options.view.registration = false;
+  }
   if (!set.light_sd_mm) return options;
   std::vector<View> said(views.size());
   std::transform(views.begin(), views.end(), said.begin(),
@@ -262,6 +270,30 @@ struct Sample {
     return EstimateFrom(options, threads, &source);
   }
 };
+
+// Of a fixed camera: each of its photographs has a light of its own, those that were not fitted
+// too.
+void AddHeldOut(const Sample& sample, const fs::path& maps_file, const Vec3d& light_scale_rgb,
+                int threads, Json* data) {
+  if (!sample.set.fixed_camera) return;
+  std::vector<RectifiedView> others;
+  for (const RectifiedView& view : sample.set.views) {
+    const bool fitted = std::any_of(sample.views.begin(), sample.views.end(),
+                                    [&](const auto& other) { return other.name == view.name; });
+    if (!fitted) others.push_back(view);
+  }
+  if (others.empty()) return;
+  SampleSource source(sample.set, others, light_scale_rgb, maps_file, {});
+  const std::vector<double> exposures = HeldOutExposures(&source, threads);
+  Json& entries = (*data)["corrections"];
+  if (entries.is_null()) entries = Json::array();
+  for (size_t i = 0; i < others.size(); ++i) {
+    ViewCorrection correction;
+    correction.exposure = exposures[i];
+    entries.push_back(JsonOf(others[i].name, correction));
+    entries.back()["held_out"] = true;
+  }
+}
 
 // Writes the part's rows of svbrdf.exr and confidence.exr, albedos as under a light of `power`.
 RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
@@ -493,6 +525,7 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
   result.metrics = Metrics(result.summary, sample.views);
   result.metrics["light_power"] = {{"factor", sample.power()}};
   AddCorrections(Corrections(result.correction, result.summary), sample.views, &result.data);
+  AddHeldOut(sample, stage->StagedOutput(kMapsFile), light_scale_rgb, threads, &result.data);
   DescribeCorrection(result.correction, sample.set, sample.views, start.light_scale_rgb, &result);
   stage->Commit(result.data, result.metrics);
   return result;

@@ -50,6 +50,9 @@ class Stage {
   // Path to write the output `name` to (may contain '/'); it is listed in the manifest.
   std::filesystem::path Output(const std::string& name);
 
+  // Where that output lies until Commit().
+  std::filesystem::path StagedOutput(const std::string& name) const { return staging() / name; }
+
   // Makes the new result the stage's result. Image outputs get width, height, channels.
   void Commit(const Json& data, const Json& metrics);
 
