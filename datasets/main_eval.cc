@@ -14,6 +14,7 @@
 #include "datasets/evaluation/looks.h"
 #include "datasets/evaluation/map_error.h"
 #include "datasets/evaluation/predicted_deviation.h"
+#include "datasets/evaluation/relight_verb.h"
 #include "datasets/evaluation/tiling_verb.h"
 #include "datasets/evaluation/view_error.h"
 #include "datasets/synth/material_source.h"
@@ -311,6 +312,7 @@ int main(int argc, char** argv) {
   verbs.push_back(HoldoutVerb());
   verbs.push_back(LightVerb());
   verbs.push_back(LimitsVerb());
+  verbs.push_back(RelightVerb());
   verbs.push_back(TilingVerb());
   for (const Verb& verb : ExperimentVerbs()) verbs.push_back(verb);
   return RunVerb(
