@@ -23,12 +23,14 @@ ProgramResult Check(const Capture& capture, const CalibOptions& options,
   const CalibSummary summary = CheckCapture(capture, options, common);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return {PlacementText(summary) + TextOf(summary.guidance) +
-              fmt::format("checked in {:.1f} s\n", seconds),
-          {{"capture", capture.folder.string()},
-           {"seconds", seconds},
-           {"sample_plane", PlacementMetrics(summary)},
-           {"guidance", ToJson(summary.guidance)}}};
+  Json json = {{"capture", capture.folder.string()},
+               {"seconds", seconds},
+               {"sample_plane", PlacementMetrics(summary)},
+               {"guidance", ToJson(summary.guidance)}};
+  if (summary.chart) json["chart"] = ToJson(*summary.chart);
+  return {(summary.chart ? TextOf(*summary.chart) : "") + PlacementText(summary) +
+              TextOf(summary.guidance) + fmt::format("checked in {:.1f} s\n", seconds),
+          json};
 }
 
 // What would be ignored is refused.

@@ -45,6 +45,13 @@ std::string FixedCameraInOneLine(const Capture& capture) {
       lights.camera_mm, fmt::join(lights.balls_px, " "));
 }
 
+std::string ChartInOneLine(const ChartTable& chart) {
+  if (!chart.present()) return "";
+  return fmt::format("{} in '{}', corners [{}], illuminant {}, model {}, reflectance {}",
+                     chart.kind, chart.photo, fmt::join(chart.corners_px, " "), chart.illuminant,
+                     chart.model, chart.reflectance);
+}
+
 }  // namespace
 
 namespace {
@@ -145,6 +152,7 @@ CalibTask ResolveTask(const Capture& capture, const CalibOptions& options) {
   task.sample_mm.assign(capture.sample_size_mm.begin(), capture.sample_size_mm.end());
   task.sample_height =
       capture.sample_height_mm ? fmt::format("{}", *capture.sample_height_mm) : "auto";
+  task.chart = ChartInOneLine(capture.chart);
   task.resolution_px.assign(capture.resolution_px.begin(), capture.resolution_px.end());
   return task;
 }
@@ -161,6 +169,8 @@ void AddTask(OptionSet* set, CalibTask* task) {
   set->Add("sample-mm", &task->sample_mm, "from [sample] size_mm");
   set->Add("resolution-px", &task->resolution_px, "from [sample]");
   set->Add("sample-height", &task->sample_height, "from [sample] height_mm");
+  // Captures without a chart keep the manifests that they have.
+  if (!task->chart.empty()) set->Add("chart", &task->chart, "from [chart]");
 }
 
 }  // namespace glint

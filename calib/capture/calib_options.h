@@ -46,6 +46,7 @@ struct CalibTask {
   std::vector<double> light_offset_mm, light_power, ambient;
   std::vector<double> sample_mm, resolution_px;  // of the guidance
   std::string sample_height;                     // auto, or millimetres
+  std::string chart;                             // [chart] in one line; empty: there is none
 };
 
 CalibTask ResolveTask(const Capture& capture, const CalibOptions& options);

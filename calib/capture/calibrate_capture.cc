@@ -14,6 +14,7 @@
 #include "calib/capture/above_pose.h"
 #include "calib/capture/assumed_camera.h"
 #include "calib/capture/board_side.h"
+#include "calib/capture/capture_chart.h"
 #include "calib/capture/capture_light.h"
 #include "calib/capture/colmap_poses.h"
 #include "calib/capture/fixed_camera.h"
@@ -22,6 +23,7 @@
 #include "calib/capture/place_sample.h"
 #include "calib/capture/pose_source.h"
 #include "calib/capture/triage_photos.h"
+#include "calib/chart/chart_picture.h"
 #include "calib/guidance/coverage_picture.h"
 #include "calib/guidance/polar_picture.h"
 #include "pipeline/contract/board_file.h"
@@ -219,6 +221,10 @@ void WriteOutputs(const Capture& capture, const CalibSummary& summary, Stage* st
     WriteResponseCurve(stage->Output(summary.calibration.tone_curve), *curve);
   }
   WriteLightPicture(summary, stage);
+  if (summary.chart && !summary.chart->grey()) {
+    WritePng(stage->Output("chart.png"),
+             ChartPicture(summary.chart->chart, summary.chart->solution));
+  }
   if (summary.from_board()) WriteTrustPictures(summary.bundle, summary.trust, stage);
   WriteFileAtomically(stage->Output("residuals.json"), ResidualsOf(summary).dump(1) + "\n");
   WriteFileAtomically(stage->Output("guidance_views.svg"), PolarPictureSvg(summary.guidance));
@@ -264,6 +270,10 @@ std::vector<std::filesystem::path> CalibInputs(const Capture& capture,
   std::vector<std::string> photos = capture.photos;
   photos.insert(photos.end(), capture.board_photos.begin(), capture.board_photos.end());
   std::vector<std::filesystem::path> inputs = capture.FilesBehind(photos);
+  const ChartTable& chart = capture.chart;
+  const bool listed = std::find(photos.begin(), photos.end(), chart.photo) != photos.end();
+  if (chart.present() && !listed) inputs.push_back(capture.folder / chart.photo);
+  if (chart.kind_is_file()) inputs.push_back(capture.folder / chart.kind);
   if (!capture.board_file.empty()) inputs.push_back(capture.folder / capture.board_file);
   if (!capture.lights.file.empty()) inputs.push_back(capture.folder / capture.lights.file);
   if (!options.fix_intrinsics.empty()) inputs.push_back(options.fix_intrinsics);
@@ -280,6 +290,7 @@ CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, 
   TellOfPrintScale(capture.board);
   CalibSummary summary;
   summary.photos = DetectPhotos(capture, options, threads);
+  LeaveOutChartPhoto(capture, &summary.photos);
   summary.remarks = TriagePhotos(options, &summary.photos);
   for (const std::string& word : SettleBoardSides(capture, &summary.photos)) {
     spdlog::warn("{}", word);
@@ -358,7 +369,7 @@ CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& option
       SolveCapture(capture, options, {}, common.threads, &summary);
     }
   } else if (source == PoseSource::kAbove) {
-    summary.photos = DetectPhotos(capture, options, common.threads);
+    summary.photos = DetectPhotos(WithoutChartPhoto(capture), options, common.threads);
     PoseFromAbove(capture, options, &summary);
     FinishCapture(capture, options, true, common.threads, &summary);
   } else {
@@ -366,6 +377,7 @@ CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& option
     PosesFromColmap(capture, options, common, stage, &summary);
     FinishCapture(capture, options, false, common.threads, &summary);
   }
+  CorrectColours(capture, &summary);
   WriteOutputs(capture, summary, stage);
   stage->Commit(ToJson(summary.calibration), MetricsOf(summary));
   return summary;

@@ -1,6 +1,7 @@
 // The stage "calib": photographs of a capture to cameras, poses and light.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "calib/capture/camera_groups.h"
 #include "calib/capture/detect_photos.h"
 #include "calib/capture/trust.h"
+#include "calib/chart/chart_result.h"
 #include "calib/guidance/verdict.h"
 #include "calib/light/light.h"
 #include "calib/light/power.h"
@@ -46,6 +48,7 @@ struct CalibSummary {
   SampleRegistration placement;  // of the sample above or below the board; see place_sample.h
   LampStrengths lamps;           // of a fixed camera; photos as calibration.photos
   Verdict guidance;
+  std::optional<ChartResult> chart;  // see capture_chart.h
 
   bool from_board() const { return poses.is_null(); }
   // Indices of the flash photographs that are used, as calibration.photos has them.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/errors/errors.h"
+#include "calib/capture/capture_chart.h"
 #include "calib/capture/fixed_camera.h"
 
 namespace glint {
@@ -40,6 +41,18 @@ std::string ReachOverBoard(const Capture& capture) {
     text += fmt::format(": {:.0f} square{}", squares, squares == 1 ? "" : "s");
   }
   return text;
+}
+
+void SolveQuickly(const Capture& capture, const CalibOptions& options, int threads,
+                  CalibSummary* summary) {
+  try {
+    SolveCapture(capture, options, {}, threads, summary);
+    return;
+  } catch (const Error& error) {
+    if (!options.fix_intrinsics.empty()) throw;
+    spdlog::debug("assuming the focal length: {}", error.what());
+  }
+  SolveWithAssumedCameras(capture, options, threads, summary);
 }
 
 }  // namespace
@@ -86,14 +99,8 @@ CalibSummary CheckCapture(const Capture& capture, const CalibOptions& given,
     return fixed;
   }
   CalibSummary summary = DetectCapture(capture, options, common.threads);
-  try {
-    SolveCapture(capture, options, {}, common.threads, &summary);
-    return summary;
-  } catch (const Error& error) {
-    if (!options.fix_intrinsics.empty()) throw;
-    spdlog::debug("assuming the focal length: {}", error.what());
-  }
-  SolveWithAssumedCameras(capture, options, common.threads, &summary);
+  SolveQuickly(capture, options, common.threads, &summary);
+  CorrectColours(capture, &summary);
   return summary;
 }
 

@@ -97,6 +97,7 @@ Json MetricsOf(const CalibSummary& summary) {
   metrics["light"] = LightMetrics(summary);
   metrics["sample_plane"] = PlacementMetrics(summary);
   metrics["guidance"] = ToJson(summary.guidance);
+  if (summary.chart) metrics["chart"] = ToJson(*summary.chart);
   if (!summary.poses.is_null()) metrics["poses"] = summary.poses;
   return metrics;
 }
@@ -160,6 +161,7 @@ std::string TextOf(const CalibSummary& summary) {
     text += fmt::format("  left out: {}: {}\n", photo.name, photo.reason);
   }
   if (summary.from_board()) text += TextOf(summary.bundle, summary.trust);
+  if (summary.chart) text += TextOf(*summary.chart);
   return text + LightText(summary) + PlacementText(summary) + TextOf(summary.guidance);
 }
 
@@ -172,6 +174,7 @@ std::string BriefTextOf(const CalibSummary& summary) {
     text += fmt::format("\n  left out: {}: {}", photo.name, photo.reason);
   }
   std::string guidance = PlacementText(summary) + TextOf(summary.guidance);
+  if (summary.chart) guidance = TextOf(*summary.chart) + guidance;
   if (guidance.ends_with("\n")) guidance.pop_back();
   return text + "\n  " + guidance;
 }

@@ -117,6 +117,9 @@ Json ToJson(const Calibration& calibration) {
   if (calibration.fixed_camera) data["fixed_camera"] = true;
   if (calibration.light_sd_mm) data["light_sd_mm"] = *calibration.light_sd_mm;
   if (calibration.ambient_rgb) data["ambient_rgb"] = List(*calibration.ambient_rgb);
+  if (calibration.colour_correction) {
+    data["colour_correction"] = ToJson(*calibration.colour_correction);
+  }
   data["board_from_sample"] = ToJson(calibration.board_from_sample);
   data["photos"] = Json::array();
   for (const CalibratedPhoto& photo : calibration.photos) {
@@ -178,6 +181,10 @@ Calibration ReadCalibration(const std::filesystem::path& manifest_file) {
   if (manifest.data.contains("ambient_rgb")) {
     const auto ambient = RequireNumbers(manifest_file, manifest.data, "data", "ambient_rgb", 3);
     calibration.ambient_rgb = Eigen::Map<const Eigen::Vector3d>(ambient.data());
+  }
+  if (manifest.data.contains("colour_correction")) {
+    calibration.colour_correction = ReadColourCorrection(
+        manifest_file, manifest.data["colour_correction"], "data.colour_correction");
   }
   if (manifest.data.contains("board_from_sample")) {
     calibration.board_from_sample =

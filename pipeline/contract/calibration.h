@@ -9,6 +9,7 @@
 
 #include "calib/camera/camera_model.h"
 #include "calib/camera/rigid3.h"
+#include "pipeline/contract/colour_correction.h"
 #include "pipeline/files/json.h"
 
 namespace glint {
@@ -44,6 +45,9 @@ struct Calibration {
   // The sample's frame in the board's: the sample may lie higher or lower, and tilted. Poses are
   // the sample's already.
   Rigid3 board_from_sample;
+  // From the photographs' colours, in the first one's white balance, to Rec.709, where a chart told
+  // it. light_rgb and ambient_rgb are the photographs' own, uncorrected.
+  std::optional<ColourCorrection> colour_correction;
   // Irradiance of the room, times the exposure of the first photo; nullopt: not told.
   std::optional<Eigen::Vector3d> ambient_rgb;
 };

@@ -487,10 +487,57 @@ void ReadPoses(const fs::path& file, const toml::table& document, Capture* captu
   }
 }
 
+// A key that another kind of chart would take is refused: it would be ignored.
+void RequireKind(const TableReader& table, const toml::table& document, const std::string& key,
+                 bool goes_with_kind, const std::string& kinds) {
+  if (goes_with_kind) return;
+  const toml::node* node = document["chart"][key].node();
+  if (node != nullptr) table.Reject(*node, key, "take it out, or use " + kinds);
+}
+
+void ReadChart(const fs::path& file, const toml::table& document, Capture* capture) {
+  TableReader table(file, document, "chart");
+  if (!table.present()) return;
+  ChartTable& chart = capture->chart;
+  const std::string photo = table.Text("photo", "");
+  if (photo.empty()) table.Missing("photo", "name the photograph that shows the chart");
+  const auto photos = Match(capture->folder, photo, file, "chart.photo");
+  if (photos.size() != 1) {
+    throw UserError(file, "chart.photo", std::to_string(photos.size()) + " files that match",
+                    "name one photograph");
+  }
+  RequireUtf8(file, "chart.photo", photos[0]);
+  chart.photo = photos[0];
+  chart.kind = table.Text("kind", chart.kind);
+  if (chart.kind_is_file()) {
+    Match(capture->folder, chart.kind, file, "chart.kind");
+  } else {
+    table.Text("kind", chart.kind,
+               {"classic24", "sg140", "vinyl18", "grey", "a table of patches (.csv)"});
+  }
+  chart.corners_px = table.Points(
+      "corners_px", 4,
+      "give four points [x, y] of `photo`: top left, top right, bottom right, bottom left of the "
+      "rectangle round the chart's patches");
+  chart.illuminant = table.Text("illuminant", chart.illuminant, {"D50", "D55", "D65", "A", "E"});
+  chart.model = table.Text("model", chart.model, {"linear", "root-polynomial"});
+  chart.reflectance = table.Number("reflectance", chart.reflectance, 0.01, 1, " from 0.01 to 1");
+  table.RejectUnknown();
+  const bool grey = chart.kind == "grey";
+  RequireKind(table, document, "illuminant", chart.kind_is_file(), "kind = \"PATCHES.csv\"");
+  RequireKind(table, document, "reflectance", grey, "kind = \"grey\"");
+  RequireKind(table, document, "model", !grey, "a chart of many colours");
+  if (chart.corners_px.empty() && (grey || chart.kind_is_file())) {
+    table.Missing("corners_px",
+                  "only the kinds classic24, sg140 and vinyl18 are found in a photograph: give the "
+                  "four corners of the chart, in pixels");
+  }
+}
+
 void RejectUnknownTables(const fs::path& file, const toml::table& document) {
   static const std::set<std::string, std::less<>> known = [] {
     std::set<std::string, std::less<>> tables = {"sample",     "photos", "poses", "board",
-                                                 "radiometry", "light",  "lights"};
+                                                 "radiometry", "light",  "lights", "chart"};
     for (const StageKind& stage : Stages()) tables.emplace(stage.name);
     return tables;
   }();
@@ -581,6 +628,8 @@ void ReadLights(const fs::path& file, const toml::table& document, Capture* capt
 
 }  // namespace
 
+bool ChartTable::kind_is_file() const { return fs::path(kind).extension() == ".csv"; }
+
 bool Capture::encoding_is_file() const { return fs::path(encoding).extension() == ".json"; }
 
 std::string Capture::resolved_encoding() const {
@@ -619,6 +668,7 @@ Capture ReadCapture(const fs::path& folder) {
   ReadKind(capture.file, *document, &capture);
   ReadLights(capture.file, *document, &capture);
   ReadRadiometry(capture.file, *document, &capture);
+  ReadChart(capture.file, *document, &capture);
   if (photos.present() && capture.photos.empty()) {
     throw UserError(capture.file, "photos.files", "no photograph that matches",
                     "put photographs into the folder, or correct the pattern");

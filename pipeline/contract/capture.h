@@ -42,6 +42,19 @@ struct LightsTable {
 // What moves from photograph to photograph.
 enum class CaptureKind { kMovedCamera, kFixedCamera };
 
+// [chart]: a colour chart or grey card in a photograph, by which colours are corrected.
+struct ChartTable {
+  std::string photo;               // relative to the folder; empty: there is no table
+  std::string kind = "classic24";  // a name of ChartKindNames(), or a table of patches (….csv)
+  std::vector<double> corners_px;  // x y of the upright photograph: top left, top right, bottom
+                                   // right, bottom left of the patches' rectangle; empty: find it
+  std::string illuminant = "D50";  // to which a table's colours are relative
+  std::string model = "linear";    // or root-polynomial, see colour_correction.h
+  double reflectance = 0.18;       // of a grey card
+  bool present() const { return !photo.empty(); }
+  bool kind_is_file() const;
+};
+
 struct Capture {
   std::filesystem::path folder;  // as given
   std::filesystem::path file;    // folder / "capture.toml"
@@ -58,6 +71,7 @@ struct Capture {
   Board board;     // [board]; board_centre_in_sample_mm from [sample] centre_mm
 
   PosesTable poses;
+  ChartTable chart;
 
   CaptureKind kind = CaptureKind::kMovedCamera;  // kind = "moved camera" or "fixed camera"
   LightsTable lights;                            // of a fixed camera

@@ -11,6 +11,7 @@ namespace glint {
 namespace {
 
 constexpr int kTile = 64;
+constexpr double kNoCeiling = std::numeric_limits<double>::infinity();
 
 struct Gathered {
   double rgb[3] = {0, 0, 0};
@@ -114,6 +115,8 @@ class Resampler {
         plane_(plane),
         options_(options),
         kernel_(options.filter),
+        clamps_(!photo.is_float() && (options.vignetting || options.colour ||
+                                      options.gain_rgb != ResampleOptions().gain_rgb)),
         view_(view) {}
 
   void Tile(int column, int row) const {
@@ -144,20 +147,22 @@ class Resampler {
     // Only a picture smaller than the kernel's lobes can leave no weight.
     if (!(sum.weight > 1e-3)) return TexelStatus::kOutside;
     const size_t texels = view_->status.size();
-    double gain = 1, ceiling = std::numeric_limits<double>::infinity();
-    std::array<double, 3> gain_rgb{1, 1, 1};
-    if (!sum.saturated) {
-      gain_rgb = options_.gain_rgb;
-      if (options_.vignetting) gain = 1 / Vignetting(*options_.vignetting, centre);
-      if (!photo_.is_float() && (options_.vignetting || gain_rgb != ResampleOptions().gain_rgb)) {
-        ceiling = 1;
-      }
-    }
+    const Eigen::Vector3d mean = Eigen::Vector3d(sum.rgb) / sum.weight;
+    const Eigen::Vector3d rgb = sum.saturated ? mean : AtTheLens(mean, centre);
+    const double ceiling = sum.saturated || !clamps_ ? kNoCeiling : 1;
     for (int c = 0; c < 3; ++c) {
-      const double value = gain * gain_rgb[c] * std::max(sum.rgb[c] / sum.weight, 0.0);
-      view_->rgb[c * texels + texel] = static_cast<float>(std::min(value, ceiling));
+      view_->rgb[c * texels + texel] = static_cast<float>(std::min(std::max(rgb[c], 0.0), ceiling));
     }
     return sum.saturated ? TexelStatus::kSaturated : TexelStatus::kUsable;
+  }
+
+  // Without the lens's fall-off, in one white balance and in the right colours.
+  Eigen::Vector3d AtTheLens(const Eigen::Vector3d& rgb, const Eigen::Vector2d& image_point) const {
+    const double gain =
+        options_.vignetting ? 1 / Vignetting(*options_.vignetting, image_point) : 1.0;
+    Eigen::Vector3d gained;
+    for (int c = 0; c < 3; ++c) gained[c] = gain * options_.gain_rgb[c] * rgb[c];
+    return options_.colour ? (*options_.colour)(gained) : gained;
   }
 
   const LinearPhoto& photo_;
@@ -165,6 +170,7 @@ class Resampler {
   const SamplePlane& plane_;
   const ResampleOptions& options_;
   const FilterKernel kernel_;
+  const bool clamps_;  // what is corrected may pass 1, where the photo clips
   ResampledView* view_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "calib/camera/camera_model.h"
 #include "fitting/reflectance/view.h"
+#include "pipeline/contract/colour_correction.h"
 #include "rectify/linearize/linear_photo.h"
 #include "rectify/resample/filter_kernel.h"
 #include "rectify/resample/plane_projection.h"
@@ -24,6 +25,8 @@ struct ResampleOptions {
   std::optional<Camera> vignetting;
   // What R, G, B are multiplied by: a white balance that changed between photographs.
   std::array<double, 3> gain_rgb{1, 1, 1};
+  // What a chart told of the camera's colours, applied to what the gains leave.
+  std::optional<ColourCorrection> colour;
 };
 
 enum class TexelStatus : uint8_t {
@@ -44,11 +47,11 @@ struct ResampledView {
 // the linear pixel values under the kernel stretched over that ellipse. Never aliases when the
 // photo is finer than the texels, at any tilt; interpolates when it is coarser. Weights are
 // normalised, so that constants stay constants; negative results (the kernel's lobes beside a
-// highlight) become 0. Threaded by tiles; the result does not depend on the number of threads.
-// With `vignetting` or gains the value is what reached the lens; a photo of 8 or 16 bit keeps 1 as
-// its ceiling (what clips says "at least 1", and later stages compare with renderings clamped to
-// 1), so values above it become 1, and saturated texels stay as they are. Texels marked kMasked in
-// `status_before` (empty, or [H·W]) are passed over.
+// highlight; colours beyond Rec.709) become 0. Threaded by tiles; the result does not depend on the
+// number of threads. With `vignetting`, gains or `colour` the value is what reached the lens; a
+// photo of 8 or 16 bit keeps 1 as its ceiling (what clips says "at least 1", and later stages
+// compare with renderings clamped to 1), so values above it become 1, and saturated texels stay as
+// they are. Texels marked kMasked in `status_before` (empty, or [H·W]) are passed over.
 ResampledView ResampleToPlane(const LinearPhoto& photo, const PlaneProjection& projection,
                               const SamplePlane& plane, const ResampleOptions& options,
                               const std::vector<TexelStatus>& status_before = {});

@@ -134,6 +134,7 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     ResampleOptions resample = ResampleOptionsOf(options, common.threads);
     if (camera.vignetting != std::array<double, 3>{}) resample.vignetting = camera;
     for (int c = 0; c < 3; ++c) resample.gain_rgb[c] = 1 / calibrated.white_balance_rgb[c];
+    resample.colour = calibration.colour_correction;
     RectifiedWriter writer(stage->Output(view.file), set, view);
     guess.BeginView();
     const ViewCounts counts =

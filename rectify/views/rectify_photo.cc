@@ -74,6 +74,18 @@ void RequireUsable(const ViewCounts& counts, const std::filesystem::path& file) 
                   "check [sample] size_mm and centre_mm and [board] window");
 }
 
+// The view's radiance is corrected, and so is what lit it.
+void CorrectLights(const ColourCorrection& correction, View* view) {
+  const Eigen::Vector3d flash =
+      correction.Flash(Eigen::Vector3d(view->light_rgb[0], view->light_rgb[1], view->light_rgb[2]));
+  const Eigen::Vector3d ambient =
+      correction(Eigen::Vector3d(view->ambient_rgb[0], view->ambient_rgb[1], view->ambient_rgb[2]));
+  for (int c = 0; c < 3; ++c) {
+    view->light_rgb[c] = flash[c];
+    view->ambient_rgb[c] = std::max(0.0, ambient[c]);
+  }
+}
+
 RectifiedImage WithMask(ResampledView view) {
   RectifiedImage image{view.width, view.height, std::move(view.rgb), {}};
   image.mask.reserve(view.status.size());
@@ -112,6 +124,7 @@ View ViewOf(const Calibration& calibration, const CalibratedPhoto& photo,
   if (calibration.ambient_rgb) {
     for (int c = 0; c < 3; ++c) view.ambient_rgb[c] = (*calibration.ambient_rgb)[c];
   }
+  if (calibration.colour_correction) CorrectLights(*calibration.colour_correction, &view);
   return view;
 }
 

@@ -24,7 +24,8 @@ struct ViewCounts {
 Json ToJson(const ViewCounts& counts);
 
 // Camera and light of a calibrated photo in the sample frame, with the calibration's power and an
-// exposure of 1. `ambient` holds where the calibration tells none. Throws UserError when either
+// exposure of 1; lights corrected as the view's colours are. `ambient` holds where the calibration
+// tells none. Throws UserError when either
 // lies behind the sample.
 View ViewOf(const Calibration& calibration, const CalibratedPhoto& photo,
             const std::vector<double>& ambient, const std::filesystem::path& calibration_file);
