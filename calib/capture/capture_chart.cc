@@ -18,6 +18,8 @@ namespace {
 // Above it the patches are not those of the reference, or the light and the curve not as assumed:
 // careful charts of phones end between 1 and 2 ΔE.
 constexpr double kSuspect = 3;
+// Farther off than a camera is without any correction: it would do harm.
+constexpr double kHopeless = 10;
 // A patch of fewer pixels is a dozen or less across its middle, where the lens's blur mixes in its
 // neighbours.
 constexpr int kFewPixels = 36;
@@ -78,28 +80,34 @@ void RequireReadings(const Capture& capture, const ChartResult& result, size_t l
                           : "expose the chart's photograph less, so that nothing in it clips");
 }
 
-std::string SuspectText(const ChartReader& reader, const ChartResult& result) {
-  std::string text = fmt::format(
-      "{}: the corrected colours of the chart's held-out patches are off by {:.1f} dE00 in the "
-      "mean",
-      result.photo, result.solution.HeldOutMean());
-  for (size_t quarters = 1; quarters < 4; ++quarters) {
-    const auto turned = reader.TurnedBy(result, quarters);
-    if (!turned || turned->solution.HeldOutMean() > result.solution.HeldOutMean() / 2) continue;
-    return text + fmt::format(
-                      "; with corners_px beginning at the {} of them it would be {:.1f}: begin at "
-                      "the corner that is the top left of the upright chart",
-                      quarters == 1   ? "second"
-                      : quarters == 2 ? "third"
-                                      : "fourth",
-                      turned->solution.HeldOutMean());
+constexpr const char* kCauses =
+    "check [chart] kind and corners_px, [radiometry] encoding (a phone's tone curve), and that the "
+    "flash alone lit the chart, without its mirror image in it";
+
+// Corners that were given from another one than the chart's top left fit far better when they are
+// turned: they are, and it is said. What then fits badly is doubted, or refused.
+void Doubt(const Capture& capture, const ChartReader& reader, ChartResult* result) {
+  if (result->solution.HeldOutMean() <= kSuspect) return;
+  const auto turned = reader.BestTurn(*result);
+  if (turned && turned->solution.HeldOutMean() <= kSuspect) {
+    *result = *turned;
+    result->findings.push_back(
+        fmt::format("{}: the chart's top left is at ({:.0f}, {:.0f}), by its colours: let [chart] "
+                    "corners_px begin there",
+                    result->photo, result->corners_px[0].x(), result->corners_px[0].y()));
+    return;
   }
-  return text +
-         ": check [chart] kind and corners_px, [radiometry] encoding (a phone's tone curve), and "
-         "that the flash alone lit the chart, without its mirror image in it";
+  const std::string off = fmt::format(
+      "colours of the chart's held-out patches that are off by {:.1f} dE00 in the mean "
+      "after the correction",
+      result->solution.HeldOutMean());
+  if (result->solution.HeldOutMean() > kHopeless) {
+    throw UserError(capture.folder / result->photo, "chart", off, kCauses);
+  }
+  result->findings.push_back(fmt::format("{}: {}; {}", result->photo, off, kCauses));
 }
 
-void AddFindings(const ChartReader& reader, ChartResult* result) {
+void AddFindings(ChartResult* result) {
   const std::string left_out = NamesOfLeftOut(result->chart, result->readings);
   if (!left_out.empty()) {
     result->findings.push_back(
@@ -114,9 +122,6 @@ void AddFindings(const ChartReader& reader, ChartResult* result) {
   if (fewest < kFewPixels) {
     result->findings.push_back(fmt::format(
         "{}: a patch of the chart is read from only {} pixels; go nearer", result->photo, fewest));
-  }
-  if (!result->grey() && result->solution.HeldOutMean() > kSuspect) {
-    result->findings.push_back(SuspectText(reader, *result));
   }
 }
 
@@ -161,6 +166,7 @@ void SolveLocated(const Capture& capture, const ChartReader& reader, ChartResult
                     "check [chart] kind and corners_px");
   }
   *result = *std::move(best);
+  Doubt(capture, reader, result);
 }
 
 // See the header: the paper's white where a photograph of its own contradicts it.
@@ -195,7 +201,7 @@ void CorrectColours(const Capture& capture, CalibSummary* summary) {
   const ChartReader reader(linear, balance,
                            ColourModelFromName(capture.chart.model).value_or(ColourModel::kLinear));
   SolveLocated(capture, reader, &result);
-  AddFindings(reader, &result);
+  AddFindings(&result);
   if (!calibrated) SettleWhite(*summary, &result);
   for (const std::string& finding : result.findings) spdlog::warn("{}", finding);
   summary->calibration.colour_correction = result.solution.correction;

@@ -14,8 +14,10 @@ namespace glint {
 // Which white: the chart's, if its photograph is one of the calibrated ones, whose white balances
 // are known relative to each other. A photograph of its own may have been balanced differently;
 // where its white is farther from the board's paper than any white paper is from neutral (10 %
-// between channels), the paper's white counts, and that is said.
-// Throws UserError: no such chart in the photograph, too few usable patches.
+// between channels), the paper's white counts, and that is said. A
+// grey card, which tells nothing but white, counts all the same.
+// Throws UserError: no such chart in the photograph, too few usable patches, or colours of which
+// held-out patches are off by more than 10 ΔE.
 void CorrectColours(const Capture& capture, CalibSummary* summary);
 
 // Takes a chart's photograph in which no board was found out of `photos`: it is none of the sample.

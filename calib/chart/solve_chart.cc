@@ -28,6 +28,10 @@ constexpr double kHuber = 3;
 // patches tell each to a few hundredths.
 constexpr double kSpreadOfG = 0.66, kSpreadOfAB = 0.81;
 
+// Of ChartLight's q: a tenth of the distance from the middle to the flash, which then touches the
+// chart. Fits end above it; patches that they did not see may lie where they make no sense.
+constexpr double kLeastQ = 0.01;
+
 struct Observation {
   size_t patch;
   Eigen::Vector2d at;
@@ -74,7 +78,6 @@ class PatchCost {
   }
 
  private:
-  static constexpr double kLeastQ = 0.01;  // a hundredth of the distance²: a flash on the chart
   ColourCorrection::Terms terms_;
   Eigen::Vector2d at_;
   Eigen::Vector3d lab_;
@@ -223,7 +226,8 @@ double WorstOf(const std::vector<PatchColour>& patches, double PatchColour::*fie
 }  // namespace
 
 double ChartLight::At(const Eigen::Vector2d& point) const {
-  return std::pow(1 + a * point.x() + b * point.y() + g * point.squaredNorm(), -1.5);
+  const double q = 1 + a * point.x() + b * point.y() + g * point.squaredNorm();
+  return std::pow(std::max(q, kLeastQ), -1.5);
 }
 
 double ChartSolution::MeanDeltaE() const { return MeanOf(patches, &PatchColour::delta_e); }

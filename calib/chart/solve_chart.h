@@ -18,7 +18,7 @@ namespace glint {
 // p in half diagonals of the chart (Chart::FromMiddle).
 struct ChartLight {
   double a = 0, b = 0, g = 0;
-  double At(const Eigen::Vector2d& point) const;  // q^(−3/2)
+  double At(const Eigen::Vector2d& point) const;  // q^(−3/2); finite wherever the point lies
 };
 
 struct PatchColour {
