@@ -67,6 +67,21 @@ double Distance_mm(const Vec3d& point) {
   return std::sqrt(point[0] * point[0] + point[1] * point[1] + point[2] * point[2]);
 }
 
+// What a chart says of the colours; "" without one (a grey card says nothing of an error).
+std::string ColourFigures(const ReportInput& input) {
+  if (!input.Has("calib")) return "";
+  const Json chart = input.manifests.at("calib").metrics.value("chart", Json::object());
+  std::string figures;
+  for (const auto& [name, label] :
+       {std::pair{"delta_e_held_out_mean", "colour error, held-out chart patches (ΔE00, mean)"},
+        std::pair{"delta_e_held_out_worst", "the same, worst patch (ΔE00)"}}) {
+    if (!chart.contains(name) || !chart[name].is_number()) continue;
+    figures += HeadFigure(label, chart[name],
+                          {ManifestLink("calib"), std::string("metrics.chart.") + name});
+  }
+  return figures;
+}
+
 }  // namespace
 
 Image RoughnessConfidence(const ReportInput& input, const fs::path& confidence_exr, int most_px) {
@@ -99,6 +114,7 @@ std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
                             {ManifestLink("calib"), "metrics.sample_uncertainty.sigma_mm"}, "mm");
     }
   }
+  figures += ColourFigures(input);
   for (const auto& [name, label] :
        {std::pair{"fitted", "fitted photographs"}, std::pair{"held_out", "held-out photographs"}}) {
     if (!own_metrics.contains(name)) continue;

@@ -150,5 +150,38 @@ TEST_F(CaptureTest, HalfALengthOrTwoAreRefused) {
               HasSubstr("2 lengths"));
 }
 
+TEST_F(CaptureTest, ReadsAChart) {
+  folder_.Write("chart/c.jpg", "x");
+  folder_.Write("patches.csv", "x");
+  const auto chart = [&](const std::string& keys) {
+    return Read(Replaced("[light]", "[chart]\nphoto = \"chart/c.jpg\"\n" + keys + "\n[light]"))
+        .chart;
+  };
+  EXPECT_FALSE(Read(kGood).chart.present());
+  EXPECT_EQ(chart("").kind, "classic24");
+  EXPECT_EQ(chart("kind = \"sg140\"\nmodel = \"root-polynomial\"").model, "root-polynomial");
+  const std::string corners = "corners_px = [[1, 2], [9, 2], [9, 8], [1, 8]]\n";
+  EXPECT_TRUE(chart(corners + "kind = \"patches.csv\"\nilluminant = \"A\"").kind_is_file());
+  EXPECT_EQ(chart(corners + "kind = \"grey\"\nreflectance = 0.5").reflectance, 0.5);
+  EXPECT_THAT(chart(corners).corners_px, ElementsAre(1, 2, 9, 2, 9, 8, 1, 8));
+}
+
+TEST_F(CaptureTest, SaysWhatIsWrongWithAChart) {
+  folder_.Write("chart/c.jpg", "x");
+  const auto complaint = [&](const std::string& keys) {
+    return Complaint(Replaced("[light]", "[chart]\n" + keys + "\n[light]"));
+  };
+  const std::string photo = "photo = \"chart/c.jpg\"\n";
+  EXPECT_THAT(complaint(""), HasSubstr("chart.photo: found no such key"));
+  EXPECT_THAT(complaint("photo = \"chart/d.jpg\""), HasSubstr("no file 'chart/d.jpg'"));
+  EXPECT_THAT(complaint(photo + "kind = \"classic\""), HasSubstr("classic24, sg140, vinyl18"));
+  EXPECT_THAT(complaint(photo + "kind = \"p.csv\""), HasSubstr("no file 'p.csv'"));
+  EXPECT_THAT(complaint(photo + "kind = \"grey\""), HasSubstr("chart.corners_px"));
+  EXPECT_THAT(complaint(photo + "illuminant = \"D65\""), HasSubstr("PATCHES.csv"));
+  EXPECT_THAT(complaint(photo + "reflectance = 0.18"), HasSubstr("grey"));
+  EXPECT_THAT(complaint(photo + "corners_px = [1, 2]"), HasSubstr("four points"));
+  EXPECT_THAT(complaint(photo + "colour = 1"), HasSubstr("unknown key"));
+}
+
 }  // namespace
 }  // namespace glint

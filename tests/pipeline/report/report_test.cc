@@ -253,6 +253,20 @@ TEST_F(ReportTest, ShowsWhatCalibAdvisesOnceWithItsPictures) {
   EXPECT_THAT(html, Not(HasSubstr("<h3>guidance")));
 }
 
+TEST_F(ReportTest, SaysHowFarTheChartsHeldOutPatchesAreOff) {
+  EXPECT_THAT(Make().html, Not(HasSubstr("chart patches")));
+  OptionSet options;
+  Stage stage(work() / "calib", {"calib", 1}, options, CommonOptions(), {folder_.path() / "input"});
+  WriteFileAtomically(stage.Output("residuals.json"), "{}");
+  stage.Commit(Json::object(), {{"chart",
+                                 {{"kind", "classic24"},
+                                  {"delta_e_held_out_mean", 1.25},
+                                  {"delta_e_held_out_worst", 3.5}}}});
+  const std::string html = Make().html;
+  EXPECT_THAT(html, HasSubstr("colour error, held-out chart patches (ΔE00, mean)"));
+  EXPECT_THAT(html, HasSubstr("metrics.chart.delta_e_held_out_worst\">3.5<"));
+}
+
 TEST_F(ReportTest, ShowsWhatWasCorrectedAndTheEnvironment) {
   ViewCorrection moved;
   moved.light_offset_mm = {0, 30, 0};

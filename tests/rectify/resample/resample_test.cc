@@ -103,6 +103,33 @@ TEST(Resample, MultipliesChannelsByTheirGainsButNotWhatClips) {
   }
 }
 
+// What a chart told of the camera: applied to what does not clip, before colours beyond Rec.709 end
+// at 0; 8-bit photos keep 1 as their ceiling.
+TEST(Resample, CorrectsColoursButNotWhatClips) {
+  const CameraProjection projection(TestCamera(400, 420, 0, 0), LookAtSample(100, 20, 20));
+  ResampleOptions options;
+  options.gain_rgb = {1, 1, 0.5};
+  options.colour.emplace();
+  options.colour->matrix.leftCols<3>() << 1.5, -0.5, 0, 0.2, 0.8, 0, 0.1, -0.5, 0.4;
+  const float wall = 102 / 255.0f;
+  const LinearPhoto photo(FlatPhoto(400, 400, wall, 8), Encoding::kLinear);
+  const ResampledView view = ResampleToPlane(photo, projection, Plane(64, 50), options);
+  const size_t texels = view.rgb.size() / 3;
+  for (size_t i = 0; i < texels; ++i) {
+    ASSERT_EQ(view.status[i], TexelStatus::kUsable);
+    ASSERT_NEAR(view.rgb[i], wall, 2e-5);
+    ASSERT_NEAR(view.rgb[texels + i], wall, 2e-5);
+    ASSERT_EQ(view.rgb[2 * texels + i], 0);
+  }
+  const LinearPhoto clipped(FlatPhoto(400, 400, 254 / 255.0f, 8), Encoding::kLinear);
+  const ResampledView white = ResampleToPlane(clipped, projection, Plane(64, 50), options);
+  for (const TexelStatus status : white.status) ASSERT_EQ(status, TexelStatus::kSaturated);
+  for (const float value : white.rgb) ASSERT_NEAR(value, 254 / 255.0f, 2e-5);
+  options.colour->matrix *= 4;
+  const ResampledView bright = ResampleToPlane(photo, projection, Plane(64, 50), options);
+  EXPECT_EQ(*std::max_element(bright.rgb.begin(), bright.rgb.end()), 1.0f);
+}
+
 // Centres of mass of Gaussian blobs come out where they were painted, to a tenth of a texel, under
 // lens distortion, tilt and roll.
 TEST(Resample, BlobsLandWhereTheyWerePainted) {
