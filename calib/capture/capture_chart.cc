@@ -125,14 +125,14 @@ void AddFindings(ChartResult* result) {
   }
 }
 
-ChartResult LocateChart(const Capture& capture, const Photo& photo) {
+ChartResult LocateChart(const Capture& capture, const Photo& photo, const Encoding& encoding) {
   const ChartTable& table = capture.chart;
   ChartResult result;
   result.photo = table.photo;
   if (!table.corners_px.empty()) {
     result.corners_px = CornersFromTable(table);
   } else {
-    const auto found = FindChart(photo, table.kind);
+    const auto found = FindChart(photo, encoding.kind() == Encoding::kLinear, table.kind);
     if (!found) {
       throw UserError(capture.folder / table.photo, "chart", fmt::format("no {} chart", table.kind),
                       "check [chart] kind in capture.toml, show the whole chart large and evenly "
@@ -178,13 +178,19 @@ void SettleWhite(const CalibSummary& summary, ChartResult* result) {
   ratio /= ratio.y();
   const double off = ratio.maxCoeff() / ratio.minCoeff() - 1;
   if (off <= kPaperTint) return;
+  const std::string finding = fmt::format(
+      "{}: its white differs from the board's paper by {:.0f} % between channels, as if automatic "
+      "white balance had changed",
+      result->photo, 100 * off);
+  if (result->grey()) {
+    result->findings.push_back(finding + "; fix the white balance, or leave [chart] out");
+    return;
+  }
   result->solution.correction = result->solution.correction.After(ratio);
   result->white_from = "paper";
-  result->findings.push_back(fmt::format(
-      "{}: its white differs from the board's paper by {:.0f} % between channels, as if "
-      "automatic white balance had changed; the paper's white is used: fix the white "
-      "balance, or photograph the chart together with the board",
-      result->photo, 100 * off));
+  result->findings.push_back(finding +
+                             "; the paper's white is used: fix the white balance, or photograph "
+                             "the chart together with the board");
 }
 
 }  // namespace
@@ -193,8 +199,8 @@ void CorrectColours(const Capture& capture, CalibSummary* summary) {
   if (!capture.chart.present()) return;
   const std::filesystem::path file = capture.folder / capture.chart.photo;
   Photo photo = ReadPhoto(file);
-  ChartResult result = LocateChart(capture, photo);
   const Encoding encoding = EncodingOfChart(capture, *summary, file, photo);
+  ChartResult result = LocateChart(capture, photo, encoding);
   const LinearPhoto linear(std::move(photo), encoding);
   bool calibrated = false;
   const Eigen::Vector3d balance = WhiteBalanceOf(*summary, result.photo, &calibrated);

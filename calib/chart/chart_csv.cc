@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <sstream>
 
 #include "base/errors/errors.h"
 #include "calib/chart/chart.h"
 #include "calib/chart/cielab.h"
+#include "pipeline/files/files.h"
+#include "pipeline/files/json.h"
 
 namespace glint {
 namespace {
@@ -25,6 +26,20 @@ std::vector<std::string> CellsOf(const std::string& line) {
     cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
   }
   return cells;
+}
+
+// Manifests hold the patches' names, and JSON is UTF-8.
+std::string TextOfTable(const std::filesystem::path& file) {
+  std::string text = ReadTextFile(file, 1u << 20);
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets write it
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+  try {
+    (void)Json(text).dump();
+  } catch (const nlohmann::json::exception&) {
+    throw UserError(file, "", "bytes that are not UTF-8", "save the table as UTF-8");
+  }
+  if (text.empty()) throw UserError(file, "", "no table", kRemedy);
+  return text;
 }
 
 // The table's columns by name, and where to complain.
@@ -104,11 +119,9 @@ void SetHalfSides(std::vector<ChartPatch>* patches) {
 }  // namespace
 
 Chart ReadChartCsv(const std::filesystem::path& file, std::string_view illuminant, double aspect) {
-  std::ifstream stream(file);
+  std::istringstream stream(TextOfTable(file));
   std::string line;
-  if (!stream || !std::getline(stream, line)) {
-    throw UserError(file, "", "no table that can be read", kRemedy);
-  }
+  std::getline(stream, line);
   const ChartTable table(file, line);
   const Eigen::Vector3d white = WhitePoint(illuminant).value();
   Chart chart{file.filename(), {aspect, 1}, {}};

@@ -21,9 +21,8 @@ float WhiteLevel(const Image& image) {
 }
 
 // As a screen would show it: mcc wants eight bits.
-cv::Mat Shown(const Photo& photo) {
+cv::Mat Shown(const Photo& photo, bool linear) {
   const Image& image = photo.image;
-  const bool linear = photo.is_float() || photo.format == "raw";
   const float white = linear ? WhiteLevel(image) : 1;
   cv::Mat shown(image.height, image.width, CV_8UC3);
   for (size_t i = 0; i < image.pixels(); ++i) {
@@ -55,12 +54,12 @@ class OneThread {
 
 }  // namespace
 
-std::optional<ChartCorners> FindChart(const Photo& photo, const std::string& kind_name,
+std::optional<ChartCorners> FindChart(const Photo& photo, bool linear, const std::string& kind_name,
                                       int longest_px) {
   const auto kind = std::find_if(ChartKinds().begin(), ChartKinds().end(),
                                  [&](const ChartKind& known) { return known.name == kind_name; });
   const OneThread deterministic;
-  cv::Mat shown = Shown(photo);
+  cv::Mat shown = Shown(photo, linear);
   const double scale =
       std::min(1.0, static_cast<double>(longest_px) / std::max(shown.cols, shown.rows));
   if (scale < 1) cv::resize(shown, shown, cv::Size(), scale, scale, cv::INTER_AREA);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "base/errors/errors.h"
+#include "calib/chart/chart.h"
 #include "calib/colmap/colmap_model.h"
 #include "datasets/import/foreign_set.h"
 #include "fitting/weights/safetensors.h"
@@ -94,6 +95,7 @@ const std::vector<FuzzTarget>& FuzzTargets() {
       OfFile("views", "views.json", [](const fs::path& file) { ReadViewsJson(file); }),
       OfFile("response", "response.json", [](const fs::path& file) { ReadResponseCurve(file); }),
       OfFile("safetensors", "weights.safetensors", ReadTensors),
+      OfFile("chart_csv", "chart.csv", [](const fs::path& file) { ReadChartCsv(file, "A", 1.5); }),
       OfFile("hash_cache", "hashes.json", [](const fs::path& file) { HashCache{file}; }),
       {"colmap", ReadColmap},
   };

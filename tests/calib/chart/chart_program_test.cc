@@ -315,6 +315,9 @@ TEST_F(ChartCapture, TakesTheCastOfARealPhoneFromItsGreyCard) {
   EXPECT_LT(white[2] / white[1], 1);
   EXPECT_GT(chart["delta_e_uncorrected_mean"].get<double>(), 1);
   EXPECT_LT(chart["delta_e_uncorrected_mean"].get<double>(), 10);
+  // The synthetic board's paper is neutral, and the card counts all the same.
+  EXPECT_EQ(chart["white_from"], "chart");
+  EXPECT_THAT(chart["findings"].dump(), HasSubstr("differs from the board's paper by 12 %"));
 }
 
 }  // namespace

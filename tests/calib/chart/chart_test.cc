@@ -94,7 +94,8 @@ class ChartCsv : public ::testing::Test {
 };
 
 TEST_F(ChartCsv, HoldsPatchesByPlaceAndColour) {
-  const Chart chart = Read("name, x,y, L,a,b\nred,0.25,0.5,42,53,28\n\nwhite,0.75,0.5,96,0,1\n");
+  const Chart chart =
+      Read("\xEF\xBB\xBFname, x,y, L,a,b\nred,0.25,0.5,42,53,28\n\nwhite,0.75,0.5,96,0,1\n");
   ASSERT_EQ(chart.patches.size(), 2u);
   EXPECT_EQ(chart.patches[1].name, "white");
   EXPECT_EQ(chart.patches[0].centre, Eigen::Vector2d(0.375, 0.5));
@@ -116,6 +117,9 @@ TEST_F(ChartCsv, IsRefusedByLineAndColumn) {
   EXPECT_THAT(Complaint("name,x,y,L,a,b\na,0.5,0.5,50,0,0\nb,0.5,0.5,60,0,0\n"),
               HasSubstr("two patches at one place"));
   EXPECT_THAT(Complaint(""), HasSubstr("no table"));
+  EXPECT_THAT(Complaint("name,x,y,L,a,b\nr\xE9"
+                        "d,0.2,0.5,42,53,28\n"),
+              HasSubstr("UTF-8"));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ LinearPhoto LinearOf(const Photo& photo) {
 
 // As calib finds and solves it.
 std::optional<ChartResult> Found(const Photo& photo, const std::string& kind, ColourModel model) {
-  const auto corners = FindChart(photo, kind);
+  const auto corners = FindChart(photo, photo.is_float(), kind);
   if (!corners) return std::nullopt;
   const LinearPhoto linear = LinearOf(photo);
   return ChartReader(linear, Eigen::Vector3d::Ones(), model)
@@ -148,19 +148,28 @@ TEST(FindChart, FindsEveryKindItKnowsInPerspective) {
   }
 }
 
+TEST(FindChart, FindsAChartInADarkLinearPhotograph) {
+  ChartShot shot;
+  shot.bits = 32;
+  shot.white = 0.08;
+  EXPECT_TRUE(
+      Found(PhotographOf(*ChartOfKind("classic24"), shot), "classic24", ColourModel::kLinear));
+}
+
 TEST(FindChart, FindsTheSameInEveryRun) {
   ChartShot shot;
   const Photo photo = PhotographOf(*ChartOfKind("classic24"), shot);
-  const auto first = FindChart(photo, "classic24");
+  const auto first = FindChart(photo, photo.is_float(), "classic24");
   ASSERT_TRUE(first);
-  for (int run = 0; run < 3; ++run) EXPECT_EQ(*FindChart(photo, "classic24"), *first);
+  for (int run = 0; run < 3; ++run)
+    EXPECT_EQ(*FindChart(photo, photo.is_float(), "classic24"), *first);
 }
 
 TEST(FindChart, FindsNoneWhereThereIsNone) {
   ChartShot shot;
   Chart blank = *ChartOfKind("classic24");
   for (ChartPatch& patch : blank.patches) patch.lab = {20, 0, 0};
-  EXPECT_FALSE(FindChart(PhotographOf(blank, shot), "classic24"));
+  EXPECT_FALSE(FindChart(PhotographOf(blank, shot), false, "classic24"));
 }
 
 TEST(MeasureChart, TellsWhatClipsAndWhatIsOutside) {
