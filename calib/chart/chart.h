@@ -36,7 +36,6 @@ inline constexpr std::string_view kGreyCard = "grey";
 // Kinds by name: "classic24" (X-Rite ColorChecker Classic), "sg140" (Digital SG), "vinyl18" (DKK),
 // with the reference colours that OpenCV's mcc module holds. nullopt: another name.
 std::optional<Chart> ChartOfKind(std::string_view kind);
-std::vector<std::string> ChartKindNames();  // of these, then "grey"
 
 // A neutral card whose `reflectance` (of 1) is the same in R, G and B.
 Chart GreyCard(double reflectance);

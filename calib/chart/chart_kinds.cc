@@ -74,13 +74,6 @@ std::optional<Chart> ChartOfKind(std::string_view name) {
   return chart;
 }
 
-std::vector<std::string> ChartKindNames() {
-  std::vector<std::string> names;
-  for (const ChartKind& kind : kKinds) names.emplace_back(kind.name);
-  names.emplace_back(kGreyCard);
-  return names;
-}
-
 Chart GreyCard(double reflectance) {
   const Eigen::Vector3d white = *WhitePoint(kLabIlluminant);
   const Eigen::Vector3d lab = LabFromXyz(reflectance * white, white);

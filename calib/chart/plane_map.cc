@@ -1,6 +1,5 @@
 #include "calib/chart/plane_map.h"
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace glint {

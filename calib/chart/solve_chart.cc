@@ -172,6 +172,7 @@ Eigen::Vector3d WhiteOf(const ColourCorrection& reflectance) {
 std::vector<double> Uncorrected(const std::vector<Observation>& seen, const ChartLight& light) {
   const auto errors = [&](double scale) {
     std::vector<double> all;
+    all.reserve(seen.size());
     for (const Observation& one : seen) {
       all.push_back(
           DeltaE00(LabFromRec709(Eigen::Vector3d(scale * one.rgb / light.At(one.at))), one.lab));
@@ -188,7 +189,10 @@ std::vector<double> Uncorrected(const std::vector<Observation>& seen, const Char
     total += one.rgb.y() / light.At(one.at);
   }
   scale /= std::max(total, 1e-9);
-  for (double step = 1.2; step > 1.001; step = std::sqrt(step)) {
+  // From steps of 20 % down to 0.1 %, each the square root of the one before.
+  constexpr int kRounds = 9;
+  double step = 1.2;
+  for (int round = 0; round < kRounds; ++round, step = std::sqrt(step)) {
     while (sum(scale * step) < sum(scale)) scale *= step;
     while (sum(scale / step) < sum(scale)) scale /= step;
   }

@@ -512,8 +512,9 @@ void ReadChart(const fs::path& file, const toml::table& document, Capture* captu
   if (chart.kind_is_file()) {
     Match(capture->folder, chart.kind, file, "chart.kind");
   } else {
-    table.Text("kind", chart.kind,
-               {"classic24", "sg140", "vinyl18", "grey", "a table of patches (.csv)"});
+    std::vector<std::string> kinds(kFoundCharts.begin(), kFoundCharts.end());
+    kinds.insert(kinds.end(), {"grey", "a table of patches (.csv)"});
+    table.Text("kind", chart.kind, kinds);
   }
   chart.corners_px = table.Points(
       "corners_px", 4,

@@ -42,10 +42,13 @@ struct LightsTable {
 // What moves from photograph to photograph.
 enum class CaptureKind { kMovedCamera, kFixedCamera };
 
+// Charts that are found in a photograph: the rows of calib/chart/chart_kinds.cc.
+inline constexpr std::array<const char*, 3> kFoundCharts = {"classic24", "sg140", "vinyl18"};
+
 // [chart]: a colour chart or grey card in a photograph, by which colours are corrected.
 struct ChartTable {
   std::string photo;               // relative to the folder; empty: there is no table
-  std::string kind = "classic24";  // a name of ChartKindNames(), or a table of patches (….csv)
+  std::string kind = "classic24";  // of kFoundCharts, "grey", or a table of patches (….csv)
   std::vector<double> corners_px;  // x y of the upright photograph: top left, top right, bottom
                                    // right, bottom left of the patches' rectangle; empty: find it
   std::string illuminant = "D50";  // to which a table's colours are relative

@@ -61,10 +61,9 @@ ColourCorrection ReadColourCorrection(const std::filesystem::path& file, const J
                     "linear or root-polynomial is expected; run calib again");
   }
   ColourCorrection correction{*model, ColourCorrection::Matrix::Zero()};
-  const int terms = ColourTerms(*model);
-  const auto values =
-      RequireNumbers(file, json, name, "matrix", static_cast<std::size_t>(3 * terms));
-  for (int i = 0; i < 3 * terms; ++i) correction.matrix(i / terms, i % terms) = values[i];
+  const int terms = ColourTerms(*model), count = 3 * terms;
+  const auto values = RequireNumbers(file, json, name, "matrix", static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) correction.matrix(i / terms, i % terms) = values[i];
   return correction;
 }
 

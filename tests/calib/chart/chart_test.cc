@@ -10,6 +10,7 @@
 #include "calib/chart/chart_kinds.h"
 #include "calib/chart/cielab.h"
 #include "calib/chart/delta_e.h"
+#include "pipeline/contract/capture.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
 
@@ -35,6 +36,11 @@ TEST(ChartKinds, HoldTheColoursThatTheMakerPublished) {
     ASSERT_NE(patch, classic.patches.end()) << name;
     EXPECT_LT(DeltaE00(patch->lab, lab), 0.1) << name << ": " << patch->lab.transpose();
   }
+}
+
+TEST(ChartKinds, AreThoseThatCaptureTomlTakes) {
+  ASSERT_EQ(ChartKinds().size(), kFoundCharts.size());
+  for (size_t i = 0; i < kFoundCharts.size(); ++i) EXPECT_EQ(ChartKinds()[i].name, kFoundCharts[i]);
 }
 
 TEST(ChartKinds, HaveAFrameOfNeutralPatchesRoundTheDigitalSg) {
