@@ -1,5 +1,12 @@
 // A progress bar on stderr, shown on a terminal only. Thread-safe. Under `glint run` it is the bar
 // of the whole run (run_progress.h), and leaves no line behind.
+//
+// For other programs the same goes to the file that the environment variable GLINT_PROGRESS_FILE
+// names, which must exist (a named pipe, say): a line of JSON at most ten times a second,
+//   {"label": "refine", "share": 0.41, "remaining_s": 12.5, "note": ""}
+// `share` is of the whole run under `glint run`, where it foresaw that the stage would run;
+// `remaining_s` is null while it cannot be told. Lines that a full pipe has no room for are left
+// out.
 #pragma once
 
 #include <atomic>
@@ -12,6 +19,8 @@
 #include "pipeline/contract/run_progress.h"
 
 namespace glint {
+
+inline constexpr char kProgressFileVariable[] = "GLINT_PROGRESS_FILE";
 
 class Progress {
  public:
@@ -30,8 +39,15 @@ class Progress {
   void Set(std::int64_t done, const std::string& note = "");
 
  private:
+  // How far it is: of the whole run, where there is one.
+  struct State {
+    double share = 0;
+    std::optional<double> remaining_s;
+  };
+  State Now() const;
   void Draw(bool force, const std::string& note);
-  std::string Line(const std::string& note) const;
+  std::string Line(const State& state, const std::string& note) const;
+  void WriteToFile(const State& state, const std::string& note) const;
 
   std::string label_;
   std::int64_t total_;
@@ -39,6 +55,7 @@ class Progress {
   std::optional<RunProgress> run_;
   std::atomic<std::int64_t> done_{0};
   bool terminal_;
+  int file_;  // descriptor of GLINT_PROGRESS_FILE; −1: none
   std::mutex mutex_;
   std::chrono::steady_clock::time_point start_, last_draw_;
 };
