@@ -21,6 +21,11 @@ namespace glint {
 void RenderView(const SvbrdfMaps& maps, const SamplePlane& plane, const View& view,
                 const ReflectanceConvention& convention, float* rgb_planar, int threads = 1);
 
+// The same for maps in memory of someone else's: kSvbrdfPlanes planes of the plane's size, one
+// after the other. std::invalid_argument unless there are as many values.
+void RenderView(std::span<const float> map_planes, const SamplePlane& plane, const View& view,
+                const ReflectanceConvention& convention, float* rgb_planar, int threads = 1);
+
 // A view and an image that belongs to it.
 struct ViewImage {
   View view;
@@ -32,5 +37,12 @@ struct ViewImage {
 SvbrdfMaps AdjointOfViews(const SvbrdfMaps& maps, const SamplePlane& plane,
                           std::span<const ViewImage> radiance_gradients,
                           const ReflectanceConvention& convention, int threads = 1);
+
+// The same in memory of someone else's; `gradient_planes`, as large as `map_planes`, is
+// overwritten.
+void AdjointOfViews(std::span<const float> map_planes, const SamplePlane& plane,
+                    std::span<const ViewImage> radiance_gradients,
+                    const ReflectanceConvention& convention, std::span<float> gradient_planes,
+                    int threads = 1);
 
 }  // namespace glint

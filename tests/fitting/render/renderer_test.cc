@@ -36,6 +36,26 @@ TEST(RendererTest, EveryWidthRendersTheReflectanceModel) {
   }
 }
 
+TEST(RendererTest, MapsInOthersMemoryGiveTheSameBits) {
+  const ReflectanceConvention convention = ReflectanceConvention::Photograph();
+  RandomScene random(8);
+  const SvbrdfMaps maps = random.Maps(19, 7);
+  const SamplePlane plane = TestPlane(19, 7, convention);
+  const View view = random.View();
+  const size_t values = 3 * maps.texels();
+  std::vector<float> expected(values), rendered(values), gradient(maps.planes.size());
+  RenderView(maps, plane, view, convention, expected.data());
+  RenderView(maps.planes, plane, view, convention, rendered.data());
+  EXPECT_EQ(rendered, expected);
+  const std::vector<float> image = random.Image(values);
+  const std::vector<ViewImage> images = {{view, image.data()}};
+  AdjointOfViews(maps.planes, plane, images, convention, gradient);
+  EXPECT_EQ(gradient, AdjointOfViews(maps, plane, images, convention).planes);
+  const std::span<const float> short_of_one(maps.planes.data(), maps.planes.size() - 1);
+  EXPECT_THROW(RenderView(short_of_one, plane, view, convention, rendered.data()),
+               std::invalid_argument);
+}
+
 TEST(RendererTest, AdjointAgreesWithRenderingInTheDotProduct) {
   // ⟨J·δ, g⟩ = ⟨δ, Jᵀ·g⟩, with J·δ by differences of two renderings.
   const ReflectanceConvention convention = ReflectanceConvention::MaterialGan();
