@@ -1,11 +1,14 @@
-# What an installed Glint consists of, and its Debian package (./dev package).
+# What an installed Glint consists of, and its Debian packages (./dev package): `glint`, and
+# `python3-glint`, which only Python's users need.
 #
 #   bin/glint, bin/glint-*        programs (GlintTargets.cmake)
 #   share/glint/models            trained weights; programs look here (fitting/weights/find_model.cc)
 #   share/glint/schemas           of manifests
 #   share/man, share/*completion  from what the programs say of themselves (target package_texts)
 #
-# and, as the component `development`, which the package leaves out (cmake --install build
+#   lib/python3/dist-packages/glint   component `python`, the package python3-glint (python/CMakeLists.txt)
+#
+# and, as the component `development`, which the packages leave out (cmake --install build
 # --component development --prefix DIR), what find_package(Glint) needs:
 #
 #   include/glint                 public headers, under the paths that the sources use
@@ -32,6 +35,9 @@ add_custom_target(package_texts
   COMMENT "Writing completion scripts and manual pages"
   VERBATIM)
 add_dependencies(package_texts programs)
+if(GLINT_PYTHON)
+  add_dependencies(package_texts glint_python)
+endif()
 install(DIRECTORY ${texts}/ DESTINATION share OPTIONAL)
 
 # Libraries that other programs can use, each after those it needs; GlintConfig.cmake.in says what
@@ -81,4 +87,18 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
   "ninja-build, libopenblas0-serial | libopenblas0-pthread | libopenblas0-openmp")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "colmap")
+if(GLINT_PYTHON)
+  # Packages are of the interpreter that the module was compiled for.
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_COMPONENTS_ALL Unspecified python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-glint)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "glint (= ${PROJECT_VERSION}), python3-numpy, \
+python3 (>= 3.${Python_VERSION_MINOR}~), python3 (<< 3.${next_minor})")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+    "${PROJECT_SOURCE_DIR}/cmake/python3-glint/postinst;${PROJECT_SOURCE_DIR}/cmake/python3-glint/prerm")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Glint for Python: captures and maps as NumPy arrays, the
+differentiable renderer, and the pipeline with progress and errors.")
+endif()
 include(CPack)
