@@ -8,6 +8,7 @@
 #include "datasets/procedural/material.h"
 #include "datasets/statistics/comparison_files.h"
 #include "datasets/synth/capture_writer.h"
+#include "datasets/synth/dome_writer.h"
 #include "datasets/synth/material_source.h"
 #include "datasets/synth/view_set.h"
 #include "fitting/training/material_pack.h"
@@ -244,6 +245,40 @@ int RunViews(int argc, char** argv, const ProgramInfo& info) {
   });
 }
 
+int RunDome(int argc, char** argv, const ProgramInfo& info) {
+  MaterialChoice choice;
+  DomeOptions dome;
+  int texels = 256;
+  fs::path out;
+  OptionSet options;
+  options.AddPositional("out", &out, "new folder for photographs and dirs.lp", true);
+  choice.AddTo(&options);
+  options.AddRange("texels", &texels, 16, 4096, "side of the pictures and of the maps");
+  options.AddRange("lights", &dome.lights, 1, 1000, "number of lamps, and of photographs");
+  options.AddRange("lowest-deg", &dome.lowest_deg, 1, 89, "elevation of the lowest lamp");
+  options.AddRange("highest-deg", &dome.highest_deg, 1, 90, "elevation of the highest lamp");
+  options.AddRange("sample-mm", &dome.sample_mm, 1, 10000, "side of the square sample");
+  options.AddRange("distance-mm", &dome.distance_mm, 0, 1e6,
+                   "of the lamps from the sample's centre; 0: ten sides of the sample");
+  options.AddRange("uneven", &dome.uneven, 0, 2,
+                   "standard deviation of the logarithm of the lamps' strengths");
+  options.AddRange("lamp-colours", &dome.colours, 0, 1,
+                   "standard deviation of the logarithm of red and blue over green of the lamps");
+  options.AddRange("jitter-deg", &dome.jitter_deg, 0, 30,
+                   "by how much dirs.lp is off, standard deviation of each of two components");
+  options.Add("shadows", &dome.shadows, "the relief casts shadows");
+  options.AddRange("noise", &dome.noise.scale, 0, 100, "sensor noise; 0: none, 1: a phone's");
+  options.AddChoice("format", &dome.format, {"png", "jpg"}, "file format of the photographs");
+  return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
+    const auto seed = static_cast<std::uint64_t>(common.seed);
+    const MaterialSource material = choice.Load(seed, texels);
+    WriteDome(out, material, dome, seed, common.threads);
+    return ProgramResult{
+        fmt::format("{}: {} photographs of {}", out.string(), dome.lights, material.name),
+        {{"folder", out.string()}, {"material", material.name}, {"lights", dome.lights}}};
+  });
+}
+
 int RunStatistics(int argc, char** argv, const ProgramInfo& info) {
   std::vector<std::string> materials;
   std::string family;
@@ -286,6 +321,12 @@ int main(int argc, char** argv) {
       {"views",
        "Renders rectified views from maps, as a capture with its rectify stage already done.",
        "Example: glint-synth views procedural:7 set --count 5 && glint-fit set", RunViews},
+      {"dome",
+       "Renders photographs of a camera that stands still under the lamps of a dome, or one that a "
+       "hand holds, with their dirs.lp.",
+       "Example: glint-synth dome icon --family wood --lights 60 --uneven 0.2\n"
+       "Then: glint init icon --lights icon/dirs.lp --width-mm 100 && glint run icon",
+       RunDome},
       {"statistics",
        "Compares the statistics of procedural materials with those of real ones: histograms, power "
        "spectra, correlations and variation across materials, and the distance between the two in "

@@ -14,6 +14,7 @@
 #include "fitting/estimator/estimator.h"
 #include "fitting/latent/levels.h"
 #include "fitting/latent/light_power.h"
+#include "fitting/latent/spread_views.h"
 #include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/weights/find_model.h"
 #include "pipeline/contract/deviation_rows.h"
@@ -31,6 +32,9 @@ namespace fs = std::filesystem;
 // itself: docs/experiments/one-photograph.md.
 constexpr size_t kFewPhotographs = 2;
 constexpr int kMostEstimatorSize = 1024;
+
+// Of a camera that stands still: docs/experiments/moving-light.md.
+constexpr size_t kMostLights = 16;
 
 constexpr int kFullSize = 1 << 20;  // more than any maps have along a side
 
@@ -304,7 +308,10 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
     throw UserError("fit: " + wrong);
   const Size fitted = FittedSize(set.plane, options, fit_options);
   const Size shown = ShownSize(set.plane, options, fit_options);
-  PhotographSet photographs = Load(set, views, fitted, shown, threads);
+  // Of a fixed camera's many lights some tell as much of the start as all; refinement sees all.
+  const std::vector<RectifiedView> shown_views =
+      set.fixed_camera ? SpreadViews(views, kMostLights) : views;
+  PhotographSet photographs = Load(set, shown_views, fitted, shown, threads);
 
   const auto began = std::chrono::steady_clock::now();
   const EstimatorConditions conditions{options.metals == "rare", set.light_power_known};
@@ -335,7 +342,7 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
   result.width = set.plane.width;
   result.height = set.plane.height;
   result.data = Data(result.fit, set, options, views);
-  result.metrics = Metrics(result.fit, views);
+  result.metrics = Metrics(result.fit, shown_views);
   if (Estimates(options) && !set.light_power_known) {
     result.metrics["light_power"] = {
         {"factor", power.factor}, {"log_l1", power.log_l1}, {"log_l1_as_given", power.as_given}};

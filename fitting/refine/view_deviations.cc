@@ -58,19 +58,86 @@ OwnProducts WithShading(const DeviationProducts& products, const std::array<doub
   return {products.view, by * squared * by.transpose(), by * by_residual, by * by_values};
 }
 
-// Some unknowns are common to all views: sums over views' unknowns become sums over those that
-// are told apart.
-Eigen::MatrixXd SharingTheLight(int views) {
-  Eigen::MatrixXd sharing =
-      Eigen::MatrixXd::Zero(kUnknowns * views, kOwnUnknowns * views + kUnknowns - kOwnUnknowns);
-  for (int v = 0; v < views; ++v) {
-    for (int i = 0; i < kUnknowns; ++i) {
-      const int first = i < kOwnUnknowns ? kOwnUnknowns * v : kOwnUnknowns * (views - 1);
-      sharing(kUnknowns * v + i, first + i) = 1;
+// Which of the unknowns are unknown, and where each stands among those of all views.
+class UnknownsOfViews {
+ public:
+  UnknownsOfViews(int views, const DeviationValues& expected,
+                  const SharedLightValues& expected_shared)
+      : views_(views) {
+    for (int i = 0; i < kViewDeviations; ++i) {
+      if (expected[static_cast<size_t>(i)] > 0) own_.push_back(i);
+    }
+    // A view's shading varies where its exposure does.
+    if (expected[kLogExposure] > 0) own_.insert(own_.end(), {kViewDeviations, kViewDeviations + 1});
+    for (int i = 0; i < kSharedLightValues; ++i) {
+      if (expected_shared[static_cast<size_t>(i)] > 0) shared_.push_back(i);
     }
   }
-  return sharing;
-}
+
+  const std::vector<int>& own() const { return own_; }
+  const std::vector<int>& shared() const { return shared_; }
+  Eigen::Index at(int view, size_t own) const {
+    return static_cast<Eigen::Index>(own_.size()) * view + static_cast<Eigen::Index>(own);
+  }
+  Eigen::Index at_shared(size_t shared) const {
+    return at(views_, 0) + static_cast<Eigen::Index>(shared);
+  }
+  Eigen::Index size() const { return at_shared(shared_.size()); }
+  // f(index of the unknown in OwnProducts, its place among all).
+  template <class F>
+  void ForEachOf(int view, const F& f) const {
+    for (size_t i = 0; i < own_.size(); ++i) f(own_[i], at(view, i));
+    for (size_t i = 0; i < shared_.size(); ++i) f(kOwnUnknowns + shared_[i], at_shared(i));
+  }
+
+ private:
+  int views_;
+  std::vector<int> own_, shared_;
+};
+
+// The views' normal equations, texels eliminated. Texels' products with all unknowns are gathered,
+// a block of texels at a time, for one product of matrices.
+struct ViewEquations {
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+
+  ViewEquations(const UnknownsOfViews& unknowns, std::span<const TexelOfViews> texels)
+      : hessian(Eigen::MatrixXd::Zero(unknowns.size(), unknowns.size())),
+        gradient(Eigen::VectorXd::Zero(unknowns.size())) {
+    constexpr size_t kBlockOfTexels = 32;
+    constexpr Eigen::Index kRows = kBlockOfTexels * kTexelParameters;
+    Eigen::MatrixXd by_values(kRows, unknowns.size()), follows(kRows, unknowns.size());
+    for (size_t first = 0; first < texels.size(); first += kBlockOfTexels) {
+      by_values.setZero();
+      follows.setZero();
+      const size_t count = std::min(kBlockOfTexels, texels.size() - first);
+      for (size_t t = 0; t < count; ++t) {
+        const Eigen::Index row = static_cast<Eigen::Index>(t) * kTexelParameters;
+        const TexelOfViews& texel = texels[first + t];
+        Add(unknowns, texel, row, &by_values);
+        const Eigen::Map<const TexelMatrix> inverse(texel.inverse.data());
+        follows.middleRows<kTexelParameters>(row).noalias() =
+            inverse * by_values.middleRows<kTexelParameters>(row);
+      }
+      hessian.noalias() -= by_values.transpose() * follows;
+    }
+  }
+
+ private:
+  void Add(const UnknownsOfViews& unknowns, const TexelOfViews& texel, Eigen::Index row,
+           Eigen::MatrixXd* by_values) {
+    for (const DeviationProducts& products : *texel.products) {
+      const OwnProducts own = WithShading(products, texel.place);
+      unknowns.ForEachOf(own.view, [&](int i, Eigen::Index at) {
+        gradient[at] -= own.by_residual[i];
+        by_values->block<kTexelParameters, 1>(row, at) += own.by_values.row(i).transpose();
+        unknowns.ForEachOf(own.view, [&](int j, Eigen::Index other) {
+          hessian(at, other) += own.squared(i, j);
+        });
+      });
+    }
+  }
+};
 
 }  // namespace
 
@@ -116,65 +183,55 @@ ViewDeviations::ViewDeviations(int views, const DeviationValues& expected,
 void ViewDeviations::Update(std::span<const TexelOfViews> texels, double information) {
   if (!any_) return;
   const int views = static_cast<int>(values_.size());
-  const auto own_at = [](int view) { return Eigen::Index{kUnknowns} * view; };
-  Eigen::MatrixXd own_hessian = Eigen::MatrixXd::Zero(kUnknowns * views, kUnknowns * views);
-  Eigen::VectorXd own_gradient = Eigen::VectorXd::Zero(kUnknowns * views);
-  for (const TexelOfViews& texel : texels) {
-    std::vector<OwnProducts> own;
-    for (const DeviationProducts& products : *texel.products) {
-      own.push_back(WithShading(products, texel.place));
-    }
-    const Eigen::Map<const TexelMatrix> inverse(texel.inverse.data());
-    for (const OwnProducts& a : own) {
-      const UnknownsByTexel follows = a.by_values * inverse;
-      own_gradient.segment<kUnknowns>(own_at(a.view)) -= a.by_residual;
-      own_hessian.block<kUnknowns, kUnknowns>(own_at(a.view), own_at(a.view)) += a.squared;
-      for (const OwnProducts& b : own) {
-        own_hessian.block<kUnknowns, kUnknowns>(own_at(a.view), own_at(b.view)) -=
-            follows * b.by_values.transpose();
-      }
-    }
+  const UnknownsOfViews unknowns(views, expected_, expected_shared_);
+  ViewEquations equations(unknowns, texels);
+  Eigen::MatrixXd& hessian = equations.hessian;
+  Eigen::VectorXd& gradient = equations.gradient;
+  hessian *= information;
+  gradient *= information;
+  for (size_t i = 0; i < unknowns.shared().size(); ++i) {
+    const auto k = static_cast<size_t>(unknowns.shared()[i]);
+    const double precision = 1 / (expected_shared_[k] * expected_shared_[k]);
+    const Eigen::Index at = unknowns.at_shared(i);
+    hessian(at, at) += precision;
+    gradient[at] -= precision * shared_[k];
   }
-  const Eigen::MatrixXd sharing = SharingTheLight(views);
-  Eigen::MatrixXd hessian = information * sharing.transpose() * own_hessian * sharing;
-  Eigen::VectorXd gradient = information * sharing.transpose() * own_gradient;
-  const auto at = [](int view, int i) { return Eigen::Index{kOwnUnknowns} * view + i; };
-  for (int i = 0; i < kSharedLightValues; ++i) {
-    const auto k = static_cast<size_t>(i);
-    const double spread = std::max(expected_shared_[k], 1e-6);
-    hessian(at(views, i), at(views, i)) += 1 / (spread * spread);
-    gradient[at(views, i)] -= shared_[k] / (spread * spread);
-  }
-  for (int i = 0; i < kOwnUnknowns; ++i) {
-    const bool shading = i >= kViewDeviations;
+  for (size_t i = 0; i < unknowns.own().size(); ++i) {
+    const int kind = unknowns.own()[i];
+    const bool shading = kind >= kViewDeviations;
     // From a sample's centre to its edge a view's exposure is expected to be off by as much as the
     // whole view's is: phones' JPEGs are corrected for vignetting to some per cent.
     const double spread =
-        std::max(shading ? expected_[kLogExposure] : spreads_[static_cast<size_t>(i)], 1e-6);
+        std::max(shading ? expected_[kLogExposure] : spreads_[static_cast<size_t>(kind)], 1e-6);
     const double precision = 1 / (spread * spread);
     for (int v = 0; v < views; ++v) {
-      hessian(at(v, i), at(v, i)) += precision;
+      const Eigen::Index at = unknowns.at(v, i);
+      hessian(at, at) += precision;
       if (shading) continue;
-      gradient[at(v, i)] -= precision * values_[static_cast<size_t>(v)][static_cast<size_t>(i)];
-      for (int w = 0; w < views; ++w) hessian(at(w, i), at(v, i)) += kMeanPrecision * precision;
+      gradient[at] -= precision * values_[static_cast<size_t>(v)][static_cast<size_t>(kind)];
+      for (int w = 0; w < views; ++w) hessian(unknowns.at(w, i), at) += kMeanPrecision * precision;
     }
   }
   const Eigen::LDLT<Eigen::MatrixXd> solver(hessian);
   const Eigen::VectorXd step = solver.solve(gradient);
   const Eigen::MatrixXd covariance =
       solver.solve(Eigen::MatrixXd::Identity(hessian.rows(), hessian.cols()));
-  std::vector<DeviationValues> variances(values_.size());
-  for (int v = 0; v < views; ++v) {
-    const auto k = static_cast<size_t>(v);
-    for (int i = 0; i < kViewDeviations; ++i) {
-      values_[k][static_cast<size_t>(i)] +=
-          std::clamp(step[at(v, i)], -kMostDeviationStep, kMostDeviationStep);
-      variances[k][static_cast<size_t>(i)] = covariance(at(v, i), at(v, i));
+  std::vector<DeviationValues> variances(values_.size(), DeviationValues{});
+  const auto bounded = [](double by) {
+    return std::clamp(by, -kMostDeviationStep, kMostDeviationStep);
+  };
+  for (size_t i = 0; i < unknowns.own().size(); ++i) {
+    const auto kind = static_cast<size_t>(unknowns.own()[i]);
+    if (kind >= kViewDeviations) continue;
+    for (int v = 0; v < views; ++v) {
+      const auto k = static_cast<size_t>(v);
+      const Eigen::Index at = unknowns.at(v, i);
+      values_[k][kind] += bounded(step[at]);
+      variances[k][kind] = covariance(at, at);
     }
   }
-  for (size_t i = 0; i < kSharedLightValues; ++i) {
-    shared_[i] +=
-        std::clamp(step[at(views, static_cast<int>(i))], -kMostDeviationStep, kMostDeviationStep);
+  for (size_t i = 0; i < unknowns.shared().size(); ++i) {
+    shared_[static_cast<size_t>(unknowns.shared()[i])] += bounded(step[unknowns.at_shared(i)]);
   }
   UpdateSpreads(variances);
 }
