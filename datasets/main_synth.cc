@@ -267,6 +267,8 @@ int RunDome(int argc, char** argv, const ProgramInfo& info) {
   options.AddRange("jitter-deg", &dome.jitter_deg, 0, 30,
                    "by how much dirs.lp is off, standard deviation of each of two components");
   options.Add("shadows", &dome.shadows, "the relief casts shadows");
+  options.AddRange("blur-px", &dome.blur_px, 0, 10,
+                   "standard deviation by which lens and pixel spread a point");
   options.AddRange("noise", &dome.noise.scale, 0, 100, "sensor noise; 0: none, 1: a phone's");
   options.AddChoice("format", &dome.format, {"png", "jpg"}, "file format of the photographs");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {

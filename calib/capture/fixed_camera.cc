@@ -23,11 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 
 // A camera or a lamp whose distance nobody told, by the picture's longer side. Three painted panels
-// are level in the mean when their lamps stand 10 to 15 of their widths away: nearer ones would make
-// them hollow, farther ones arched.
+// are level in the mean when their lamps stand 10 to 15 of their widths away: nearer ones would
+// make them hollow, farther ones arched.
 constexpr double kFarSides = 10;
-constexpr int kGridSide = 64;          // points along each side at which lamps' strengths are told
-constexpr double kGridMargin = 0.02;   // of the sample's side that is left out at its rim
+constexpr int kGridSide = 64;         // points along each side at which lamps' strengths are told
+constexpr double kGridMargin = 0.02;  // of the sample's side that is left out at its rim
 constexpr double kLeastElevation = 0.03;  // sine; lower lights graze a flat sample
 
 struct PictureScale {
@@ -74,13 +74,13 @@ PictureScale ScaleOf(const Capture& capture) {
     const double reach_mm =
         2 * std::abs(centre[axis]) + capture.sample_size_mm[static_cast<size_t>(axis)];
     if (reach_mm <= side_mm * (1 + 1e-3)) continue;
-    throw UserError(capture.file, "sample.size_mm",
-                    fmt::format("{:g} x {:g} mm about [{:g}, {:g}]", capture.sample_size_mm[0],
-                                capture.sample_size_mm[1], centre.x(), centre.y()),
-                    fmt::format("the picture shows {:.4g} x {:.4g} mm: reduce size_mm, or correct "
-                                "picture_width_mm or points_mm in [poses]",
-                                scale.mm_per_px * scale.width_px,
-                                scale.mm_per_px * scale.height_px));
+    throw UserError(
+        capture.file, "sample.size_mm",
+        fmt::format("{:g} x {:g} mm about [{:g}, {:g}]", capture.sample_size_mm[0],
+                    capture.sample_size_mm[1], centre.x(), centre.y()),
+        fmt::format("the picture shows {:.4g} x {:.4g} mm: reduce size_mm, or correct "
+                    "picture_width_mm or points_mm in [poses]",
+                    scale.mm_per_px * scale.width_px, scale.mm_per_px * scale.height_px));
   }
   return scale;
 }
@@ -195,8 +195,8 @@ void TakeOutRoom(size_t ball, std::vector<PhotoLook>* looks) {
 }
 
 // By photograph; nullopt where no ball shows one. Two balls' directions are averaged.
-std::vector<std::optional<ListedLight>> LightsFromBalls(
-    const std::vector<BallOutline>& balls, std::vector<PhotoLook>* looks) {
+std::vector<std::optional<ListedLight>> LightsFromBalls(const std::vector<BallOutline>& balls,
+                                                        std::vector<PhotoLook>* looks) {
   std::vector<std::optional<ListedLight>> lights(looks->size());
   std::vector<Eigen::Vector3d> sums(looks->size(), Eigen::Vector3d::Zero());
   for (size_t b = 0; b < balls.size(); ++b) {
@@ -246,8 +246,9 @@ std::string WhatIsWrong(const Capture& capture, const std::optional<ListedLight>
 void RequireSomeLights(const Capture& capture, const std::vector<std::string>& reasons,
                        const std::vector<std::optional<ListedLight>>& lights) {
   if (std::any_of(reasons.begin(), reasons.end(), [](const auto& r) { return r.empty(); })) return;
-  const bool below = std::any_of(lights.begin(), lights.end(),
-                                 [](const auto& light) { return light && light->direction.z() < 0; });
+  const bool below = std::any_of(lights.begin(), lights.end(), [](const auto& light) {
+    return light && light->direction.z() < 0;
+  });
   throw UserError(
       capture.lights.file.empty() ? capture.file : capture.folder / capture.lights.file, "",
       "no usable light (" + capture.photos[0] + ": " + reasons[0] + ")",
@@ -270,9 +271,8 @@ class FixedCamera {
   void Run() {
     const auto balls = BallsOf(capture_);
     std::vector<PhotoLook> looks = LookAtAll(balls);
-    const auto lights = balls.empty()
-                            ? LightsFromFile(capture_, scale_.mm_per_px * scale_.width_px)
-                            : LightsFromBalls(balls, &looks);
+    const auto lights = balls.empty() ? LightsFromFile(capture_, scale_.mm_per_px * scale_.width_px)
+                                      : LightsFromBalls(balls, &looks);
     std::vector<std::string> reasons;
     for (const auto& light : lights) reasons.push_back(WhatIsWrong(capture_, light));
     RequireSomeLights(capture_, reasons, lights);

@@ -18,7 +18,8 @@ double Elevation_deg(const ViewFacts& view) { return 90 - view.light.tilt_deg; }
 void AddFewLights(const Verdict& v, std::vector<Advice>* list) {
   const int now = static_cast<int>(v.views.size());
   if (now >= v.limits.enough_lights) return;
-  list->push_back({"few_lights", now < v.limits.few_lights ? Importance::kUseful : Importance::kHint,
+  list->push_back({"few_lights",
+                   now < v.limits.few_lights ? Importance::kUseful : Importance::kHint,
                    fmt::format("{} light{}: {} or more, spread over the half sphere, tell gloss, "
                                "relief and shadows apart",
                                now, now == 1 ? "" : "s", v.limits.enough_lights)});
@@ -57,11 +58,11 @@ void AddClippedLights(const Verdict& v, std::vector<Advice>* list) {
     worst = std::max(worst, view.clipped_share);
   }
   if (names.empty()) return;
-  list->push_back({"clipped", Importance::kUseful,
-                   fmt::format("up to {:.0f} % of the sample is clipped in {} photograph{} ({}): "
-                               "expose shorter",
-                               100 * worst, names.size(), names.size() == 1 ? "" : "s",
-                               NameList(names))});
+  list->push_back(
+      {"clipped", Importance::kUseful,
+       fmt::format("up to {:.0f} % of the sample is clipped in {} photograph{} ({}): "
+                   "expose shorter",
+                   100 * worst, names.size(), names.size() == 1 ? "" : "s", NameList(names))});
 }
 
 void AddLeftOutLights(const GuidanceInput& input, std::vector<Advice>* list) {
@@ -70,10 +71,10 @@ void AddLeftOutLights(const GuidanceInput& input, std::vector<Advice>* list) {
   for (const LeftOutPhoto& photo : input.left_out) {
     reasons.push_back(photo.name + ": " + photo.reason);
   }
-  list->push_back({"left_out", Importance::kHint,
-                   fmt::format("{} photograph{} left out ({})", input.left_out.size(),
-                               input.left_out.size() == 1 ? " is" : "s are",
-                               NameList(reasons, 2))});
+  list->push_back(
+      {"left_out", Importance::kHint,
+       fmt::format("{} photograph{} left out ({})", input.left_out.size(),
+                   input.left_out.size() == 1 ? " is" : "s are", NameList(reasons, 2))});
 }
 
 }  // namespace

@@ -201,13 +201,12 @@ class LampSolver {
       for (size_t p = 0; p < points_; ++p) {
         if (!known_[At(v, p)]) continue;
         const double scale = Scale(v, p);
-        values.emplace_back(log_[At(v, p)] - albedo_[p] - ReceivedBy(v, p),
-                            1 / (scale * scale));
+        values.emplace_back(log_[At(v, p)] - albedo_[p] - ReceivedBy(v, p), 1 / (scale * scale));
       }
       strength_[v] = WeightedMedian(&values);
     });
-    const double mean = std::accumulate(strength_.begin(), strength_.end(), 0.0) /
-                        static_cast<double>(lamps_);
+    const double mean =
+        std::accumulate(strength_.begin(), strength_.end(), 0.0) / static_cast<double>(lamps_);
     for (double& strength : strength_) strength -= mean;
   }
 
@@ -215,8 +214,7 @@ class LampSolver {
     std::vector<double> off;
     for (size_t v = 0; v < lamps_; ++v) {
       if (!known_[At(v, p)]) continue;
-      off.push_back(std::abs(log_[At(v, p)] - strength_[v] - albedo_[p] -
-                             ReceivedBy(v, p)));
+      off.push_back(std::abs(log_[At(v, p)] - strength_[v] - albedo_[p] - ReceivedBy(v, p)));
     }
     scale_[p] = kOfMedian * Median(off);
   }
@@ -226,9 +224,9 @@ class LampSolver {
   int threads_;
   std::vector<double> log_;
   std::vector<char> known_;
-  std::vector<double> noise_;                 // variance of log_ from rounding
-  std::vector<double> strength_, albedo_;     // logarithms
-  std::vector<double> slope_x_, slope_y_;     // n_x / n_z, n_y / n_z
+  std::vector<double> noise_;              // variance of log_ from rounding
+  std::vector<double> strength_, albedo_;  // logarithms
+  std::vector<double> slope_x_, slope_y_;  // n_x / n_z, n_y / n_z
   std::vector<double> scale_;
 };
 
@@ -282,9 +280,9 @@ std::vector<double> ColourRatios(const LampProblem& problem, int channel) {
 std::vector<double> OwnPart(const std::vector<Eigen::Vector3d>& directions,
                             const std::vector<double>& strengths,
                             const std::vector<double>& disagreement) {
-  constexpr double kFeigned = 0.5;   // gloss doubles what a sample reflects, and more
-  constexpr double kLength = 0.5;    // 29° of direction, as wide as the lobe of a roughness of .5
-  constexpr double kOwn = 0.15;      // lamps of a dome, and hands that hold one
+  constexpr double kFeigned = 0.5;  // gloss doubles what a sample reflects, and more
+  constexpr double kLength = 0.5;   // 29° of direction, as wide as the lobe of a roughness of .5
+  constexpr double kOwn = 0.15;     // lamps of a dome, and hands that hold one
   constexpr double kOfDisagreement = 0.3;  // a dozen kinds of points that err together
   constexpr int kRounds = 5;
   const auto n = static_cast<Eigen::Index>(strengths.size());
@@ -294,7 +292,8 @@ std::vector<double> OwnPart(const std::vector<Eigen::Vector3d>& directions,
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
       const double off =
-          (directions[static_cast<size_t>(i)] - directions[static_cast<size_t>(j)]).norm() / kLength;
+          (directions[static_cast<size_t>(i)] - directions[static_cast<size_t>(j)]).norm() /
+          kLength;
       feigned(i, j) = kFeigned * kFeigned * std::exp(-off * off / 2);
     }
   }
@@ -347,8 +346,7 @@ LampStrengths EstimateLampStrengths(const LampProblem& problem, int threads) {
   result.point_sd = solver.point_sd();
   std::vector<Eigen::Vector3d> directions;
   for (const Eigen::Vector3d& light : problem.lights_mm) directions.push_back(light.normalized());
-  const std::vector<double> own =
-      OwnPart(directions, solver.strengths(), solver.Disagreements());
+  const std::vector<double> own = OwnPart(directions, solver.strengths(), solver.Disagreements());
   for (size_t v = 0; v < result.lamps.size(); ++v) {
     LampStrength& lamp = result.lamps[v];
     lamp.exposure = std::exp(own[v]);

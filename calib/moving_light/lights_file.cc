@@ -26,9 +26,8 @@ LightsFile ReadRelight(const fs::path& file, const std::string&, double picture_
 }
 
 constexpr LightsFormat kLightsFormats[] = {
-    {".lp", [](const fs::path& file, const std::string& unit, double) {
-       return ReadLpFile(file, unit);
-     }},
+    {".lp",
+     [](const fs::path& file, const std::string& unit, double) { return ReadLpFile(file, unit); }},
     {".relight", ReadRelight},
     {".dome", ReadRelight},
 };
@@ -47,8 +46,9 @@ std::map<std::string, int> IndexOf(const LightsFile& file, const std::vector<std
   for (size_t i = 0; i < photos.size(); ++i) {
     const auto [at, added] = index.insert({key(WithoutFolders(photos[i])), static_cast<int>(i)});
     if (added) continue;
-    throw UserError(file.file, "", fmt::format("{} and {}, which it cannot tell apart",
-                                               photos[static_cast<size_t>(at->second)], photos[i]),
+    throw UserError(file.file, "",
+                    fmt::format("{} and {}, which it cannot tell apart",
+                                photos[static_cast<size_t>(at->second)], photos[i]),
                     "name one of them in [photos] files, or rename them");
   }
   return index;
@@ -104,8 +104,9 @@ std::vector<int> MatchLights(const LightsFile& file, const std::vector<std::stri
   const bool as_many = file.lights.size() == photos.size();
   if (!file.has_names()) {
     if (as_many) return InOrder(photos.size());
-    throw UserError(file.file, "", fmt::format("{} lights without names for {} photographs",
-                                               file.lights.size(), photos.size()),
+    throw UserError(file.file, "",
+                    fmt::format("{} lights without names for {} photographs", file.lights.size(),
+                                photos.size()),
                     "name those that it lists, and no others, in [photos] files");
   }
   const std::vector<int> photo_of = PhotosByName(file, photos);
@@ -131,8 +132,9 @@ std::vector<int> MatchLights(const LightsFile& file, const std::vector<std::stri
     return InOrder(photos.size());
   }
   if (missing.empty()) return lights;
-  throw UserError(file.file, "", fmt::format("{} of {} names without a photograph: {}",
-                                             missing.size(), file.lights.size(), NameList(missing)),
+  throw UserError(file.file, "",
+                  fmt::format("{} of {} names without a photograph: {}", missing.size(),
+                              file.lights.size(), NameList(missing)),
                   "put the photographs into the capture, or take their lines out");
 }
 

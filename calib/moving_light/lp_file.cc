@@ -25,8 +25,7 @@ std::string_view Trimmed(std::string_view text) {
 bool TakeLastNumber(std::string_view* line, double* number) {
   *line = Trimmed(*line);
   const size_t blank = line->find_last_of(kBlank);
-  const std::string_view word =
-      blank == std::string_view::npos ? *line : line->substr(blank + 1);
+  const std::string_view word = blank == std::string_view::npos ? *line : line->substr(blank + 1);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), *number);
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(*number)) {
     return false;
@@ -112,9 +111,10 @@ LightsFile ReadLpFile(const fs::path& file, const std::string& unit) {
     result.lights.push_back(std::move(light));
   }
   if (announced >= 0 && announced != static_cast<double>(result.lights.size())) {
-    throw UserError(file, "line 1", fmt::format("{:g} lights announced, {} listed", announced,
-                                                result.lights.size()),
-                    "correct the number, or complete the list: is the file cut off?");
+    throw UserError(
+        file, "line 1",
+        fmt::format("{:g} lights announced, {} listed", announced, result.lights.size()),
+        "correct the number, or complete the list: is the file cut off?");
   }
   constexpr double kWorthAWord = 0.05;
   if (unit.empty() && worst > kWorthAWord) {

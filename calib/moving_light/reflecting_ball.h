@@ -3,7 +3,8 @@
 // Wolters 2001; "highlight RTI", Mudge et al. 2006).
 //
 // The camera is far: at the reflection, (x, y) off the ball's middle, the ball's normal is n = (x,
-// y, √(r² − x² − y²)) / r, and the light is where the view v = (0, 0, 1) is mirrored: 2 (n·v) n − v.
+// y, √(r² − x² − y²)) / r, and the light is where the view v = (0, 0, 1) is mirrored: 2 (n·v) n −
+// v.
 #pragma once
 
 #include <Eigen/Core>

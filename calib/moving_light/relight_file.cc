@@ -55,8 +55,8 @@ struct DomeGeometry {
                    double unit_mm) const {
     const ListedLight far = LightOf(file, place, direction, 0);
     if (configuration != "spherical" || !(diameter > 0) || !(unit_mm > 0)) return far;
-    return LightOf(file, place,
-                   diameter / 2 * far.direction + Eigen::Vector3d(0, 0, offset), unit_mm);
+    return LightOf(file, place, diameter / 2 * far.direction + Eigen::Vector3d(0, 0, offset),
+                   unit_mm);
   }
 };
 
@@ -68,8 +68,7 @@ const Json* ListIn(const Json& json, std::initializer_list<const char*> keys) {
   return nullptr;
 }
 
-std::vector<ListedLight> LampsOf(const fs::path& file, const Json& dome,
-                                 double picture_width_mm) {
+std::vector<ListedLight> LampsOf(const fs::path& file, const Json& dome, double picture_width_mm) {
   const DomeGeometry geometry(dome);
   const double unit_mm = geometry.Unit_mm(picture_width_mm);
   const bool placed = geometry.configuration == "lights3d" && unit_mm > 0;

@@ -24,8 +24,8 @@ MatrixXd HarmonicTerms(const Directions& lights, int terms) {
   for (size_t i = 0; i < lights.size(); ++i) {
     const double x = lights[i].x(), y = lights[i].y(), z = lights[i].z();
     basis.row(static_cast<Eigen::Index>(i)) << 1, x, y, z, x * y, y * z, 3 * z * z - 1, x * z,
-        x * x - y * y, y * (3 * x * x - y * y), x * y * z, y * (5 * z * z - 1),
-        z * (5 * z * z - 3), x * (5 * z * z - 1), z * (x * x - y * y), x * (x * x - 3 * y * y);
+        x * x - y * y, y * (3 * x * x - y * y), x * y * z, y * (5 * z * z - 1), z * (5 * z * z - 3),
+        x * (5 * z * z - 1), z * (x * x - y * y), x * (x * x - 3 * y * y);
   }
   return basis.leftCols(terms);
 }

@@ -36,7 +36,9 @@ double Psnr_db(const std::vector<float>& rendered, const RectifiedImage& photogr
   double squares = 0, count = 0;
   for (size_t i = 0; i < rendered.size(); ++i) {
     if (photograph.mask[i % texels] < 0.5f) continue;
-    const auto shown = [](float value) { return std::pow(std::clamp(value, 0.0f, 1.0f), 1 / kGamma); };
+    const auto shown = [](float value) {
+      return std::pow(std::clamp(value, 0.0f, 1.0f), 1 / kGamma);
+    };
     squares += std::pow(shown(rendered[i]) - shown(photograph.rgb[i]), 2);
     count += 1;
   }
@@ -47,7 +49,9 @@ double Psnr_db(const std::vector<float>& rendered, const RectifiedImage& photogr
 class RelitSet {
  public:
   RelitSet(const HoldoutEntry& entry, int threads)
-      : fit_(ReadFittedMaps(entry.manifest)), set_(ReadRectifiedSet(entry.views)), threads_(threads) {
+      : fit_(ReadFittedMaps(entry.manifest)),
+        set_(ReadRectifiedSet(entry.views)),
+        threads_(threads) {
     for (const RectifiedView& view : set_.views) {
       const bool out = std::find(entry.held_out_names.begin(), entry.held_out_names.end(),
                                  view.name) != entry.held_out_names.end();
@@ -58,8 +62,8 @@ class RelitSet {
     }
   }
 
-  // By the maps; then by each interpolation, of photographs as they are and as if under lamps of the
-  // strengths that were found.
+  // By the maps; then by each interpolation, of photographs as they are and as if under lamps of
+  // the strengths that were found.
   std::vector<RelightRow> Compare(const std::string& name, const fs::path& pairs) {
     std::vector<RelightRow> rows;
     std::vector<std::vector<float>> rendered;
@@ -72,8 +76,7 @@ class RelitSet {
       for (const LightInterpolation& method : LightInterpolations()) {
         const std::string label = method.name + (calibrated ? ", lamps calibrated" : "");
         rows.push_back(
-            {name, label,
-             FiguresOf(Interpolated(method, calibrated), pairs / FileNameOf(label))});
+            {name, label, FiguresOf(Interpolated(method, calibrated), pairs / FileNameOf(label))});
       }
     }
     return rows;
@@ -108,8 +111,8 @@ class RelitSet {
     for (size_t w = 0; w < wanted_.size(); ++w) {
       std::vector<float> picture(encoded_[0].size(), 0.0f);
       for (size_t k = 0; k < known_.size(); ++k) {
-        const auto weight = static_cast<float>(
-            weights(static_cast<Eigen::Index>(w), static_cast<Eigen::Index>(k)));
+        const auto weight =
+            static_cast<float>(weights(static_cast<Eigen::Index>(w), static_cast<Eigen::Index>(k)));
         for (size_t i = 0; i < picture.size(); ++i) picture[i] += weight * encoded_[k][i];
       }
       const float factor = calibrated ? static_cast<float>(Exposure(wanted_[w])) : 1;
@@ -146,8 +149,8 @@ class RelitSet {
   RectifiedSet set_;
   int threads_;
   std::vector<RectifiedView> known_, wanted_;
-  std::vector<RectifiedImage> photographs_;     // of the wanted
-  std::vector<std::vector<float>> encoded_;     // of the known
+  std::vector<RectifiedImage> photographs_;  // of the wanted
+  std::vector<std::vector<float>> encoded_;  // of the known
 };
 
 // Each `every`-th photograph, from the `first`-th on.
@@ -162,16 +165,17 @@ HoldoutSplit EveryNth(size_t photographs, int every, int first) {
 }
 
 std::string TableText(const std::vector<RelightRow>& rows) {
-  std::string text = "| set | relit by | log-L1 | PSNR, dB | free | SSIM | contrast 1–2, 2–4 | "
-                     "correlation 1–2, 2–4 | highlight |\n|---|---|---:|---:|---:|---:|---|---|---:|\n";
+  std::string text =
+      "| set | relit by | log-L1 | PSNR, dB | free | SSIM | contrast 1–2, 2–4 | "
+      "correlation 1–2, 2–4 | highlight |\n|---|---|---:|---:|---:|---:|---|---|---:|\n";
   for (const RelightRow& row : rows) {
     const Looks& looks = row.figures.looks;
-    text += fmt::format("| {} | {} | {:.3f} | {:.1f} | {} | {} | {} {} | {} {} | {} |\n", row.set,
-                        row.method, row.figures.log_l1, row.figures.psnr_db,
-                        LooksText(looks.free, 3), LooksText(looks.ssim, 3),
-                        LooksText(looks.contrast[0], 2), LooksText(looks.contrast[1], 2),
-                        LooksText(looks.correlation[0], 2), LooksText(looks.correlation[1], 2),
-                        LooksText(looks.highlight, 2));
+    text +=
+        fmt::format("| {} | {} | {:.3f} | {:.1f} | {} | {} | {} {} | {} {} | {} |\n", row.set,
+                    row.method, row.figures.log_l1, row.figures.psnr_db, LooksText(looks.free, 3),
+                    LooksText(looks.ssim, 3), LooksText(looks.contrast[0], 2),
+                    LooksText(looks.contrast[1], 2), LooksText(looks.correlation[0], 2),
+                    LooksText(looks.correlation[1], 2), LooksText(looks.highlight, 2));
   }
   return text;
 }
@@ -230,8 +234,8 @@ int RunRelight(int argc, char** argv, const ProgramInfo& info) {
       experiment.fit_arguments = fit_arguments;
       experiment.refine_arguments = refine_arguments;
       experiment.work = work;
-      const HoldoutResult result = RunHoldout(
-          experiment, common, [](const std::string& text) { spdlog::info("{}", text); });
+      const HoldoutResult result =
+          RunHoldout(experiment, common, [](const std::string& text) { spdlog::info("{}", text); });
       const HoldoutEntry& entry = result.entries.at(0);
       const fs::path pictures =
           pairs ? work / entry.set / experiment.splits[0].folder / "pairs" : fs::path();
@@ -249,11 +253,12 @@ int RunRelight(int argc, char** argv, const ProgramInfo& info) {
 }  // namespace
 
 Verb RelightVerb() {
-  return {"relight",
-          "Fits maps to some photographs of a fixed camera and compares renderings under the lights "
-          "held out with interpolations of the photographs: polynomial texture maps, spherical "
-          "harmonics, radial basis functions.",
-          "Example: glint-eval relight icon door --work relit", RunRelight};
+  return {
+      "relight",
+      "Fits maps to some photographs of a fixed camera and compares renderings under the lights "
+      "held out with interpolations of the photographs: polynomial texture maps, spherical "
+      "harmonics, radial basis functions.",
+      "Example: glint-eval relight icon door --work relit", RunRelight};
 }
 
 }  // namespace glint

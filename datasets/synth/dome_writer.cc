@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <opencv2/imgproc.hpp>
 
 #include "base/errors/errors.h"
 #include "base/parallel/parallel.h"
@@ -50,12 +51,10 @@ std::vector<Lamp> LampsOf(const DomeOptions& options, std::uint64_t seed) {
         lamp.direction.cross(Eigen::Vector3d(rng.Normal(), rng.Normal(), rng.Normal()))
             .normalized();
     // Two components across the direction of this standard deviation each.
-    const double angle =
-        options.jitter_deg * kDegree_rad * std::hypot(rng.Normal(), rng.Normal());
+    const double angle = options.jitter_deg * kDegree_rad * std::hypot(rng.Normal(), rng.Normal());
     lamp.told = Eigen::AngleAxisd(angle, axis) * lamp.direction;
     const double smooth = side * std::cos(azimuth - bright_side) * std::numbers::sqrt2;
-    const double grey =
-        options.uneven * std::numbers::sqrt2 / 2 * (smooth + rng.Normal());
+    const double grey = options.uneven * std::numbers::sqrt2 / 2 * (smooth + rng.Normal());
     const double red = options.colours * rng.Normal(), blue = options.colours * rng.Normal();
     lamp.strength_rgb = {std::exp(grey + red), std::exp(grey), std::exp(grey + blue)};
     lamps.push_back(lamp);
@@ -69,8 +68,7 @@ View ViewOf(const DomeOptions& options, const Lamp& lamp) {
   View view;
   view.camera_in_sample_mm = {0, 0, far_mm};
   view.light_in_sample_mm = ToVec3d(distance_mm * lamp.direction);
-  view.light_rgb =
-      ToVec3d(std::numbers::pi * distance_mm * distance_mm * lamp.strength_rgb);
+  view.light_rgb = ToVec3d(std::numbers::pi * distance_mm * distance_mm * lamp.strength_rgb);
   return view;
 }
 
@@ -93,8 +91,7 @@ bool InShadow(const HeightField& relief, int row, int column, const Eigen::Vecto
 
 void CastShadows(const HeightField& relief, const Eigen::Vector3d& light,
                  std::vector<float>* radiance) {
-  const double highest =
-      *std::max_element(relief.height_mm.begin(), relief.height_mm.end());
+  const double highest = *std::max_element(relief.height_mm.begin(), relief.height_mm.end());
   const size_t texels = relief.height_mm.size();
   for (int row = 0; row < relief.height; ++row) {
     for (int column = 0; column < relief.width; ++column) {
@@ -102,6 +99,16 @@ void CastShadows(const HeightField& relief, const Eigen::Vector3d& light,
       const size_t i = static_cast<size_t>(row) * relief.width + column;
       for (size_t c = 0; c < 3; ++c) (*radiance)[c * texels + i] = 0;
     }
+  }
+}
+
+// Every channel, mirrored at the borders.
+void BlurPicture(double sigma_px, int width, int height, std::vector<float>* radiance) {
+  if (!(sigma_px > 0)) return;
+  for (int c = 0; c < 3; ++c) {
+    cv::Mat plane(height, width, CV_32F,
+                  radiance->data() + static_cast<size_t>(c) * width * height);
+    cv::GaussianBlur(plane, plane, {}, sigma_px, sigma_px, cv::BORDER_REFLECT_101);
   }
 }
 
@@ -174,6 +181,7 @@ void WriteDome(const fs::path& folder, const MaterialSource& material, const Dom
     RenderLit(material.maps, plane, ViewOf(options, lamps[i]), ReflectanceConvention::Photograph(),
               pictures[i].data(), 1);
     if (options.shadows) CastShadows(relief, lamps[i].direction, &pictures[i]);
+    BlurPicture(options.blur_px, width, height, &pictures[i]);
   });
   const double exposure = ExposureOf(pictures);
   fs::create_directories(folder);

@@ -203,7 +203,11 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStart& start,
   refine.exposure_spread = options.exposure_spread;
   refine.residual_sigma = options.residual_sigma;
   // Directions are those that were measured, on a dome or a ball; lamps differ in strength.
-  if (set.fixed_camera) return refine;
+  if (set.fixed_camera) {
+    refine.level_spread = options.level_spread;
+    refine.lamp_gradient = options.lamp_gradient;
+    return refine;
+  }
   refine.flash_offset = options.flash_offset;
   refine.light_spread = options.light_spread;
   refine.flash_beam = options.flash_beam;
@@ -428,6 +432,14 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "perpendicular to the light's direction, relative to its distance, if the light was "
       "not calibrated; it and the positions are then estimated from the photographs; 0: keep "
       "the stated positions");
+  set->AddRange("level-spread", &options->level_spread, 0, 10,
+                "prior standard deviation of the sample's mean slope, if the camera was fixed and "
+                "the light moved; lamps that are brighter to one side look like a tilted sample; "
+                "0: none");
+  set->AddRange(
+      "lamp-gradient", &options->lamp_gradient, 0, 10,
+      "prior standard deviation of the gradient of the lamps' log strengths by x and y of "
+      "their directions, if the camera was fixed and the light moved; 0: none");
   set->AddRange("residual-sigma", &options->residual_sigma, 1e-3, 10,
                 "expected standard deviation (a weak prior) of the log-radiance residuals, if the "
                 "light was not calibrated (otherwise 0.05); it is then estimated from the "

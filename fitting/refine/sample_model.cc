@@ -106,6 +106,20 @@ std::vector<SharedValues> InitialMeans(const SamplePart& part) {
   return mean.means();
 }
 
+// Each photograph has a lamp of its own where something is expected of their gradient.
+LampsExpected LampsOf(const RefineProblem& problem, const RefineOptions& options) {
+  LampsExpected lamps;
+  lamps.gradient = options.lamp_gradient;
+  lamps.level = options.level_spread;
+  if (!(lamps.gradient > 0)) return lamps;
+  for (const RefineView& view : problem.views) {
+    const Vec3d& light = view.view.light_in_sample_mm;
+    const double distance = std::hypot(light[0], light[1], light[2]);
+    lamps.directions.push_back({light[0] / distance, light[1] / distance});
+  }
+  return lamps;
+}
+
 }  // namespace
 
 SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
@@ -121,7 +135,8 @@ SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
       deviations_(static_cast<int>(part.problem().views.size()),
                   {options.exposure_spread, options.light_spread, options.light_spread},
                   {options.flash_offset, options.flash_offset, options.flash_beam,
-                   options.flash_beam, options.distance_power}) {
+                   options.flash_beam, options.distance_power},
+                  LampsOf(part.problem(), options)) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   means_.mean = InitialMeans(part);
   means_.kinds = options.kinds;
@@ -465,6 +480,7 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
     if (solved.views == 0) continue;
     TexelOfViews& texel = texels.emplace_back();
     texel.place = PlaceOf(part_->problem().plane, sampling.texels[i]);
+    texel.slope = {solved.values[kSlopeX], solved.values[kSlopeY]};
     texel.inverse = solved.inverse;
     texel.products = &solved.of_views;
   }

@@ -1,6 +1,7 @@
 #include "fitting/refine/view_deviations.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -100,10 +101,14 @@ class UnknownsOfViews {
 struct ViewEquations {
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;
+  // The sample's mean slope, along x and y, and how it follows the views.
+  Eigen::Vector2d mean_slope = Eigen::Vector2d::Zero();
+  Eigen::MatrixXd mean_slope_by_views;
 
   ViewEquations(const UnknownsOfViews& unknowns, std::span<const TexelOfViews> texels)
       : hessian(Eigen::MatrixXd::Zero(unknowns.size(), unknowns.size())),
-        gradient(Eigen::VectorXd::Zero(unknowns.size())) {
+        gradient(Eigen::VectorXd::Zero(unknowns.size())),
+        mean_slope_by_views(Eigen::MatrixXd::Zero(2, unknowns.size())) {
     constexpr size_t kBlockOfTexels = 32;
     constexpr Eigen::Index kRows = kBlockOfTexels * kTexelParameters;
     Eigen::MatrixXd by_values(kRows, unknowns.size()), follows(kRows, unknowns.size());
@@ -118,6 +123,9 @@ struct ViewEquations {
         const Eigen::Map<const TexelMatrix> inverse(texel.inverse.data());
         follows.middleRows<kTexelParameters>(row).noalias() =
             inverse * by_values.middleRows<kTexelParameters>(row);
+        const double share = 1.0 / static_cast<double>(texels.size());
+        mean_slope += share * Eigen::Vector2d(texel.slope[0], texel.slope[1]);
+        mean_slope_by_views -= share * follows.middleRows<2>(row + kSlopeX);
       }
       hessian.noalias() -= by_values.transpose() * follows;
     }
@@ -131,9 +139,8 @@ struct ViewEquations {
       unknowns.ForEachOf(own.view, [&](int i, Eigen::Index at) {
         gradient[at] -= own.by_residual[i];
         by_values->block<kTexelParameters, 1>(row, at) += own.by_values.row(i).transpose();
-        unknowns.ForEachOf(own.view, [&](int j, Eigen::Index other) {
-          hessian(at, other) += own.squared(i, j);
-        });
+        unknowns.ForEachOf(
+            own.view, [&](int j, Eigen::Index other) { hessian(at, other) += own.squared(i, j); });
       });
     }
   }
@@ -169,10 +176,11 @@ DeviationProducts ProductsOf(const BatchResiduals& residuals,
 }
 
 ViewDeviations::ViewDeviations(int views, const DeviationValues& expected,
-                               const SharedLightValues& expected_shared)
+                               const SharedLightValues& expected_shared, LampsExpected lamps)
     : expected_(expected),
       spreads_(expected),
       expected_shared_(expected_shared),
+      lamps_(std::move(lamps)),
       values_(static_cast<size_t>(views)) {
   const auto wide = [](double e) { return e > 0; };
   // Of one photograph there is no telling.
@@ -189,6 +197,12 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
   Eigen::VectorXd& gradient = equations.gradient;
   hessian *= information;
   gradient *= information;
+  if (lamps_.level > 0) {
+    const double precision = 1 / (lamps_.level * lamps_.level);
+    const Eigen::MatrixXd& by_views = equations.mean_slope_by_views;
+    hessian += precision * by_views.transpose() * by_views;
+    gradient -= precision * by_views.transpose() * equations.mean_slope;
+  }
   for (size_t i = 0; i < unknowns.shared().size(); ++i) {
     const auto k = static_cast<size_t>(unknowns.shared()[i]);
     const double precision = 1 / (expected_shared_[k] * expected_shared_[k]);
@@ -210,6 +224,16 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
       if (shading) continue;
       gradient[at] -= precision * values_[static_cast<size_t>(v)][static_cast<size_t>(kind)];
       for (int w = 0; w < views; ++w) hessian(unknowns.at(w, i), at) += kMeanPrecision * precision;
+    }
+    if (kind != kLogExposure || lamps_.directions.empty()) continue;
+    // What the lamps' gradient takes off that precision.
+    const Eigen::MatrixXd less =
+        precision * Eigen::MatrixXd::Identity(views, views) - ExposurePrecision();
+    for (int v = 0; v < views; ++v) {
+      for (int w = 0; w < views; ++w) {
+        hessian(unknowns.at(v, i), unknowns.at(w, i)) -= less(v, w);
+        gradient[unknowns.at(v, i)] += less(v, w) * values_[static_cast<size_t>(w)][kLogExposure];
+      }
     }
   }
   const Eigen::LDLT<Eigen::MatrixXd> solver(hessian);
@@ -236,11 +260,39 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
   UpdateSpreads(variances);
 }
 
+// Of a covariance spread²·1 + gradient²·G·Gᵀ, G the directions (Woodbury).
+Eigen::MatrixXd ViewDeviations::ExposurePrecision() const {
+  const auto views = static_cast<Eigen::Index>(values_.size());
+  const double spread = std::max(spreads_[kLogExposure], 1e-6), precision = 1 / (spread * spread);
+  Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(views, views);
+  if (lamps_.directions.empty() || !(lamps_.gradient > 0)) return precision * identity;
+  Eigen::MatrixXd by(views, 2);
+  for (Eigen::Index v = 0; v < views; ++v) {
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      by(v, axis) = lamps_.directions[static_cast<size_t>(v)][static_cast<size_t>(axis)];
+    }
+  }
+  const Eigen::Matrix2d inner = Eigen::Matrix2d::Identity() / (lamps_.gradient * lamps_.gradient) +
+                                precision * by.transpose() * by;
+  return precision * identity - precision * precision * by * inner.inverse() * by.transpose();
+}
+
 void ViewDeviations::UpdateSpreads(const std::vector<DeviationValues>& variances) {
+  // Beside the gradient over lamps.
+  Eigen::VectorXd exposures(static_cast<Eigen::Index>(values_.size()));
+  for (size_t v = 0; v < values_.size(); ++v) {
+    exposures[static_cast<Eigen::Index>(v)] = values_[v][kLogExposure];
+  }
+  if (!lamps_.directions.empty()) {
+    const double spread = std::max(spreads_[kLogExposure], 1e-6);
+    exposures = spread * spread * ExposurePrecision() * exposures;
+  }
   for (size_t i = 0; i < kViewDeviations; ++i) {
     double squares = kExpectedViews * expected_[i] * expected_[i];
     for (size_t v = 0; v < values_.size(); ++v) {
-      squares += values_[v][i] * values_[v][i] + variances[v][i];
+      const double value =
+          i == kLogExposure ? exposures[static_cast<Eigen::Index>(v)] : values_[v][i];
+      squares += value * value + variances[v][i];
     }
     if (expected_[i] > 0) {
       spreads_[i] = std::sqrt(squares / (kExpectedViews + static_cast<double>(values_.size())));

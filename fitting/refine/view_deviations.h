@@ -8,11 +8,16 @@
 //
 // What all photographs share of their light (shared_light.h) is found with them.
 //
+// Lamps that are brighter to one side and a sample that is tilted look alike, but for gloss. Where
+// each photograph has a lamp of its own (LampsExpected), their strengths have a gradient over the
+// directions with a wide prior, and the sample is expected to be level in the mean.
+//
 // Each deviation is Gaussian about 0 with a spread estimated of the capture (MacKay 1992, as the
 // residuals' variance is). The deviations are the most probable ones with all texels eliminated:
 // Newton steps on the marginal likelihood, whose information is the Schur complement of the texels.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <span>
 #include <vector>
@@ -46,15 +51,24 @@ DeviationProducts ProductsOf(const BatchResiduals& residuals,
 // What one texel tells of the views.
 struct TexelOfViews {
   std::array<double, 2> place{};  // on the sample, −1 … 1 along each axis
+  std::array<double, 2> slope{};  // of its normal, as solved
   std::array<double, kTexelParameters * kTexelParameters> inverse{};  // (JᵀJ + prior)⁻¹
   const std::vector<DeviationProducts>* products = nullptr;
+};
+
+// Of lamps that differ from photograph to photograph.
+struct LampsExpected {
+  // By view: x and y of the unit vector to its light. Empty: all have one light.
+  std::vector<std::array<double, 2>> directions;
+  // Standard deviations of the gradient of log exposure by those, and of the sample's mean slope.
+  double gradient = 0, level = 0;
 };
 
 class ViewDeviations {
  public:
   // `expected`: standard deviations before anything is seen; 0: that one is as said.
   ViewDeviations(int views, const DeviationValues& expected,
-                 const SharedLightValues& expected_shared);
+                 const SharedLightValues& expected_shared, LampsExpected lamps = {});
 
   bool any() const { return any_; }
   // One step. `information`: what a squared residual of these texels is worth, 1 / variance.
@@ -65,10 +79,13 @@ class ViewDeviations {
   const DeviationValues& spreads() const { return spreads_; }
 
  private:
+  // Of all views' logarithms of exposures.
+  Eigen::MatrixXd ExposurePrecision() const;
   void UpdateSpreads(const std::vector<DeviationValues>& variances);
 
   DeviationValues expected_, spreads_;
   SharedLightValues expected_shared_, shared_{};
+  LampsExpected lamps_;
   std::vector<DeviationValues> values_;
   bool any_ = false;
 };

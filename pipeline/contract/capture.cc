@@ -537,7 +537,7 @@ void ReadChart(const fs::path& file, const toml::table& document, Capture* captu
 
 void RejectUnknownTables(const fs::path& file, const toml::table& document) {
   static const std::set<std::string, std::less<>> known = [] {
-    std::set<std::string, std::less<>> tables = {"sample",     "photos", "poses", "board",
+    std::set<std::string, std::less<>> tables = {"sample",     "photos", "poses",  "board",
                                                  "radiometry", "light",  "lights", "chart"};
     for (const StageKind& stage : Stages()) tables.emplace(stage.name);
     return tables;
