@@ -144,7 +144,12 @@ std::string PosesText(const Json& poses) {
 }
 
 std::string TextOf(const CalibSummary& summary) {
-  std::string text = "calib: " + summary.bundle.BriefReport() + PosesText(summary.poses);
+  const size_t used = summary.calibration.photos.size();
+  std::string text =
+      summary.calibration.fixed_camera
+          ? fmt::format("calib: {} of {} photographs\n", used, used + summary.rejected.size())
+          : "calib: " + summary.bundle.BriefReport();
+  text += PosesText(summary.poses);
   for (size_t i = 0; i < summary.bundle.photos.size(); ++i) {
     const PhotoEstimate& photo = summary.bundle.photos[i];
     if (!photo.rejected.empty()) continue;
@@ -167,9 +172,12 @@ std::string TextOf(const CalibSummary& summary) {
 
 std::string BriefTextOf(const CalibSummary& summary) {
   const BundleResult& bundle = summary.bundle;
-  std::string text = fmt::format(
-      "{} of {} photographs, reprojection error {:.3g} px", summary.calibration.photos.size(),
-      summary.calibration.photos.size() + summary.rejected.size(), bundle.rms_px);
+  std::string text =
+      fmt::format("{} of {} photographs", summary.calibration.photos.size(),
+                  summary.calibration.photos.size() + summary.rejected.size());
+  if (!summary.calibration.fixed_camera) {
+    text += fmt::format(", reprojection error {:.3g} px", bundle.rms_px);
+  }
   for (const RejectedPhoto& photo : summary.rejected) {
     text += fmt::format("\n  left out: {}: {}", photo.name, photo.reason);
   }
