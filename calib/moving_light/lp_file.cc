@@ -1,8 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "base/errors/errors.h"
 #include "calib/moving_light/lights_file_formats.h"
@@ -21,12 +25,36 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) + 1 - first);
 }
 
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
+// "0,26" of a program that writes decimal commas becomes "0.26"; commas that separate stay.
+std::string WithDecimalPoints(std::string_view line) {
+  constexpr std::string_view kBetweenWords = " \t\r;";
+  std::string text(line);
+  for (size_t first = 0; first < text.size();) {
+    size_t end = text.find_first_of(kBetweenWords, first);
+    if (end == std::string::npos) end = text.size();
+    size_t at = first;
+    if (at < end && (text[at] == '-' || text[at] == '+')) ++at;
+    const size_t comma = text.find(',', at);
+    const auto digits = [&](size_t from, size_t to) {
+      return to > from && std::all_of(text.begin() + static_cast<std::ptrdiff_t>(from),
+                                      text.begin() + static_cast<std::ptrdiff_t>(to), IsDigit);
+    };
+    if (comma < end && digits(at, comma) && digits(comma + 1, end)) text[comma] = '.';
+    first = end + 1;
+  }
+  return text;
+}
+
 // The last number of a line, which is taken off. False: it is none.
 bool TakeLastNumber(std::string_view* line, double* number) {
   *line = Trimmed(*line);
   const size_t blank = line->find_last_of(kBlank);
   const std::string_view word = blank == std::string_view::npos ? *line : line->substr(blank + 1);
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), *number);
+  const bool plus = word.size() > 1 && word[0] == '+' && (IsDigit(word[1]) || word[1] == '.');
+  const auto [end, error] =
+      std::from_chars(word.data() + (plus ? 1 : 0), word.data() + word.size(), *number);
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(*number)) {
     return false;
   }
@@ -84,14 +112,16 @@ LightsFile ReadLpFile(const fs::path& file, const std::string& unit) {
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   std::istringstream stream(text);
   std::string line_text;
-  double announced = -1, worst = 0;
+  std::optional<double> announced;
+  double worst = 0;
   for (int number = 1; std::getline(stream, line_text); ++number) {
+    line_text = WithDecimalPoints(line_text);
     std::string_view line = Trimmed(line_text);
     if (line.empty() || line.front() == '#') continue;
     const std::string place = fmt::format("line {}", number);
     const std::string whole(line);
     std::array<double, 3> xyz{};
-    if (announced < 0 && result.lights.empty() && TakeLastNumber(&line, &xyz[0]) && line.empty()) {
+    if (!announced && result.lights.empty() && TakeLastNumber(&line, &xyz[0]) && line.empty()) {
       announced = xyz[0];
       continue;
     }
@@ -110,10 +140,10 @@ LightsFile ReadLpFile(const fs::path& file, const std::string& unit) {
     worst = std::max(worst, std::abs(Eigen::Vector3d(xyz[0], xyz[1], xyz[2]).norm() - 1));
     result.lights.push_back(std::move(light));
   }
-  if (announced >= 0 && announced != static_cast<double>(result.lights.size())) {
+  if (announced && *announced != static_cast<double>(result.lights.size())) {
     throw UserError(
         file, "line 1",
-        fmt::format("{:g} lights announced, {} listed", announced, result.lights.size()),
+        fmt::format("{:g} lights announced, {} listed", *announced, result.lights.size()),
         "correct the number, or complete the list: is the file cut off?");
   }
   constexpr double kWorthAWord = 0.05;

@@ -61,6 +61,19 @@ TEST_F(LightsFileTest, LpMayLackTheCountAndHaveCommentsTabsAndEmptyLines) {
   ExpectNear(file.lights[1].direction, 0, 0, 1);
 }
 
+TEST_F(LightsFileTest, DecimalCommasAndSignsAreNumbers) {
+  const LightsFile file =
+      Read("3\na.jpg +0,6 -0,0 0,8\nb.jpg; 0,6; 0,0; 0,8\nc.jpg,+0.6,0,0.8\n");
+  ASSERT_EQ(file.lights.size(), 3u);
+  for (const ListedLight& light : file.lights) ExpectNear(light.direction, 0.6, 0, 0.8);
+  EXPECT_EQ(file.lights[2].photo, "c.jpg");
+}
+
+TEST_F(LightsFileTest, CountBelowZeroIsRefused) {
+  EXPECT_THAT(Complaint("-2\na.jpg 0 0 1\nb.jpg 0.6 0 0.8\n"),
+              AllOf(HasSubstr("line 1"), HasSubstr("-2 lights announced")));
+}
+
 TEST_F(LightsFileTest, ByteOrderMarkAndLinesOfWindowsAreRead) {
   const LightsFile file = Read(
       "\xEF\xBB\xBF"
