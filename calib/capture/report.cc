@@ -172,9 +172,8 @@ std::string TextOf(const CalibSummary& summary) {
 
 std::string BriefTextOf(const CalibSummary& summary) {
   const BundleResult& bundle = summary.bundle;
-  std::string text =
-      fmt::format("{} of {} photographs", summary.calibration.photos.size(),
-                  summary.calibration.photos.size() + summary.rejected.size());
+  std::string text = fmt::format("{} of {} photographs", summary.calibration.photos.size(),
+                                 summary.calibration.photos.size() + summary.rejected.size());
   if (!summary.calibration.fixed_camera) {
     text += fmt::format(", reprojection error {:.3g} px", bundle.rms_px);
   }

@@ -547,7 +547,7 @@ void RejectUnknownTables(const fs::path& file, const toml::table& document) {
     std::string list;
     for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
     throw UserError(file, TomlPlace{file, std::string(key.str())}.Field(node), "an unknown key",
-                    "use kind (in front of the first table) or one of the tables: " + list);
+                    "use one of the tables: " + list + "; or kind, in front of the first of them");
   }
 }
 

@@ -62,8 +62,7 @@ TEST_F(LightsFileTest, LpMayLackTheCountAndHaveCommentsTabsAndEmptyLines) {
 }
 
 TEST_F(LightsFileTest, DecimalCommasAndSignsAreNumbers) {
-  const LightsFile file =
-      Read("3\na.jpg +0,6 -0,0 0,8\nb.jpg; 0,6; 0,0; 0,8\nc.jpg,+0.6,0,0.8\n");
+  const LightsFile file = Read("3\na.jpg +0,6 -0,0 0,8\nb.jpg; 0,6; 0,0; 0,8\nc.jpg,+0.6,0,0.8\n");
   ASSERT_EQ(file.lights.size(), 3u);
   for (const ListedLight& light : file.lights) ExpectNear(light.direction, 0.6, 0, 0.8);
   EXPECT_EQ(file.lights[2].photo, "c.jpg");
