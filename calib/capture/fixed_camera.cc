@@ -274,6 +274,7 @@ class FixedCamera {
     const auto lights = balls.empty() ? LightsFromFile(capture_, scale_.mm_per_px * scale_.width_px)
                                       : LightsFromBalls(balls, &looks);
     std::vector<std::string> reasons;
+    reasons.reserve(lights.size());
     for (const auto& light : lights) reasons.push_back(WhatIsWrong(capture_, light));
     RequireSomeLights(capture_, reasons, lights);
     AddCamera();

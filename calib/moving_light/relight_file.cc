@@ -53,7 +53,7 @@ struct DomeGeometry {
   // The light of a lamp known by its direction.
   ListedLight Lamp(const fs::path& file, const std::string& place, const Eigen::Vector3d& direction,
                    double unit_mm) const {
-    const ListedLight far = LightOf(file, place, direction, 0);
+    ListedLight far = LightOf(file, place, direction, 0);
     if (configuration != "spherical" || !(diameter > 0) || !(unit_mm > 0)) return far;
     return LightOf(file, place, diameter / 2 * far.direction + Eigen::Vector3d(0, 0, offset),
                    unit_mm);

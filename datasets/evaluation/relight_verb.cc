@@ -88,6 +88,7 @@ class RelitSet {
   }
   static std::vector<Eigen::Vector3d> Directions(const std::vector<RectifiedView>& views) {
     std::vector<Eigen::Vector3d> directions;
+    directions.reserve(views.size());
     for (const RectifiedView& view : views) directions.push_back(Direction(view));
     return directions;
   }

@@ -29,6 +29,7 @@ double SquaredDistance(const Vec3d& a, const Vec3d& b) {
 std::vector<RectifiedView> SpreadViews(const std::vector<RectifiedView>& views, size_t most) {
   if (views.size() <= most || most == 0) return views;
   std::vector<Vec3d> half;
+  half.reserve(views.size());
   for (const RectifiedView& view : views) half.push_back(HalfVector(view.view));
   std::vector<double> apart(views.size(), std::numeric_limits<double>::infinity());
   std::vector<bool> taken(views.size(), false);
