@@ -31,8 +31,9 @@ TEST(ChartKinds, HoldTheColoursThatTheMakerPublished) {
       {"C6", {51.038, -28.631, -28.638}}, {"D1", {96.539, -0.425, 1.186}},
       {"D6", {20.461, -0.079, -0.973}}};
   for (const auto& [name, lab] : published) {
-    const auto patch = std::find_if(classic.patches.begin(), classic.patches.end(),
-                                    [&](const ChartPatch& p) { return p.name == name; });
+    const auto patch =
+        std::find_if(classic.patches.begin(), classic.patches.end(),
+                     [&, wanted = name](const ChartPatch& p) { return p.name == wanted; });
     ASSERT_NE(patch, classic.patches.end()) << name;
     EXPECT_LT(DeltaE00(patch->lab, lab), 0.1) << name << ": " << patch->lab.transpose();
   }
