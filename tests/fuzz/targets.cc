@@ -27,14 +27,14 @@ namespace fs = std::filesystem;
 constexpr int kRectifiedSize = 8;
 
 fs::path Put(const fs::path& folder, const std::string& name, std::string_view bytes) {
-  const fs::path file = folder / name;
+  fs::path file = folder / name;
   std::ofstream(file, std::ios::binary | std::ios::trunc)
       .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   return file;
 }
 
 FuzzTarget OfFile(const std::string& name, const std::string& file_name,
-                  std::function<void(const fs::path&)> read) {
+                  const std::function<void(const fs::path&)>& read) {
   return {name, [file_name, read](const fs::path& folder, std::string_view bytes) {
             read(Put(folder, file_name, bytes));
           }};

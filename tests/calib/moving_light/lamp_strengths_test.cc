@@ -38,8 +38,9 @@ LampProblem MatteSample(const Colours& strengths) {
   Deviates deviate;
   std::vector<Eigen::Vector3d> normals, albedos;
   for (int i = 0; i < kSide * kSide; ++i) {
-    problem.points_mm.emplace_back(100.0 * (i % kSide + 0.5) / kSide - 50,
-                                   50 - 100.0 * (i / kSide + 0.5) / kSide, 0);
+    const int column = i % kSide, row = i / kSide;
+    problem.points_mm.emplace_back(100.0 * (column + 0.5) / kSide - 50,
+                                   50 - 100.0 * (row + 0.5) / kSide, 0);
     const double slope_x = 0.08 * deviate(), slope_y = 0.08 * deviate();
     normals.push_back(Eigen::Vector3d(slope_x, slope_y, 1).normalized());
     albedos.emplace_back(0.3 * std::exp(0.4 * deviate()), 0.3 * std::exp(0.4 * deviate()),
