@@ -18,7 +18,10 @@ void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
                "FIRST_COLUMN,FIRST_ROW,COLUMNS,ROWS of squares left out for the sample");
   options->Add("full-board", &o->full_board, "no window");
   options->Add("sample-mm", &o->sample_mm, "WIDTH,HEIGHT of the sample");
-  options->AddRange("resolution", &o->resolution_px, 8, 16384, "width of the maps in texels");
+  options->AddRange(
+      "resolution", &o->resolution_px, 0, 16384,
+      "width of the maps in texels; 0: 1024, with --lights that of the picture, up to "
+      "2048");
   options->Add("encoding", &o->encoding,
                "how the photographs store radiance: auto, srgb, gamma2.2, linear, or the path of "
                "a response-curve file (as written by glint-response)");

@@ -132,21 +132,6 @@ void AddHighlight(const Verdict& v, List* list) {
   list->push_back({"highlight", Importance::kUseful, text});
 }
 
-void AddClipped(const Verdict& v, List* list) {
-  std::vector<std::string> names;
-  double worst = 0;
-  for (const ViewFacts& view : v.views) {
-    if (view.clipped_share <= v.limits.clipped_share) continue;
-    names.push_back(view.photo);
-    worst = std::max(worst, view.clipped_share);
-  }
-  if (names.empty()) return;
-  list->push_back({"clipped", Importance::kUseful,
-                   fmt::format("up to {} % of the sample is clipped in {} ({}): expose shorter or "
-                               "step back",
-                               Percent(worst), Counted(names.size()), NameList(names))});
-}
-
 void AddResolution(const GuidanceInput& input, const Verdict& v, List* list) {
   const double px = v.sharpest_texel_px;
   if (px <= 0 || px >= v.limits.texel_px) return;
@@ -160,20 +145,6 @@ void AddResolution(const GuidanceInput& input, const Verdict& v, List* list) {
                                "resolution_px = {:.0f}",
                                1 / px, distance_mm * px, distance_mm,
                                std::max(8.0, std::floor(input.resolution_px[0] * px)))});
-}
-
-void AddLeftOut(const GuidanceInput& input, const Verdict& v, List* list) {
-  if (input.left_out.empty()) return;
-  const size_t all = input.left_out.size() + v.views.size();
-  const double share = static_cast<double>(input.left_out.size()) / static_cast<double>(all);
-  std::vector<std::string> reasons;
-  for (const LeftOutPhoto& photo : input.left_out) {
-    reasons.push_back(photo.name + ": " + photo.reason);
-  }
-  list->push_back({"left_out",
-                   share > v.limits.left_out_share ? Importance::kUseful : Importance::kHint,
-                   fmt::format("{} of {} photographs are left out ({}): take them again",
-                               input.left_out.size(), all, NameList(reasons, 2))});
 }
 
 void AddCut(const Verdict& v, List* list) {
@@ -191,6 +162,35 @@ void AddCut(const Verdict& v, List* list) {
 
 }  // namespace
 
+void AddClipped(const Verdict& v, const std::string& remedy, List* list) {
+  std::vector<std::string> names;
+  double worst = 0;
+  for (const ViewFacts& view : v.views) {
+    if (view.clipped_share <= v.limits.clipped_share) continue;
+    names.push_back(view.photo);
+    worst = std::max(worst, view.clipped_share);
+  }
+  if (names.empty()) return;
+  list->push_back({"clipped", Importance::kUseful,
+                   fmt::format("up to {} % of the sample is clipped in {} ({}): {}", Percent(worst),
+                               Counted(names.size()), NameList(names), remedy)});
+}
+
+void AddLeftOut(const GuidanceInput& input, const Verdict& v, const std::string& remedy,
+                List* list) {
+  if (input.left_out.empty()) return;
+  const size_t all = input.left_out.size() + v.views.size();
+  const double share = static_cast<double>(input.left_out.size()) / static_cast<double>(all);
+  std::vector<std::string> reasons;
+  for (const LeftOutPhoto& photo : input.left_out) {
+    reasons.push_back(photo.name + ": " + photo.reason);
+  }
+  list->push_back({"left_out",
+                   share > v.limits.left_out_share ? Importance::kUseful : Importance::kHint,
+                   fmt::format("{} of {} photographs are left out ({}): {}", input.left_out.size(),
+                               all, NameList(reasons, 2), remedy)});
+}
+
 std::vector<Advice> AdviceFor(const GuidanceInput& input, const Verdict& verdict) {
   List list;
   AddOverBoard(input, &list);
@@ -202,9 +202,9 @@ std::vector<Advice> AdviceFor(const GuidanceInput& input, const Verdict& verdict
   AddSides(verdict, &list);
   AddTop(verdict, &list);
   AddHighlight(verdict, &list);
-  AddClipped(verdict, &list);
+  AddClipped(verdict, "expose shorter or step back", &list);
   AddResolution(input, verdict, &list);
-  AddLeftOut(input, verdict, &list);
+  AddLeftOut(input, verdict, "take them again", &list);
   AddCut(verdict, &list);
   std::stable_sort(list.begin(), list.end(), [](const Advice& a, const Advice& b) {
     return static_cast<int>(a.importance) < static_cast<int>(b.importance);

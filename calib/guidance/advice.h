@@ -15,6 +15,7 @@
 //   cut         photographs that show part of the sample only
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "calib/guidance/verdict.h"
@@ -23,5 +24,11 @@ namespace glint {
 
 // Of a verdict whose figures are filled; sorted by importance, within it in the order above.
 std::vector<Advice> AdviceFor(const GuidanceInput& input, const Verdict& verdict);
+
+// "clipped" and "left_out", which fixed cameras have too (light_advice.h). Nothing is added where
+// nothing is to be said; `remedy` ends the sentence.
+void AddClipped(const Verdict& verdict, const std::string& remedy, std::vector<Advice>* list);
+void AddLeftOut(const GuidanceInput& input, const Verdict& verdict, const std::string& remedy,
+                std::vector<Advice>* list);
 
 }  // namespace glint

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/text/name_list.h"
+#include "calib/guidance/advice.h"
 
 namespace glint {
 namespace {
@@ -49,34 +49,6 @@ void AddHeights(const Verdict& v, std::vector<Advice>* list) {
   }
 }
 
-void AddClippedLights(const Verdict& v, std::vector<Advice>* list) {
-  std::vector<std::string> names;
-  double worst = 0;
-  for (const ViewFacts& view : v.views) {
-    if (view.clipped_share <= v.limits.clipped_share) continue;
-    names.push_back(view.photo);
-    worst = std::max(worst, view.clipped_share);
-  }
-  if (names.empty()) return;
-  list->push_back(
-      {"clipped", Importance::kUseful,
-       fmt::format("up to {:.0f} % of the sample is clipped in {} photograph{} ({}): "
-                   "expose shorter",
-                   100 * worst, names.size(), names.size() == 1 ? "" : "s", NameList(names))});
-}
-
-void AddLeftOutLights(const GuidanceInput& input, std::vector<Advice>* list) {
-  if (input.left_out.empty()) return;
-  std::vector<std::string> reasons;
-  for (const LeftOutPhoto& photo : input.left_out) {
-    reasons.push_back(photo.name + ": " + photo.reason);
-  }
-  list->push_back(
-      {"left_out", Importance::kHint,
-       fmt::format("{} photograph{} left out ({})", input.left_out.size(),
-                   input.left_out.size() == 1 ? " is" : "s are", NameList(reasons, 2))});
-}
-
 }  // namespace
 
 void DescribeLights(const GuidanceInput& input, Verdict* verdict) {
@@ -102,8 +74,8 @@ std::vector<Advice> LightAdviceFor(const GuidanceInput& input, const Verdict& ve
   AddFewLights(verdict, &list);
   AddLightSides(verdict, &list);
   AddHeights(verdict, &list);
-  AddClippedLights(verdict, &list);
-  AddLeftOutLights(input, &list);
+  AddClipped(verdict, "expose shorter", &list);
+  AddLeftOut(input, verdict, "correct the list of lights, or leave them", &list);
   std::stable_sort(list.begin(), list.end(), [](const Advice& a, const Advice& b) {
     return static_cast<int>(a.importance) < static_cast<int>(b.importance);
   });

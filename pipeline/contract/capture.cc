@@ -1,8 +1,5 @@
 #include "pipeline/contract/capture.h"
 
-#include <fnmatch.h>
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -10,264 +7,21 @@
 #include "base/errors/errors.h"
 #include "calib/board/dictionary.h"
 #include "pipeline/contract/board_file.h"
+#include "pipeline/contract/capture_files.h"
 #include "pipeline/contract/stages.h"
 #include "pipeline/files/toml_file.h"
+#include "pipeline/files/toml_table.h"
 #include "pipeline/photos/photo_name.h"
-#include "pipeline/photos/video.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxPhotos = 10000;
 constexpr int kMaxResolution_px = 16384;
-constexpr int kUsualEvery = 15;  // half a second of most videos
-
-// One table of the file, read key by key; what is not asked for is unknown in the end.
-class TableReader {
- public:
-  TableReader(const fs::path& file, const toml::table& document, std::string name)
-      : file_(file), name_(std::move(name)) {
-    const toml::node* node = document.get(name_);
-    if (node == nullptr) return;
-    if (!node->is_table()) {
-      throw UserError(file_, name_, DescribeToml(*node), "write a table: [" + name_ + "]");
-    }
-    table_ = node->as_table();
-  }
-
-  bool present() const { return table_ != nullptr; }
-  const std::string& name() const { return name_; }
-
-  const toml::node* Find(const std::string& key) {
-    known_.push_back(key);
-    return table_ == nullptr ? nullptr : table_->get(key);
-  }
-
-  [[noreturn]] void Reject(const toml::node& node, const std::string& key,
-                           const std::string& remedy) const {
-    throw UserError(file_, TomlPlace{file_, name_ + "." + key}.Field(node), DescribeToml(node),
-                    remedy);
-  }
-  [[noreturn]] void Missing(const std::string& key, const std::string& remedy) const {
-    throw UserError(file_, name_ + "." + key, "no such key", remedy);
-  }
-
-  double Number(const std::string& key, double fallback, double low, double high,
-                const std::string& unit) {
-    const toml::node* node = Find(key);
-    if (node == nullptr) return fallback;
-    const auto value = node->is_number() ? node->value<double>() : std::nullopt;
-    if (!value || !(*value >= low && *value <= high)) Reject(*node, key, "give a number" + unit);
-    return *value;
-  }
-
-  std::string Text(const std::string& key, const std::string& fallback,
-                   const std::vector<std::string>& choices = {}) {
-    const toml::node* node = Find(key);
-    if (node == nullptr) return fallback;
-    std::string list;
-    for (const std::string& choice : choices) list += (list.empty() ? "" : ", ") + choice;
-    if (!node->is_string())
-      Reject(*node, key, list.empty() ? "give text in quotes" : "use one of: " + list);
-    std::string text = node->as_string()->get();
-    if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end()) {
-      Reject(*node, key, "use one of: " + list);
-    }
-    return text;
-  }
-
-  // A list of `count` numbers (or one number repeated, where `one_for_all`); empty: absent.
-  std::vector<double> Numbers(const std::string& key, size_t count, bool one_for_all,
-                              const std::string& remedy) {
-    const toml::node* node = Find(key);
-    if (node == nullptr) return {};
-    if (one_for_all && node->is_number()) return std::vector<double>(count, *node->value<double>());
-    const toml::array* array = node->as_array();
-    if (array == nullptr || array->size() != count) Reject(*node, key, remedy);
-    std::vector<double> numbers;
-    for (const toml::node& element : *array) {
-      const auto value = element.is_number() ? element.value<double>() : std::nullopt;
-      if (!value || !std::isfinite(*value)) Reject(element, key, remedy);
-      numbers.push_back(*value);
-    }
-    return numbers;
-  }
-
-  // `count` points, as [[x, y], …] (one: [x, y]), one after the other; empty: absent.
-  std::vector<double> Points(const std::string& key, size_t count, const std::string& remedy) {
-    const toml::node* node = Find(key);
-    if (node == nullptr) return {};
-    std::vector<double> numbers;
-    const auto add = [&](const toml::node& point) {
-      const toml::array* pair = point.as_array();
-      if (pair == nullptr || pair->size() != 2) Reject(point, key, remedy);
-      for (const toml::node& element : *pair) {
-        const auto value = element.is_number() ? element.value<double>() : std::nullopt;
-        if (!value || !std::isfinite(*value)) Reject(element, key, remedy);
-        numbers.push_back(*value);
-      }
-    };
-    if (count == 1) {
-      add(*node);
-      return numbers;
-    }
-    const toml::array* array = node->as_array();
-    if (array == nullptr || array->size() != count) Reject(*node, key, remedy);
-    for (const toml::node& point : *array) add(point);
-    return numbers;
-  }
-
-  std::vector<int> Integers(const std::string& key, size_t count, bool one_for_all,
-                            const std::string& remedy) {
-    const std::vector<double> numbers = Numbers(key, count, one_for_all, remedy);
-    std::vector<int> integers;
-    for (const double number : numbers) {
-      if (number != std::floor(number) || std::abs(number) > 1e9)
-        Reject(*table_->get(key), key, remedy);
-      integers.push_back(static_cast<int>(number));
-    }
-    return integers;
-  }
-
-  std::vector<std::string> Texts(const std::string& key, const std::string& remedy) {
-    const toml::node* node = Find(key);
-    if (node == nullptr) return {};
-    if (node->is_string()) return {node->as_string()->get()};
-    const toml::array* array = node->as_array();
-    if (array == nullptr) Reject(*node, key, remedy);
-    std::vector<std::string> texts;
-    for (const toml::node& element : *array) {
-      if (!element.is_string()) Reject(element, key, remedy);
-      texts.push_back(element.as_string()->get());
-    }
-    return texts;
-  }
-
-  bool Flag(const std::string& key, bool fallback) {
-    const toml::node* node = Find(key);
-    if (node == nullptr) return fallback;
-    if (!node->is_boolean()) Reject(*node, key, "give true or false");
-    return node->as_boolean()->get();
-  }
-
-  // Throws on the first key that nobody asked for.
-  void RejectUnknown() const {
-    if (table_ == nullptr) return;
-    for (const auto& [key, node] : *table_) {
-      if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
-      std::string list;
-      for (const std::string& name : known_) list += (list.empty() ? "" : ", ") + name;
-      throw UserError(file_, TomlPlace{file_, name_ + "." + std::string(key.str())}.Field(node),
-                      "an unknown key", "use one of: " + list);
-    }
-  }
-
- private:
-  fs::path file_;
-  std::string name_;
-  const toml::table* table_ = nullptr;
-  std::vector<std::string> known_;
-};
-
-// What a directory's entry is that is no file.
-std::string WhatElse(const fs::directory_entry& entry) {
-  std::error_code error;
-  if (entry.is_symlink(error) && !entry.exists(error)) return "a broken link";
-  if (entry.is_directory(error)) return "a folder";
-  return "something other than a regular file (a pipe or a device, say)";
-}
-
-// Files of `folder` that match "some/folder/*.jpg", sorted by name, relative to `folder`. Patterns
-// with * or ? may match none; a plain name must exist. Case is folded: phones write .JPG.
-std::vector<std::string> Match(const fs::path& folder, const std::string& pattern,
-                               const fs::path& file, const std::string& field) {
-  const fs::path relative(pattern);
-  if (relative.is_absolute() || pattern.find("..") != std::string::npos) {
-    throw UserError(file, field, "'" + pattern + "'", "give a path inside the capture's folder");
-  }
-  if (pattern.find_first_of("*?[") == std::string::npos) {
-    if (!fs::is_regular_file(folder / relative)) {
-      throw UserError(file, field, "no file '" + pattern + "'", "check the name");
-    }
-    return {relative.generic_string()};
-  }
-  std::vector<std::string> found;
-  const fs::path where = folder / relative.parent_path();
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(where, error)) {
-    const std::string name = entry.path().filename();
-    if (name[0] == '.') continue;
-    if (fnmatch(relative.filename().c_str(), name.c_str(), FNM_CASEFOLD) != 0) continue;
-    std::error_code missing;
-    if (entry.is_regular_file(missing)) {
-      found.push_back((relative.parent_path() / name).generic_string());
-    } else {
-      spdlog::warn("{}: left out: it matches '{}', but is {}", entry.path().string(), pattern,
-                   WhatElse(entry));
-    }
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-// One frame in `every` of a video, from the first.
-std::vector<std::string> FramesOf(const fs::path& folder, const std::string& video, int every) {
-  const VideoInfo info = ReadVideoInfo(folder / video);
-  if (info.missing > 0) {
-    spdlog::warn("{}: the video is cut off; its {} whole frames are used, {} are missing",
-                 (folder / video).string(), info.frames, info.missing);
-  }
-  std::vector<std::string> names;
-  for (int frame = 0; frame < info.frames; frame += every) names.push_back(FrameName(video, frame));
-  return names;
-}
-
-// Photographs of the table's `key` (patterns) and `video` (patterns too), each once.
-// Manifests name photographs, and JSON is UTF-8.
-void RequireUtf8(const fs::path& file, const std::string& field, const std::string& name) {
-  try {
-    (void)Json(name).dump();
-  } catch (const nlohmann::json::exception&) {
-    throw UserError(file, field,
-                    "'" + Json(name).dump(-1, ' ', true, Json::error_handler_t::replace) +
-                        "', a name whose bytes are not UTF-8",
-                    "rename the file, or convert names with: convmv -f latin1 -t utf8 --notest");
-  }
-}
-
-std::vector<std::string> ReadPhotos(const fs::path& folder, const std::string& key,
-                                    TableReader* table, const fs::path& file) {
-  const auto patterns = table->Texts(key, "give a list of patterns such as [\"photos/*.jpg\"]");
-  const auto videos = table->Texts("video", "give a name such as \"clip.mp4\", or a list of them");
-  const int every = static_cast<int>(
-      std::lround(table->Number("every", kUsualEvery, 1, 1e6, " of frames, at least 1")));
-  std::vector<std::string> all;
-  std::set<std::string> seen;
-  const auto add = [&](const std::string& name) {
-    RequireUtf8(file, table->name() + "." + key, name);
-    if (seen.insert(name).second) all.push_back(name);
-  };
-  for (const std::string& pattern : patterns) {
-    for (const std::string& name : Match(folder, pattern, file, table->name() + "." + key)) {
-      add(name);
-    }
-  }
-  for (const std::string& pattern : videos) {
-    for (const std::string& video : Match(folder, pattern, file, table->name() + ".video")) {
-      for (const std::string& name : FramesOf(folder, video, every)) add(name);
-    }
-  }
-  if (all.size() > kMaxPhotos) {
-    throw UserError(file, table->name(), std::to_string(all.size()) + " photographs",
-                    "at most " + std::to_string(kMaxPhotos) + " are read");
-  }
-  return all;
-}
 
 void ReadSample(const fs::path& file, const toml::table& document, Capture* capture) {
-  TableReader table(file, document, "sample");
+  TomlTable table(file, document, "sample");
   const auto size = table.Numbers("size_mm", 2, false, "give [width, height] in millimetres");
   if (size.empty()) table.Missing("size_mm", "give [width, height] of the sample in millimetres");
   if (!(size[0] > 0 && size[1] > 0 && size[0] < 1e5 && size[1] < 1e5)) {
@@ -311,8 +65,8 @@ void ReadSample(const fs::path& file, const toml::table& document, Capture* capt
 }
 
 // file = "board.json", with the length of its ruler where somebody measured the print.
-void TakeBoardFile(const fs::path& file, TableReader* table, Capture* capture) {
-  const auto names = Match(capture->folder, table->Text("file", ""), file, "board.file");
+void TakeBoardFile(const fs::path& file, TomlTable* table, Capture* capture) {
+  const auto names = MatchFiles(capture->folder, table->Text("file", ""), file, "board.file");
   if (names.size() != 1) {
     throw UserError(file, "board.file", std::to_string(names.size()) + " files that match",
                     "name one board.json");
@@ -328,7 +82,7 @@ void TakeBoardFile(const fs::path& file, TableReader* table, Capture* capture) {
   }
 }
 
-void DescribeBoard(TableReader* table, Capture* capture) {
+void DescribeBoard(TomlTable* table, Capture* capture) {
   Board& board = capture->board;
   if (table->Find("kind") != nullptr && table->Text("kind", "") == "markers") {
     table->Reject(*table->Find("kind"), "kind",
@@ -362,7 +116,7 @@ void DescribeBoard(TableReader* table, Capture* capture) {
 }
 
 void ReadBoard(const fs::path& file, const toml::table& document, Capture* capture) {
-  TableReader table(file, document, "board");
+  TomlTable table(file, document, "board");
   capture->has_board = table.present();
   if (!capture->has_board) return;
   const bool from_file = table.Find("file") != nullptr;
@@ -409,16 +163,16 @@ void CheckUnits(const fs::path& file, const Capture& capture) {
 }
 
 void ReadRadiometry(const fs::path& file, const toml::table& document, Capture* capture) {
-  TableReader radiometry(file, document, "radiometry");
+  TomlTable radiometry(file, document, "radiometry");
   capture->encoding = radiometry.Text("encoding", "auto");
   if (capture->encoding_is_file()) {
-    Match(capture->folder, capture->encoding, file, "radiometry.encoding");
+    MatchFiles(capture->folder, capture->encoding, file, "radiometry.encoding");
   } else {
     radiometry.Text("encoding", "auto",
                     {"auto", "srgb", "gamma2.2", "linear", "a response curve's file (.json)"});
   }
   radiometry.RejectUnknown();
-  TableReader light(file, document, "light");
+  TomlTable light(file, document, "light");
   const auto offset = light.Numbers("offset_mm", 3, false, "give [x, y, z] in millimetres");
   if (!offset.empty()) capture->light_offset_mm = {offset[0], offset[1], offset[2]};
   for (auto [key, target] :
@@ -443,7 +197,7 @@ void RequireTogether(const fs::path& file, const std::string& what, bool has_wha
 }
 
 void ReadPoses(const fs::path& file, const toml::table& document, Capture* capture) {
-  TableReader table(file, document, "poses");
+  TomlTable table(file, document, "poses");
   PosesTable& poses = capture->poses;
   const std::string unit = " of millimetres, greater than 0";
   poses.photo = table.Text("photo", "");
@@ -488,7 +242,7 @@ void ReadPoses(const fs::path& file, const toml::table& document, Capture* captu
 }
 
 // A key that another kind of chart would take is refused: it would be ignored.
-void RequireKind(const TableReader& table, const toml::table& document, const std::string& key,
+void RequireKind(const TomlTable& table, const toml::table& document, const std::string& key,
                  bool goes_with_kind, const std::string& kinds) {
   if (goes_with_kind) return;
   const toml::node* node = document["chart"][key].node();
@@ -496,12 +250,12 @@ void RequireKind(const TableReader& table, const toml::table& document, const st
 }
 
 void ReadChart(const fs::path& file, const toml::table& document, Capture* capture) {
-  TableReader table(file, document, "chart");
+  TomlTable table(file, document, "chart");
   if (!table.present()) return;
   ChartTable& chart = capture->chart;
   const std::string photo = table.Text("photo", "");
   if (photo.empty()) table.Missing("photo", "name the photograph that shows the chart");
-  const auto photos = Match(capture->folder, photo, file, "chart.photo");
+  const auto photos = MatchFiles(capture->folder, photo, file, "chart.photo");
   if (photos.size() != 1) {
     throw UserError(file, "chart.photo", std::to_string(photos.size()) + " files that match",
                     "name one photograph");
@@ -510,7 +264,7 @@ void ReadChart(const fs::path& file, const toml::table& document, Capture* captu
   chart.photo = photos[0];
   chart.kind = table.Text("kind", chart.kind);
   if (chart.kind_is_file()) {
-    Match(capture->folder, chart.kind, file, "chart.kind");
+    MatchFiles(capture->folder, chart.kind, file, "chart.kind");
   } else {
     std::vector<std::string> kinds(kFoundCharts.begin(), kFoundCharts.end());
     kinds.insert(kinds.end(), {"grey", "a table of patches (.csv)"});
@@ -566,7 +320,7 @@ void ReadKind(const fs::path& file, const toml::table& document, Capture* captur
 }
 
 // Three points on the rim of each ball: [[x, y], [x, y], [x, y]], or a list of two of these.
-std::vector<double> ReadBalls(TableReader* table) {
+std::vector<double> ReadBalls(TomlTable* table) {
   const std::string remedy =
       "give three points [x, y] on the ball's rim in the upright photographs, or a list of two "
       "such "
@@ -600,7 +354,7 @@ std::vector<double> ReadBalls(TableReader* table) {
 }
 
 void ReadLights(const fs::path& file, const toml::table& document, Capture* capture) {
-  TableReader table(file, document, "lights");
+  TomlTable table(file, document, "lights");
   if (!capture->fixed_camera()) {
     if (!table.present()) return;
     throw UserError(file, "lights", "a table for a camera that stands still",
@@ -619,7 +373,7 @@ void ReadLights(const fs::path& file, const toml::table& document, Capture* capt
   lights.camera_mm = table.Number("camera_mm", 0, 1e-3, 1e7, length);
   lights.balls_px = ReadBalls(&table);
   table.RejectUnknown();
-  if (!lights.file.empty()) Match(capture->folder, lights.file, file, "lights.file");
+  if (!lights.file.empty()) MatchFiles(capture->folder, lights.file, file, "lights.file");
   if (lights.file.empty() != lights.balls_px.empty()) return;
   throw UserError(file, "lights",
                   lights.file.empty() ? "neither file nor balls_px" : "both file and balls_px",
@@ -659,7 +413,7 @@ Capture ReadCapture(const fs::path& folder) {
   const auto document = ReadTomlFile(capture.file);
   RejectUnknownTables(capture.file, *document);
   ReadSample(capture.file, *document, &capture);
-  TableReader photos(capture.file, *document, "photos");
+  TomlTable photos(capture.file, *document, "photos");
   capture.photos = ReadPhotos(capture.folder, "files", &photos, capture.file);
   photos.RejectUnknown();
   ReadBoard(capture.file, *document, &capture);

@@ -406,10 +406,18 @@ Surroundings WithFixedCamera(const InitOptions& options, InitResult* result) {
   return {text, {width_mm, height_mm}, "the picture's middle", {width_mm, height_mm}};
 }
 
-// As many texels as pixels, up to a size that most machines can take.
-int TexelsOfPicture(const InitOptions& options) {
-  constexpr int kMost = 2048;
-  return std::min(PhotoSize(AnyPhoto(options)).first, kMost);
+// Of a fixed camera as many texels as pixels show the sample, up to a size that most machines can
+// take.
+int ResolutionOf(const InitOptions& options, double share_of_picture) {
+  constexpr int kUsual = 1024, kLeast = 8, kMost = 2048;
+  if (options.resolution_px >= kLeast) return options.resolution_px;
+  if (options.resolution_px != 0) {
+    throw UserError(
+        fmt::format("--resolution: found {}; give at least {}", options.resolution_px, kLeast));
+  }
+  if (!options.fixed_camera()) return kUsual;
+  const double width_px = share_of_picture * PhotoSize(AnyPhoto(options)).first;
+  return std::clamp(static_cast<int>(std::lround(width_px)), kLeast, kMost);
 }
 
 void CheckEncoding(const std::string& encoding) {
@@ -514,10 +522,8 @@ std::string CaptureText(const InitOptions& options, InitResult* result) {
   text += "[sample]                         # the part of the surface that becomes maps\n";
   text += "size_mm = " + List(size_mm) + "             # width, height\n";
   text += "# centre_mm = [0, 0]             # from " + around.centre_from + ", x right, y up\n";
-  const int resolution_px =
-      options.fixed_camera() && options.resolution_px == InitOptions().resolution_px
-          ? TexelsOfPicture(options)
-          : options.resolution_px;
+  const double share = around.most_mm.empty() ? 1 : size_mm[0] / around.most_mm[0];
+  const int resolution_px = ResolutionOf(options, share);
   text += "resolution_px = " + std::to_string(resolution_px) +
           "             # width of the maps, or [width, height]\n\n";
   text += PhotoText(options, &result->photos);

@@ -21,7 +21,8 @@ struct InitOptions {
   bool full_board = false;     // no window: the sample lies on or beside a whole board
   std::vector<double>
       sample_mm;  // width, height; empty: the window less a margin, 100 mm without a board
-  int resolution_px = 1024;
+  // Width of the maps; 0: 1024, of a fixed camera as many as the picture has pixels, up to 2048.
+  int resolution_px = 0;
   std::string encoding = "auto";  // or a response curve's file (.json)
   int every = 15;                 // of a video's frames, one in so many
   std::vector<double> light_offset_mm = {0, 0, 0};
