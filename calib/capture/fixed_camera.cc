@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A camera or a lamp whose distance nobody told, by the picture's longer side. Three painted panels
-// are level in the mean when their lamps stand 10 to 15 of their widths away: nearer ones would
-// make them hollow, farther ones arched.
+// The nominal distance of a camera or lamp whose distance is not given, by the picture's longer
+// side. Three painted panels are level in the mean when their lamps stand 10 to 15 of their widths
+// away: nearer ones would make them hollow, farther ones arched.
 constexpr double kFarSides = 10;
 constexpr int kGridSide = 64;         // points along each side at which lamps' strengths are told
 constexpr double kGridMargin = 0.02;  // of the sample's side that is left out at its rim
@@ -180,7 +180,7 @@ PhotoLook LookAt(const Capture& capture, const std::string& name,
   return look;
 }
 
-// What all photographs show of the ball alike is the room.
+// What all photographs show of the ball alike is ambient illumination.
 void TakeOutRoom(size_t ball, std::vector<PhotoLook>* looks) {
   const size_t pixels = looks->front().balls[ball].brightness.size();
   for (size_t i = 0; i < pixels; ++i) {
@@ -362,7 +362,7 @@ class FixedCamera {
     calibration.ambient_rgb = Eigen::Vector3d(capture_.ambient.data());
     // That of a white surface which reaches 0.8; refined later.
     calibration.light_rgb.setConstant(0.8 * std::numbers::pi * lamps.lights_mm[0].squaredNorm());
-    if (options_.light != "board") return;  // as they are said to be: all alike, or by EXIF
+    if (options_.light != "board") return;  // nominal: all alike, or by EXIF
     summary_.lamps = EstimateLampStrengths(lamps, threads_);
     for (size_t i = 0; i < calibration.photos.size(); ++i) {
       const LampStrength& lamp = summary_.lamps.lamps[i];

@@ -41,7 +41,7 @@ T LabCurve(const T& t) {
 // Channels may lie below 0. T: double, or ceres::Jet.
 template <class T>
 Eigen::Matrix<T, 3, 1> LabFromRec709(const Eigen::Matrix<T, 3, 1>& rgb) {
-  // Of a white of 1: rows divided by the white point, which is the image of (1, 1, 1).
+  // For a white of 1: rows divided by the white point, which is the image of (1, 1, 1).
   static const Eigen::Matrix3d relative =
       XyzD50FromRec709().rowwise().sum().cwiseInverse().asDiagonal() * XyzD50FromRec709();
   const Eigen::Matrix<T, 3, 1> xyz = relative.cast<T>() * rgb;

@@ -6,7 +6,7 @@
 
 namespace glint {
 
-// Of two colours L*, a*, b*; kL = kC = kH = 1.
+// The difference of two colours L*, a*, b*; kL = kC = kH = 1.
 double DeltaE00(const Eigen::Vector3d& lab_1, const Eigen::Vector3d& lab_2);
 
 // W with |W·(lab − reference)| close to DeltaE00(lab, reference) for small differences: the

@@ -28,8 +28,9 @@ constexpr double kHuber = 3;
 // patches tell each to a few hundredths.
 constexpr double kSpreadOfG = 0.66, kSpreadOfAB = 0.81;
 
-// Of ChartLight's q: a tenth of the distance from the middle to the flash, which then touches the
-// chart. Fits end above it; patches that they did not see may lie where they make no sense.
+// The least of ChartLight's q: a tenth of the distance from the middle to the
+// flash, which then touches the chart. Fits end above it; patches that they did not see may lie
+// where they make no sense.
 constexpr double kLeastQ = 0.01;
 
 struct Observation {

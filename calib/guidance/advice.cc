@@ -185,10 +185,10 @@ void AddLeftOut(const GuidanceInput& input, const Verdict& v, const std::string&
   for (const LeftOutPhoto& photo : input.left_out) {
     reasons.push_back(photo.name + ": " + photo.reason);
   }
-  list->push_back({"left_out",
-                   share > v.limits.left_out_share ? Importance::kUseful : Importance::kHint,
-                   fmt::format("{} of {} photographs are left out ({}): {}", input.left_out.size(),
-                               all, NameList(reasons, 2), remedy)});
+  list->push_back(
+      {"left_out", share > v.limits.left_out_share ? Importance::kUseful : Importance::kHint,
+       fmt::format("{} of {} photographs {} left out ({}): {}", input.left_out.size(), all,
+                   input.left_out.size() == 1 ? "is" : "are", NameList(reasons, 2), remedy)});
 }
 
 std::vector<Advice> AdviceFor(const GuidanceInput& input, const Verdict& verdict) {

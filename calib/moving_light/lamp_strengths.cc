@@ -60,7 +60,7 @@ class LampSolver {
     }
   }
 
-  // Of all channels' mean.
+  // Solves for the mean of the channels' logarithms.
   void Run() {
     for (size_t p = 0; p < points_; ++p) StartPoint(p);
     for (int round = 0; round < kMostRounds; ++round) {
@@ -230,8 +230,8 @@ class LampSolver {
   std::vector<double> scale_;
 };
 
-// Of one channel over green: medians over points and over lamps in turns, points weighted by how
-// little their colour changes. Colour does not depend on where the light is, but for gloss.
+// Ratios of one channel to green, log: medians over points and over lamps in turns, points weighted
+// by how little their colour changes. Colour does not depend on where the light is, but for gloss.
 std::vector<double> ColourRatios(const LampProblem& problem, int channel) {
   const size_t lamps = problem.lights_mm.size(), points = problem.points_mm.size();
   const auto c = static_cast<size_t>(channel);

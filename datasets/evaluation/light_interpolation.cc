@@ -30,7 +30,7 @@ MatrixXd HarmonicTerms(const Directions& lights, int terms) {
   return basis.leftCols(terms);
 }
 
-// Of least squares: terms(wanted) · terms(known)⁺.
+// Weights of least squares: terms(wanted) · terms(known)⁺.
 MatrixXd Fitted(const MatrixXd& known, const MatrixXd& wanted) {
   return wanted * known.completeOrthogonalDecomposition().pseudoInverse();
 }

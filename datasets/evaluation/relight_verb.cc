@@ -30,7 +30,7 @@ struct RelightRow {
 
 constexpr double kGamma = 2.2;
 
-// Of values as a screen shows them.
+// Peak signal-to-noise ratio of values as a screen shows them.
 double Psnr_db(const std::vector<float>& rendered, const RectifiedImage& photograph) {
   const size_t texels = photograph.mask.size();
   double squares = 0, count = 0;

@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 constexpr size_t kFewPhotographs = 2;
 constexpr int kMostEstimatorSize = 1024;
 
-// Of a camera that stands still: docs/experiments/moving-light.md.
+// Photographs that a fit under moving lights uses: docs/experiments/moving-light.md.
 constexpr size_t kMostLights = 16;
 
 constexpr int kFullSize = 1 << 20;  // more than any maps have along a side
@@ -308,7 +308,7 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
     throw UserError("fit: " + wrong);
   const Size fitted = FittedSize(set.plane, options, fit_options);
   const Size shown = ShownSize(set.plane, options, fit_options);
-  // Of a fixed camera's many lights some tell as much of the start as all; refinement sees all.
+  // Sixteen of a fixed camera's lights give as good initial maps as all; refinement uses all.
   const std::vector<RectifiedView> shown_views =
       set.fixed_camera ? SpreadViews(views, kMostLights) : views;
   PhotographSet photographs = Load(set, shown_views, fitted, shown, threads);

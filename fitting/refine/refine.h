@@ -75,7 +75,7 @@ struct RefineOptions {
   // places across their directions, relative to their distance (view_deviations.h). 0: as said.
   double exposure_spread = 0;
   double light_spread = 0;
-  // Of photographs with lamps of their own, standard deviations expected of the gradient of log
+  // Prior standard deviations, for photographs with lamps of their own, of the gradient of log
   // exposure by the direction of light, and of the sample's mean slope (view_deviations.h). 0:
   // none.
   double lamp_gradient = 0, level_spread = 0;

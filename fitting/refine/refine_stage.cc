@@ -218,7 +218,7 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStart& start,
 // A flash that was measured stands where it was found, to the accuracy that is stated.
 CorrectionOptions CorrectionFor(const RectifiedSet& set, const std::vector<RectifiedView>& views,
                                 CorrectionOptions options) {
-  // Nothing moved but the light, to where it is said to be: what is left to look for is the room's.
+  // Nothing moved but the light, to its stated place: only ambient illumination is left to find.
   if (set.fixed_camera) {
     if (options.when == "auto") options.when = "never";
     options.view.light = options.view.registration = false;
@@ -275,8 +275,7 @@ struct Sample {
   }
 };
 
-// Of a fixed camera: each of its photographs has a light of its own, those that were not fitted
-// too.
+// A fixed camera's photographs have a light of their own each, held-out ones too.
 void AddHeldOut(const Sample& sample, const fs::path& maps_file, const Vec3d& light_scale_rgb,
                 int threads, Json* data) {
   if (!sample.set.fixed_camera) return;

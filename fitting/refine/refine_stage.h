@@ -27,7 +27,7 @@ struct RefineStageOptions {
   double light_spread = 0.02;
   // Likewise RefineOptions::residual_sigma: what fourteen such samples were found to have.
   double residual_sigma = 0.1;
-  // Of a fixed camera, RefineOptions::lamp_gradient: a dome half as bright on one side as on the
+  // RefineOptions::lamp_gradient for a fixed camera: a dome half as bright on one side as on the
   // other; and level_spread: a degree, as panels lie in a dome or stand before a camera.
   double lamp_gradient = 0.5;
   double level_spread = 0.02;

@@ -260,7 +260,7 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
   UpdateSpreads(variances);
 }
 
-// Of a covariance spread²·1 + gradient²·G·Gᵀ, G the directions (Woodbury).
+// The inverse of the covariance spread²·1 + gradient²·G·Gᵀ, G the directions (Woodbury).
 Eigen::MatrixXd ViewDeviations::ExposurePrecision() const {
   const auto views = static_cast<Eigen::Index>(values_.size());
   const double spread = std::max(spreads_[kLogExposure], 1e-6), precision = 1 / (spread * spread);

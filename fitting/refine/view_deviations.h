@@ -56,7 +56,7 @@ struct TexelOfViews {
   const std::vector<DeviationProducts>* products = nullptr;
 };
 
-// Of lamps that differ from photograph to photograph.
+// The prior of lamps that differ from photograph to photograph.
 struct LampsExpected {
   // By view: x and y of the unit vector to its light. Empty: all have one light.
   std::vector<std::array<double, 2>> directions;
@@ -79,7 +79,7 @@ class ViewDeviations {
   const DeviationValues& spreads() const { return spreads_; }
 
  private:
-  // Of all views' logarithms of exposures.
+  // The prior precision of all views' log exposures.
   Eigen::MatrixXd ExposurePrecision() const;
   void UpdateSpreads(const std::vector<DeviationValues>& variances);
 

@@ -30,7 +30,7 @@ struct PosesTable {
 // [lights]: where the light stood in each photograph of a camera that stood still.
 struct LightsTable {
   std::string file;  // relative to the folder: .lp, .relight or .dome (calib/moving_light)
-  // Of positions in an .lp file: "mm", "cm" or "m"; empty: it holds directions.
+  // The unit of positions in an .lp file: "mm", "cm" or "m"; empty: it holds directions.
   std::string unit;
   double distance_mm = 0;  // of lights that are known by their direction; 0: not known
   double camera_mm = 0;    // of the lens above the sample; 0: far

@@ -43,7 +43,7 @@ std::vector<std::string> FramesOf(const fs::path& folder, const std::string& vid
 }  // namespace
 
 std::vector<std::string> MatchFiles(const fs::path& folder, const std::string& pattern,
-                               const fs::path& file, const std::string& field) {
+                                    const fs::path& file, const std::string& field) {
   const fs::path relative(pattern);
   if (relative.is_absolute() || pattern.find("..") != std::string::npos) {
     throw UserError(file, field, "'" + pattern + "'", "give a path inside the capture's folder");

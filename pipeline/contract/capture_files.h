@@ -19,8 +19,8 @@ std::vector<std::string> MatchFiles(const std::filesystem::path& folder, const s
 void RequireUtf8(const std::filesystem::path& file, const std::string& field,
                  const std::string& name);
 
-// Photographs of the table's `key` (patterns) and `video` (patterns too; one frame in `every`), each
-// once. Throws UserError: as MatchFiles(), a name that is not UTF-8, too many.
+// Photographs of the table's `key` (patterns) and `video` (patterns too; one frame in `every`),
+// each once. Throws UserError: as MatchFiles(), a name that is not UTF-8, too many.
 std::vector<std::string> ReadPhotos(const std::filesystem::path& folder, const std::string& key,
                                     TomlTable* table, const std::filesystem::path& file);
 

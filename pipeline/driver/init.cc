@@ -369,7 +369,7 @@ std::string BallsText(const std::vector<double>& at) {
   return at.size() > 6 ? "[" + text + "]" : text;
 }
 
-// Of what the photographs tell, where they are: EXIF knows no millimetres.
+// The nominal width of a picture whose scale nobody gave: EXIF knows no millimetres.
 constexpr double kAssumedWidth_mm = 100;
 
 // The whole picture, of a camera that stands still.
@@ -406,7 +406,7 @@ Surroundings WithFixedCamera(const InitOptions& options, InitResult* result) {
   return {text, {width_mm, height_mm}, "the picture's middle", {width_mm, height_mm}};
 }
 
-// Of a fixed camera as many texels as pixels show the sample, up to a size that most machines can
+// A fixed camera's maps have as many texels as pixels show the sample, up to what most machines can
 // take.
 int ResolutionOf(const InitOptions& options, double share_of_picture) {
   constexpr int kUsual = 1024, kLeast = 8, kMost = 2048;

@@ -8,7 +8,8 @@
 
 namespace glint {
 
-TomlTable::TomlTable(const std::filesystem::path& file, const toml::table& document, std::string name)
+TomlTable::TomlTable(const std::filesystem::path& file, const toml::table& document,
+                     std::string name)
     : file_(file), name_(std::move(name)) {
   const toml::node* node = document.get(name_);
   if (node == nullptr) return;
@@ -24,7 +25,7 @@ const toml::node* TomlTable::Find(const std::string& key) {
 }
 
 void TomlTable::Reject(const toml::node& node, const std::string& key,
-                         const std::string& remedy) const {
+                       const std::string& remedy) const {
   throw UserError(file_, TomlPlace{file_, name_ + "." + key}.Field(node), DescribeToml(node),
                   remedy);
 }
@@ -34,7 +35,7 @@ void TomlTable::Missing(const std::string& key, const std::string& remedy) const
 }
 
 double TomlTable::Number(const std::string& key, double fallback, double low, double high,
-              const std::string& unit) {
+                         const std::string& unit) {
   const toml::node* node = Find(key);
   if (node == nullptr) return fallback;
   const auto value = node->is_number() ? node->value<double>() : std::nullopt;
@@ -43,7 +44,7 @@ double TomlTable::Number(const std::string& key, double fallback, double low, do
 }
 
 std::string TomlTable::Text(const std::string& key, const std::string& fallback,
-                 const std::vector<std::string>& choices) {
+                            const std::vector<std::string>& choices) {
   const toml::node* node = Find(key);
   if (node == nullptr) return fallback;
   std::string list;
@@ -58,7 +59,7 @@ std::string TomlTable::Text(const std::string& key, const std::string& fallback,
 }
 
 std::vector<double> TomlTable::Numbers(const std::string& key, size_t count, bool one_for_all,
-                            const std::string& remedy) {
+                                       const std::string& remedy) {
   const toml::node* node = Find(key);
   if (node == nullptr) return {};
   if (one_for_all && node->is_number()) return std::vector<double>(count, *node->value<double>());
@@ -73,7 +74,8 @@ std::vector<double> TomlTable::Numbers(const std::string& key, size_t count, boo
   return numbers;
 }
 
-std::vector<double> TomlTable::Points(const std::string& key, size_t count, const std::string& remedy) {
+std::vector<double> TomlTable::Points(const std::string& key, size_t count,
+                                      const std::string& remedy) {
   const toml::node* node = Find(key);
   if (node == nullptr) return {};
   std::vector<double> numbers;
@@ -97,7 +99,7 @@ std::vector<double> TomlTable::Points(const std::string& key, size_t count, cons
 }
 
 std::vector<int> TomlTable::Integers(const std::string& key, size_t count, bool one_for_all,
-                          const std::string& remedy) {
+                                     const std::string& remedy) {
   const std::vector<double> numbers = Numbers(key, count, one_for_all, remedy);
   std::vector<int> integers;
   for (const double number : numbers) {

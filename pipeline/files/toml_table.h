@@ -1,6 +1,6 @@
 // One table of a TOML file that a person wrote, read key by key: what is wrong is said with file,
-// line, key, what stands there and the remedy; what is not asked for is unknown in the end. Included
-// by .cc files only.
+// line, key, what stands there and the remedy; what is not asked for is unknown in the end.
+// Included by .cc files only.
 #pragma once
 
 #include <filesystem>

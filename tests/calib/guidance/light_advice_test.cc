@@ -107,7 +107,7 @@ TEST(LightAdvice, PhotographsThatAreLeftOutAreNamedWithTheirReason) {
   GuidanceInput input = WholeDome();
   input.left_out.push_back({"dark.jpg", "dirs.lp does not list it"});
   EXPECT_THAT(On(input, "left_out").text,
-              HasSubstr("1 photograph is left out (dark.jpg: dirs.lp does not list it)"));
+              HasSubstr("1 of 41 photographs is left out (dark.jpg: dirs.lp does not list it)"));
 }
 
 TEST(LightAdvice, WhatIsUsefulGoesBeforeHints) {

@@ -158,7 +158,7 @@ TEST(Verdict, RepeatsWhyPhotographsAreLeftOut) {
   EXPECT_EQ(Sentence(input, "left_out"), "");
   input.left_out = {{"a.jpg", "blurred"}};
   EXPECT_THAT(Sentence(input, "left_out"),
-              HasSubstr("1 of 13 photographs are left out (a.jpg: blurred)"));
+              HasSubstr("1 of 13 photographs is left out (a.jpg: blurred)"));
   EXPECT_EQ(Judge(input).Word(), "good");
   input.left_out.resize(6, {"b.jpg", "no board"});
   EXPECT_THAT(Sentence(input, "left_out"), HasSubstr("and 4 more"));
