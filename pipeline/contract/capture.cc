@@ -1,5 +1,7 @@
 #include "pipeline/contract/capture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
