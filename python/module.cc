@@ -217,7 +217,8 @@ void RequireRows(const DoubleArray& array, const char* name, py::ssize_t rows, b
 // One row for each evaluation; directions and normals are unit.
 DoubleArray Brdf(const DoubleArray& light, const DoubleArray& camera, const DoubleArray& normal,
                  const DoubleArray& diffuse, const DoubleArray& specular,
-                 const DoubleArray& roughness, bool one_minus_specular) {
+                 const DoubleArray& roughness, bool one_minus_specular, double narrow_share,
+                 double narrow_ratio) {
   const py::ssize_t rows = roughness.ndim() == 1 ? roughness.shape(0) : 0;
   RequireRows(light, "light", rows, true);
   RequireRows(camera, "camera", rows, true);
@@ -225,8 +226,9 @@ DoubleArray Brdf(const DoubleArray& light, const DoubleArray& camera, const Doub
   RequireRows(diffuse, "diffuse", rows, true);
   RequireRows(specular, "specular", rows, true);
   RequireRows(roughness, "roughness", rows, false);
-  const DiffuseWeight weight =
-      one_minus_specular ? DiffuseWeight::kOneMinusSpecular : DiffuseWeight::kOne;
+  ReflectanceConvention convention;
+  if (one_minus_specular) convention.diffuse_weight = DiffuseWeight::kOneMinusSpecular;
+  convention.lobes = {narrow_share, narrow_ratio};
   DoubleArray values(std::vector<py::ssize_t>{rows, 3});
   double* const out = values.mutable_data();
   const double dark[3] = {0, 0, 0};
@@ -238,7 +240,7 @@ DoubleArray Brdf(const DoubleArray& light, const DoubleArray& camera, const Doub
     std::copy_n(specular.data() + at, 3, texel.specular);
     texel.roughness = roughness.data()[row];
     const auto geometry = MakeTexelGeometry(light.data() + at, camera.data() + at, dark, dark);
-    EvaluateBrdf(texel, geometry, weight, out + at);
+    EvaluateBrdf(texel, geometry, convention, out + at);
   }
   return values;
 }
@@ -288,6 +290,6 @@ PYBIND11_MODULE(_glint, module) {
              arg("ambient_rgb"), arg("exposure"), arg("threads"),
              "The adjoint of render: ∂loss/∂maps, [10, height, width], from ∂loss/∂radiance.");
   module.def("brdf", &glint::Brdf, arg("light"), arg("camera"), arg("normal"), arg("diffuse"),
-             arg("specular"), arg("roughness"), arg("one_minus_specular"),
-             "The BRDF row by row, [rows, 3], in 1/sr.");
+             arg("specular"), arg("roughness"), arg("one_minus_specular"), arg("narrow_share"),
+             arg("narrow_ratio"), "The BRDF row by row, [rows, 3], in 1/sr.");
 }

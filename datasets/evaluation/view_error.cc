@@ -167,9 +167,10 @@ std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
   SvbrdfMaps resampled;
   if (!same_size) resampled = ResampleSvbrdf(fit.maps, set.plane.width, set.plane.height);
   const SvbrdfMaps& maps = same_size ? fit.maps : resampled;
-  // The maps are of the fit's diffuse weight; light and texels are the set's.
+  // The reflectance is the maps'; light and texels are the set's.
   ReflectanceConvention convention = set.convention;
   convention.diffuse_weight = fit.convention.diffuse_weight;
+  convention.lobes = fit.convention.lobes;
   const View lit = ViewOfFit(fit, view);
   std::vector<float> rendered(3 * maps.texels());
   RenderLit(maps, set.plane, lit, convention, rendered.data(), threads);

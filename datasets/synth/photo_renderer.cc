@@ -165,7 +165,7 @@ PhotoRenderer::Rgb PhotoRenderer::ShadeSample(const PhotoGeometry& geometry,
       TexelGeometryInView(geometry.view, LightFalloff::kInverseSquare,
                           static_cast<float>(position_mm.x()), static_cast<float>(position_mm.y()));
   Rgb rgb;
-  ShadeRadiance(texel, in_view, DiffuseWeight::kOne, rgb.data());
+  ShadeRadiance(texel, in_view, {DiffuseWeight::kOne}, rgb.data());
   return rgb;
 }
 

@@ -42,7 +42,7 @@ bool ReadTexel(const PhotographSet& set, const Photograph& photo, const GlobalLo
   std::copy(lobes.diffuse.begin(), lobes.diffuse.end(), flat.diffuse);
   std::copy(lobes.specular.begin(), lobes.specular.end(), flat.specular);
   double predicted[3], total = 0, highlight = 0;
-  ShadeRadiance(flat, g, set.convention.diffuse_weight, predicted);
+  ShadeRadiance(flat, g, set.convention, predicted);
   reading->clipped = false;
   reading->lambert = 0;
   for (int c = 0; c < 3; ++c) {

@@ -67,7 +67,7 @@ void Photograph(const SvbrdfMaps& truth, Scene* scene) {
                     TexelGeometryInView<double>(view, LightFalloff::kNone,
                                                 scene->problem.plane.x_mm(int(t % kSize)),
                                                 scene->problem.plane.y_mm(int(t / kSize))),
-                    DiffuseWeight::kOne, radiance);
+                    {DiffuseWeight::kOne}, radiance);
       for (int c = 0; c < 3; ++c) {
         const double level = std::round(255.0 * std::pow(std::fmin(radiance[c], 1.0), 1.0 / 2.2));
         rgb[c * texels + t] = static_cast<float>(std::pow(level / 255.0, 2.2));
@@ -123,7 +123,7 @@ struct ViewResiduals {
     const TexelSvbrdf<T> texel = TexelFromValues(x);
     const TexelGeometry<T> view = GeometryAs<T>(geometry);
     T radiance[3];
-    ShadeRadiance(texel, view, options.diffuse_weight, radiance);
+    ShadeRadiance(texel, view, {options.diffuse_weight}, radiance);
     for (int c = 0; c < 3; ++c) {
       T error = log(radiance[c] + kLogOffset) - log_target[c];
       if (clipped[c] && error > T(0)) error = T(0);
@@ -222,7 +222,7 @@ int Main() {
   Scene scene;
   MakeScene(&scene);
   RefineOptions options;
-  const KernelOptions kernel{scene.problem.convention.diffuse_weight, options.robust_scale};
+  const KernelOptions kernel{scene.problem.convention.diffuse_weight, {}, options.robust_scale};
   fmt::print("{}² texels, {} views, one thread, {}\n", kSize, kViews, Name(BestInstructionSet()));
   // Both in turn, several times: what disturbs one round disturbs both alike.
   std::vector<double> ratios;

@@ -179,6 +179,9 @@ void Estimator::Run() {
     }
   };
   solver.deviate = [&](const ViewDeviations& deviations) { SetViews(deviations); };
+  solver.reflect = [&](const SpecularLobes& lobes) {
+    for (const auto& worker : workers_) worker->batches.SetLobes(lobes);
+  };
   if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);
   SetViews(model_.deviations());
   model_.Estimate(by_colour_ ? &*by_colour_ : nullptr, solver, threads_);
@@ -300,6 +303,7 @@ SampleEstimate Estimator::Estimate(std::vector<int> order) const {
 }  // namespace
 
 RefineProblem SampleEstimate::InOrder(RefineProblem problem) const {
+  problem.convention.lobes = model.lobes();
   return Reordered(std::move(problem), order);
 }
 

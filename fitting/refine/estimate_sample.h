@@ -17,7 +17,7 @@ struct SampleEstimate {
   SampleModel model;      // to be put On() a part
   RefineSummary summary;  // what it says of the whole sample
 
-  // The problem with its views in this order, as they are said to be.
+  // The problem with its views in this order, as they are said to be, and the sample's lobes.
   RefineProblem InOrder(RefineProblem problem) const;
 };
 

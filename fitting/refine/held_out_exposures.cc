@@ -24,7 +24,7 @@ double ExposureOf(const RefineProblem& problem, const SvbrdfMaps& maps, const Re
         view.view, problem.convention.falloff, plane.x_mm(static_cast<int>(i) % plane.width),
         plane.y_mm(static_cast<int>(i) / plane.width));
     double radiance[3];
-    ShadeRadiance(TexelAt(maps, i), geometry, problem.convention.diffuse_weight, radiance);
+    ShadeRadiance(TexelAt(maps, i), geometry, problem.convention, radiance);
     for (size_t c = 0; c < 3; ++c) {
       const double seen = view.rgb[c * texels + i];
       if (view.ldr && seen >= 0.99) continue;

@@ -98,6 +98,10 @@ std::string RefineSummary::BriefReport() const {
     text << substances << " substances (roughness spread " << roughness_spread
          << "), normals scatter " << normal_spread * 180 / M_PI << " deg, ";
   }
+  if (lobes.two()) {
+    text << "a second specular lobe (share " << lobes.narrow_share << ", " << lobes.narrow_ratio
+         << " times as rough as the other), ";
+  }
   if (exposure_spread > 0) text << "exposures scatter " << 100 * exposure_spread << " %, ";
   text << 100.0 * converged << " % converged";
   return text.str();

@@ -86,7 +86,8 @@ struct RefineOptions {
   KindsPriorOptions kinds;
   // Standard deviations expected of all views' light (shared_light.h). 0: as said.
   double flash_beam = 0, distance_power = 0;
-  double prior = 1.0;  // factor on the priors' weight; 0: none
+  bool second_lobe = true;  // of the whole sample, where held-out photographs ask for it
+  double prior = 1.0;       // factor on the priors' weight; 0: none
   // Standard deviation by which lens, pixel, demosaicking and resampling spread a point of the
   // picture, pixels (point_spread.h). 0: not at all.
   double point_spread_px = 0.67;
@@ -110,6 +111,7 @@ struct RefineSummary {
   double discrepancy = 0;         // of it, what the reflectance model does not express
   double effective_views = 0;     // how many views say something of their own
   int substances = 0;             // that are told apart
+  SpecularLobes lobes;            // of the sample
   double roughness_spread = 0;  // of texels about their substance's mean (∞: one photograph) …
   double specular_spread = 0;   // … relative
   double diffuse_spread = 0;    // likewise; ∞ from one or two photographs

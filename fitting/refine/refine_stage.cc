@@ -52,6 +52,12 @@ std::vector<RectifiedView> ChooseViews(const RectifiedSet& set, const RefineStar
 
 Json KnownOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+// null: one lobe.
+Json JsonOf(const SpecularLobes& lobes) {
+  if (!lobes.two()) return nullptr;
+  return {{"share", lobes.narrow_share}, {"roughness_ratio", lobes.narrow_ratio}};
+}
+
 // What was estimated of the sample as a whole.
 Json EstimateJson(const RefineSummary& summary) {
   return {{"residual_sigma", summary.residual_sigma},
@@ -59,6 +65,7 @@ Json EstimateJson(const RefineSummary& summary) {
           {"model_discrepancy", summary.discrepancy},
           {"effective_views", summary.effective_views},
           {"substances", summary.substances},
+          {"narrow_lobe", JsonOf(summary.lobes)},
           {"roughness_spread", KnownOrNull(summary.roughness_spread)},
           {"specular_spread", KnownOrNull(summary.specular_spread)},
           {"diffuse_spread", KnownOrNull(summary.diffuse_spread)},
@@ -275,6 +282,13 @@ struct Sample {
   }
 };
 
+// Of the maps: that of the initial ones, with the lobes that the photographs asked for.
+ReflectanceConvention ConventionOf(const SampleEstimate& estimate,
+                                   ReflectanceConvention convention) {
+  convention.lobes = estimate.summary.lobes;
+  return convention;
+}
+
 // A fixed camera's photographs have a light of their own each, held-out ones too.
 void AddHeldOut(const Sample& sample, const fs::path& maps_file, const Vec3d& light_scale_rgb,
                 int threads, Json* data) {
@@ -303,7 +317,7 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
                    const RefineOptions& options, double power, int rows_at_once, int threads,
                    SampleSource* source, Stage* stage) {
   const SamplePlane& plane = source->plane();
-  const ReflectanceConvention convention = source->Views().convention;
+  const ReflectanceConvention convention = ConventionOf(estimate, source->Views().convention);
   const int end = part.last(plane.height), rows = end - part.first(plane.height);
   std::unique_ptr<Progress> bar;
   const RowRefiner::ReportProgress progress = [&](std::int64_t done, std::int64_t total) {
@@ -403,6 +417,10 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "estimation-size", &refine->estimation_size, 16, 1 << 20,
       "longer side, in texels, of the grid from which texels are drawn for the estimation; "
       "larger maps are uniformly subsampled to this size");
+  set->Add(
+      "second-lobe", &refine->second_lobe,
+      "look for a second, narrow specular lobe of the whole sample (varnish, polish); it is "
+      "taken where it predicts held-out photographs clearly better, from three photographs on");
   set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the weight of the priors; 0: none");
   set->AddRange("point-spread", &refine->point_spread_px, 0, 100,
                 "standard deviation of a photograph's blur in pixels, of lens, pixel, demosaicking "
@@ -527,12 +545,13 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
   for (const RectifiedView& view : sample.views) result.views.push_back(view.name);
   Vec3d light_scale_rgb = start.light_scale_rgb;
   for (double& scale : light_scale_rgb) scale *= sample.power();
-  result.data = {{"convention", ToString(sample.source.Views().convention)},
-                 {"light_scale_rgb", light_scale_rgb},
-                 {"shared_light", JsonOf(result.summary.shared_light)},
-                 {"views", result.views},
-                 {"metals", start.metals},
-                 {"method", "refined"}};
+  result.data = {
+      {"convention", ToString(ConventionOf(sample.estimate, sample.source.Views().convention))},
+      {"light_scale_rgb", light_scale_rgb},
+      {"shared_light", JsonOf(result.summary.shared_light)},
+      {"views", result.views},
+      {"metals", start.metals},
+      {"method", "refined"}};
   result.metrics = Metrics(result.summary, sample.views);
   result.metrics["light_power"] = {{"factor", sample.power()}};
   AddCorrections(Corrections(result.correction, result.summary), sample.views, &result.data);

@@ -14,7 +14,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 35;
+inline constexpr int kRefineVersion = 36;
 
 struct RefineStageOptions {
   RefineOptions refine;

@@ -26,6 +26,7 @@ struct RefineWorker {
 inline KernelOptions KernelOptionsOf(const RefineProblem& problem, const RefineOptions& options) {
   KernelOptions kernel;
   kernel.diffuse_weight = problem.convention.diffuse_weight;
+  kernel.mix = LobeMixOf<float>(problem.convention.lobes);
   kernel.robust_scale = options.robust_scale;
   return kernel;
 }

@@ -127,6 +127,7 @@ SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
       options_(options),
       all_views_(part.problem().views.size()),
       initial_errors_(ErrorsOfInitialisation(part.problem())),
+      lobes_(part.problem().convention.lobes),
       residuals_(part.problem(), {.expected_sigma = options.residual_sigma}),
       measured_residuals_(residuals_),
       has_sample_priors_(part.problem().views.size() > 1),
@@ -497,7 +498,8 @@ void SampleModel::Estimate(const SamplePart* other, const SampleSolver& solver, 
   if (all_views_.size() < kLeastValidatedViews) return;
   FreezeViews(kExpectedDiffuseSpread, sampling);
   ChooseSubstances(other, sampling);
-  ChooseSpreads(SampleBlocks(kSampled, solver, threads));
+  const Sampling blocks = SampleBlocks(kSampled, solver, threads);
+  ChooseLobesAndSpreads(blocks);
   if (deviations_.any()) {
     // Views are found while nothing is known of how far diffuse albedo departs from its substances:
     // its departures are alike in neighbouring texels, and views would be moved to make them even.
@@ -558,6 +560,7 @@ void SampleModel::Describe(RefineSummary* summary) const {
   summary->discrepancy = residuals_.discrepancy();
   summary->effective_views = residuals_.effective_views();
   summary->substances = part_->substances().count();
+  summary->lobes = lobes_;
   summary->roughness_spread = means_.roughness_spread;
   summary->specular_spread = means_.specular_spread;
   summary->diffuse_spread = means_.diffuse_spread;

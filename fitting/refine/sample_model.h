@@ -61,6 +61,8 @@ struct SampleSolver {
       predict;
   // From now on views deviate so from what is said of them.
   std::function<void(const ViewDeviations& deviations)> deviate;
+  // From now on the sample has these specular lobes.
+  std::function<void(const SpecularLobes& lobes)> reflect;
 };
 
 class SampleModel {
@@ -81,6 +83,7 @@ class SampleModel {
   // The same as they were measured, without the belief beside them: what deviations are stated by.
   const ResidualModel& measured_residuals() const { return measured_residuals_; }
   const ViewDeviations& deviations() const { return deviations_; }
+  const SpecularLobes& lobes() const { return lobes_; }
 
   // The texel's prior: without what its neighbours know, and with their values in `maps`.
   TexelPrior PriorOf(size_t texel) const;
@@ -143,6 +146,7 @@ class SampleModel {
   HeldOutErrors CrossValidate(const Sampling& sampling) const;
   SampleModel ScaledBy(const SpreadFactors& factors) const;
   void ChooseSpreads(const Sampling& sampling);
+  void ChooseLobesAndSpreads(const Sampling& sampling);
 
   // What is known of a texel by itself; what its substance and a level surface say; both.
   TexelGaussian Initialisation(size_t texel) const;
@@ -162,6 +166,7 @@ class SampleModel {
   RefineOptions options_;
   std::vector<int> all_views_;
   InitialisationErrors initial_errors_;
+  SpecularLobes lobes_;
   ResidualModel residuals_, measured_residuals_;
   // Whether a surface is level and texels alike says anything beside the initialisation. That of
   // one photograph is an estimate by what materials are like, which knows both already.

@@ -12,10 +12,11 @@ namespace {
 // Of which texels are picked at a time.
 constexpr int kRowsAtOnce = 256;
 
-RectifiedSet WithWeightOf(RectifiedSet set, const std::filesystem::path& maps_file) {
+RectifiedSet WithModelOf(RectifiedSet set, const std::filesystem::path& maps_file) {
   ReflectanceConvention of_maps;
   const SvbrdfReader reader(maps_file, &of_maps);
   set.convention.diffuse_weight = of_maps.diffuse_weight;
+  set.convention.lobes = of_maps.lobes;
   return set;
 }
 
@@ -26,7 +27,7 @@ SampleSource::SampleSource(const RectifiedSet& set, const std::vector<RectifiedV
                            const std::filesystem::path& deviations_file)
     : maps_file_(std::move(maps_file)),
       maps_(maps_file_, set.plane.width, set.plane.height),
-      photographs_(WithWeightOf(set, maps_file_), views, light_scale_rgb) {
+      photographs_(WithModelOf(set, maps_file_), views, light_scale_rgb) {
   if (!deviations_file.empty()) {
     deviations_.emplace(deviations_file, set.plane.width, set.plane.height);
   }

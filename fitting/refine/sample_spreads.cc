@@ -1,4 +1,5 @@
-// What texels of a sample differ by, by cross-validation over its photographs.
+// What texels of a sample differ by, and its specular lobes, by cross-validation over its
+// photographs.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "fitting/refine/lobe_search.h"
 #include "fitting/refine/neighbours.h"
 #include "fitting/refine/sample_blocks.h"
 #include "fitting/refine/sample_model.h"
@@ -113,6 +115,7 @@ std::vector<double> SampleModel::HeldOutSquares(
 
 HeldOutErrors SampleModel::CrossValidate(const Sampling& sampling) const {
   HeldOutErrors errors(sampling.place_count);
+  sampling.solver->reflect(lobes_);
   std::vector<ViewDifferences> differences(sampling.texels.size());
   ForEachFold(sampling, [&](const SampleModel&, const Sampling& part, const std::vector<int>&,
                             const std::vector<int>& held_out) {
@@ -148,6 +151,25 @@ void SampleModel::ChooseSpreads(const Sampling& sampling) {
     return ScaledBy(factors).CrossValidate(sampling);
   });
   *this = ScaledBy(ProbableFactors(tried));
+}
+
+// Lobes are looked for before spreads, which would make up for the one that is missing, and are
+// judged with the spreads that each choice asks for.
+void SampleModel::ChooseLobesAndSpreads(const Sampling& sampling) {
+  SampleModel two(*this);
+  if (options_.second_lobe && !lobes_.two()) {
+    const SpecularLobes found = SearchLobes([&](const SpecularLobes& lobes) {
+      two.lobes_ = lobes;
+      return two.CrossValidate(sampling);
+    });
+    two.lobes_ = found;
+  }
+  ChooseSpreads(sampling);
+  if (two.lobes_ != lobes_) {
+    two.ChooseSpreads(sampling);
+    if (AskForTwoLobes(two.CrossValidate(sampling), CrossValidate(sampling))) *this = two;
+  }
+  sampling.solver->reflect(lobes_);
 }
 
 }  // namespace glint

@@ -8,6 +8,8 @@
 //   f = w·k_d/π + D·G·F / (4·NoL·NoV),   w = 1 or 1−k_s (DiffuseWeight)
 //   radiance = exposure·(E·f·NoL + ambient·(w·k_d + k_s)/π)
 //
+// D·G of two lobes (convention.h) is the sum of theirs by their shares.
+//
 // The ambient term is a uniform surround reflected by a flat surface, its specular part without
 // Fresnel's rise toward grazing views: what a metal shows of its surroundings.
 //
@@ -62,17 +64,39 @@ T FresnelWeight(const T& v_dot_h) {
   return exp2(FresnelExponent(v_dot_h));
 }
 
+// As the formulas take them.
+template <class S>
+LobeMix<S> LobeMixOf(const SpecularLobes& lobes) {
+  if (!lobes.two()) return {};
+  const double wide = std::pow(lobes.narrow_ratio, -lobes.narrow_share);
+  return {true,
+          {S(1 - lobes.narrow_share), S(lobes.narrow_share)},
+          {S(wide), S(wide * lobes.narrow_ratio)}};
+}
+
 template <class T>
-SpecularTerms<T> EvaluateSpecular(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry) {
+Cosines<T> CosinesOf(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry) {
   Cosines<T> cosines{Dot(texel.normal, geometry.light), Dot(texel.normal, geometry.camera),
                      Dot(texel.normal, geometry.half), T(0)};
   T across[3];
   for (int i = 0; i < 3; ++i) across[i] = texel.normal[i] - cosines.n_dot_h * geometry.half[i];
   cosines.sine_squared = Dot(across, across);
-  return EvaluateSpecular(cosines, texel.roughness);
+  return cosines;
 }
 
-// D·G / (4·NoL·NoV)
+// Of one lobe.
+template <class T>
+SpecularTerms<T> EvaluateSpecular(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry) {
+  return EvaluateSpecular(CosinesOf(texel, geometry), texel.roughness);
+}
+
+template <class T>
+MixTerms<T> EvaluateMix(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
+                        const SpecularLobes& lobes) {
+  return EvaluateMix(CosinesOf(texel, geometry), texel.roughness, LobeMixOf<ScalarOf<T>>(lobes));
+}
+
+// D·G / (4·NoL·NoV) of one lobe.
 template <class T>
 T SpecularFactor(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry) {
   return EvaluateSpecular(texel, geometry).over_cosine;
@@ -96,11 +120,11 @@ T AmbientRadiance(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
 // The BRDF f, per channel [1/sr]. `geometry` needs its directions only.
 template <class T>
 void EvaluateBrdf(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
-                  DiffuseWeight weight, T brdf[3]) {
-  const T factor = SpecularFactor(texel, geometry);
+                  const ReflectanceConvention& convention, T brdf[3]) {
+  const T factor = EvaluateMix(texel, geometry, convention.lobes).over_cosine;
   for (int c = 0; c < 3; ++c) {
-    brdf[c] = EvaluateChannel(DiffuseLobe(texel, weight, c), texel.specular[c], geometry.fresnel,
-                              T(1), factor)
+    brdf[c] = EvaluateChannel(DiffuseLobe(texel, convention.diffuse_weight, c), texel.specular[c],
+                              geometry.fresnel, T(1), factor)
                   .reflected;
   }
 }
@@ -108,8 +132,9 @@ void EvaluateBrdf(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
 // Radiance of the texel toward the camera, per channel.
 template <class T>
 void ShadeRadiance(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
-                   DiffuseWeight weight, T radiance[3]) {
-  const SpecularTerms<T> lobe = EvaluateSpecular(texel, geometry);
+                   const ReflectanceConvention& convention, T radiance[3]) {
+  const DiffuseWeight weight = convention.diffuse_weight;
+  const MixTerms<T> lobe = EvaluateMix(texel, geometry, convention.lobes);
   for (int c = 0; c < 3; ++c) {
     const ChannelTerms<T> channel =
         EvaluateChannel(DiffuseLobe(texel, weight, c), texel.specular[c], geometry.fresnel,

@@ -8,16 +8,19 @@
 //   radiance = E·(w·k_d/π·NoL + S·F) + A·w·k_d/π + A_s·k_s/π
 //
 // with E = exposure·irradiance, and A and A_s what the diffuse and the specular lobe reflect of the
-// surroundings (ChannelTerms, ChannelSlopes). To add a lobe: its terms and slopes here, its sum
-// with S where S is used (what includes this file), and the same in the viewer's GLSL
-// (pipeline/viewer/src/shading.glsl); tests/fitting/reflectance compares slopes with automatic
-// differentiation, tests/fitting/render and tests/fitting/texel the vector code with brdf.h.
+// surroundings (ChannelTerms, ChannelSlopes). S of a sample with two specular lobes
+// (convention.h) is their sum: EvaluateMix, DifferentiateMix. To add another kind of lobe: its
+// terms and slopes here, its sum with S where S is used (what includes this file), and the same in
+// the viewer's GLSL (pipeline/viewer/src/shading.glsl); tests/fitting/reflectance compares slopes
+// with automatic differentiation, tests/fitting/render and tests/fitting/texel the vector code with
+// brdf.h.
 //
 // No standard library here: the vector kernels are compiled once for each instruction set and may
 // contain no function that the linker could take from another (base/cpu/vectors.inl).
 #pragma once
 
 #include "fitting/reflectance/brdf_constants.h"
+#include "fitting/reflectance/lobe_mix.h"
 
 #define GLINT_BRDF [[gnu::always_inline]] inline
 
@@ -147,6 +150,64 @@ GLINT_BRDF SpecularSlopes<T> DifferentiateSpecular(
   slopes.by_n_dot_n = A::WhereAbove(s.free.n_dot_h, S(kDotClamp), by_t, zero);
   slopes.by_n_dot_h = slopes.by_n_dot_n * s.n_dot_h * (s.alpha * s.alpha - S(1)) * S(2);
   return slopes;
+}
+
+// S of a mix of lobes, and what its slopes need again.
+template <class T>
+struct MixTerms {
+  SpecularTerms<T> lobes[2];
+  T n_dot_l;      // clamped
+  T over_cosine;  // S/NoL
+  T value;        // S
+};
+
+template <class T, class S>
+GLINT_BRDF T LobeRoughness(const T& roughness, const LobeMix<S>& mix, int lobe) {
+  using A = Arithmetic<T>;
+  const T scaled = roughness * mix.scale[lobe];
+  return A::WhereAbove(scaled, S(1), A::Constant(S(1)), scaled);
+}
+
+template <class T, class S>
+GLINT_BRDF MixTerms<T> EvaluateMix(const Cosines<T>& cosines, const T& roughness,
+                                   const LobeMix<S>& mix) {
+  MixTerms<T> s;
+  if (!mix.two) {
+    s.lobes[0] = EvaluateSpecular(cosines, roughness);
+    s.n_dot_l = s.lobes[0].n_dot_l;
+    s.over_cosine = s.lobes[0].over_cosine;
+    s.value = s.lobes[0].value;
+    return s;
+  }
+  for (int i = 0; i < 2; ++i) {
+    s.lobes[i] = EvaluateSpecular(cosines, LobeRoughness(roughness, mix, i));
+  }
+  s.n_dot_l = s.lobes[0].n_dot_l;
+  s.over_cosine = s.lobes[0].over_cosine * mix.share[0] + s.lobes[1].over_cosine * mix.share[1];
+  s.value = s.lobes[0].value * mix.share[0] + s.lobes[1].value * mix.share[1];
+  return s;
+}
+
+template <class T, class S>
+GLINT_BRDF SpecularSlopes<T> DifferentiateMix(
+    const MixTerms<T>& s, const T& roughness, const LobeMix<S>& mix,
+    const T& weight = Arithmetic<T>::Constant(ScalarOf<T>(1))) {
+  using A = Arithmetic<T>;
+  if (!mix.two) return DifferentiateSpecular(s.lobes[0], roughness, weight);
+  const T zero = A::Constant(S(0));
+  SpecularSlopes<T> sum = {zero, zero, zero, zero, zero};
+  for (int i = 0; i < 2; ++i) {
+    const SpecularSlopes<T> by = DifferentiateSpecular(s.lobes[i], LobeRoughness(roughness, mix, i),
+                                                       T(weight * mix.share[i]));
+    // A lobe as rough as can be stays so.
+    sum.by_roughness +=
+        A::WhereAbove(T(roughness * mix.scale[i]), S(1), zero, T(by.by_roughness * mix.scale[i]));
+    sum.by_n_dot_l += by.by_n_dot_l;
+    sum.by_n_dot_v += by.by_n_dot_v;
+    sum.by_n_dot_h += by.by_n_dot_h;
+    sum.by_n_dot_n += by.by_n_dot_n;
+  }
+  return sum;
 }
 
 // The diffuse lobe of one channel with its slopes by k_d and k_s: all that w does.

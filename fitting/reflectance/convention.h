@@ -18,10 +18,24 @@ enum class LightFalloff { kNone, kInverseSquare };
 // 1).
 enum class TexelSampling { kPixelCentres, kCornerToCorner };
 
+// The sample's specular lobe: one of GGX, or beside it a narrow one of the same F0, by which a
+// varnish or a polish shows a sharp peak on a wide glow,
+//   S = (1 − s)·S(r·q^−s) + s·S(r·q^(1−s)),
+// with s the narrow one's share and q the ratio of the two roughnesses. The roughness map r is
+// their geometric mean by these shares; a lobe's own roughness is at most 1.
+struct SpecularLobes {
+  double narrow_share = 0;  // s in [0, 1); 0: one lobe
+  double narrow_ratio = 1;  // q in (0, 1]
+
+  bool two() const { return narrow_share > 0; }
+  bool operator==(const SpecularLobes&) const = default;
+};
+
 struct ReflectanceConvention {
   DiffuseWeight diffuse_weight = DiffuseWeight::kOne;
   LightFalloff falloff = LightFalloff::kInverseSquare;
   TexelSampling sampling = TexelSampling::kPixelCentres;
+  SpecularLobes lobes = {};
 
   static ReflectanceConvention Photograph() { return {}; }
   static ReflectanceConvention Dir2019() {
@@ -36,7 +50,7 @@ struct ReflectanceConvention {
 };
 
 // Names as manifests and EXR headers write them: "diffuse=one light=inverse_square
-// sampling=pixel_centres".
+// sampling=pixel_centres", and " narrow_lobe=0.5x0.4" (share × ratio of roughnesses) of two lobes.
 std::string ToString(const ReflectanceConvention& convention);
 
 // The inverse of ToString; also accepts the presets "photograph", "dir2019" and "materialgan".

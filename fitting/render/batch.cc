@@ -5,6 +5,7 @@
 #include <new>
 
 #include "base/parallel/parallel.h"
+#include "fitting/reflectance/brdf.h"
 #include "fitting/reflectance/brdf_constants.h"
 
 namespace glint::kernel {
@@ -70,6 +71,7 @@ Job<T> MakeJob(const Grid<T>& grid, const ReflectanceConvention& convention,
   job.view_count = static_cast<int>(views.size());
   job.inverse_square = convention.falloff == LightFalloff::kInverseSquare;
   job.one_minus_specular = convention.diffuse_weight == DiffuseWeight::kOneMinusSpecular;
+  job.mix = LobeMixOf<T>(convention.lobes);
   return job;
 }
 

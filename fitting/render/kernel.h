@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "base/cpu/instruction_set.h"
+#include "fitting/reflectance/lobe_mix.h"
 
 namespace glint::kernel {
 
@@ -56,6 +57,7 @@ struct Job {
   int view_count = 0;
   bool inverse_square = true;
   bool one_minus_specular = false;
+  LobeMix<T> mix;
   bool clamp_rendered = false;  // loss modes: to at most 1
   T log_offset = T(0.01);
 };

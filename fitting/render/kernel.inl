@@ -74,7 +74,8 @@ GLINT_INLINE void PullBack(const Job<T>& job, const View<T>& view, const Texels<
     by_reflected[c] = by_light * view.exposed_light[c];
     by_surrounding[c] = by_image[c] * view.exposed_ambient[c];
   }
-  AddAdjoint<T>(texels, d, s, job.one_minus_specular, by_reflected, by_surrounding, gradient);
+  AddAdjoint<T>(texels, d, s, job.one_minus_specular, job.mix, by_reflected, by_surrounding,
+                gradient);
 }
 
 // Σ |log(target + offset) − log(rendered + offset)| over channels, and its derivatives by rendered.
@@ -153,7 +154,7 @@ GLINT_INLINE void CompareVector(const Job<T>& job, const View<T>& view, const Pl
   }
   V target[3], rendered[3];
   if constexpr (kTargetMaps) {
-    const Shading<T> shown = Shade(target_texels, d, job.one_minus_specular);
+    const Shading<T> shown = Shade(target_texels, d, job.one_minus_specular, job.mix);
     for (int c = 0; c < 3; ++c) {
       target[c] = Radiance(view, d, shown, c);
       if (job.clamp_rendered) target[c] = Min(target[c], Broadcast(T(1)));
@@ -177,7 +178,7 @@ GLINT_INLINE void VisitForward(const Job<T>& job, const View<T>& view, size_t fi
   for (int j = 0; j * kLanes<T> < columns; ++j) {
     const Place place = PlaceOf<T>(first, columns, j);
     const Directions<T> d = Direct(view, job.inverse_square, chunk.x_mm[j], y_mm);
-    const Shading<T> s = Shade(chunk.texels[j], d, job.one_minus_specular);
+    const Shading<T> s = Shade(chunk.texels[j], d, job.one_minus_specular, job.mix);
     if constexpr (kMode == Mode::kRender) {
       for (int c = 0; c < 3; ++c) {
         Store(view.rendered + c * job.image_stride + place.texel, Radiance(view, d, s, c),
@@ -201,7 +202,7 @@ GLINT_INLINE void VisitWithGradient(const Job<T>& job, const View<T>& view, size
     chunk.directions[j] = Direct(view, job.inverse_square, chunk.x_mm[j], y_mm);
   }
   for (int j = 0; j < vectors; ++j) {
-    chunk.shading[j] = Shade(chunk.texels[j], chunk.directions[j], job.one_minus_specular);
+    chunk.shading[j] = Shade(chunk.texels[j], chunk.directions[j], job.one_minus_specular, job.mix);
   }
   for (int j = 0; j < vectors; ++j) {
     const Place place = PlaceOf<T>(first, columns, j);

@@ -25,7 +25,7 @@ struct Directions {
 // What the adjoint needs again.
 template <class T>
 struct Shading {
-  SpecularTerms<VectorOf<T>> specular;
+  MixTerms<VectorOf<T>> specular;
   ChannelTerms<VectorOf<T>> channels[3];
 };
 
@@ -76,9 +76,9 @@ GLINT_INLINE Cosines<VectorOf<T>> CosinesOf(const Texels<T>& texels, const Direc
 
 template <class T>
 GLINT_INLINE Shading<T> Shade(const Texels<T>& texels, const Directions<T>& d,
-                              bool one_minus_specular) {
+                              bool one_minus_specular, const LobeMix<T>& mix) {
   Shading<T> s;
-  s.specular = EvaluateSpecular(CosinesOf<T>(texels, d), texels.roughness);
+  s.specular = EvaluateMix(CosinesOf<T>(texels, d), texels.roughness, mix);
   for (int c = 0; c < 3; ++c) {
     s.channels[c] =
         EvaluateChannel(EvaluateDiffuse(texels.diffuse[c], texels.specular[c], one_minus_specular),
@@ -91,10 +91,11 @@ GLINT_INLINE Shading<T> Shade(const Texels<T>& texels, const Directions<T>& d,
 // ChannelTerms.
 template <class T>
 GLINT_INLINE void AddAdjoint(const Texels<T>& texels, const Directions<T>& d, const Shading<T>& s,
-                             bool one_minus_specular, const VectorOf<T>* by_reflected,
-                             const VectorOf<T>* by_surrounding, VectorOf<T>* gradient) {
+                             bool one_minus_specular, const LobeMix<T>& mix,
+                             const VectorOf<T>* by_reflected, const VectorOf<T>* by_surrounding,
+                             VectorOf<T>* gradient) {
   using V = VectorOf<T>;
-  const SpecularTerms<V>& lobe = s.specular;
+  const MixTerms<V>& lobe = s.specular;
   V by_lobe = V{}, by_cosine = V{};
   for (int c = 0; c < 3; ++c) {
     // Slopes of the radiance are linear in what the texel receives: with the loss's own slopes in
@@ -108,11 +109,11 @@ GLINT_INLINE void AddAdjoint(const Texels<T>& texels, const Directions<T>& d, co
     by_cosine += by.by_n_dot_l;
   }
 
-  const SpecularSlopes<V> by = DifferentiateSpecular(lobe, texels.roughness, by_lobe);
+  const SpecularSlopes<V> by = DifferentiateMix(lobe, texels.roughness, mix, by_lobe);
   gradient[9] += by.by_roughness;
   const V by_normal = by.by_n_dot_n * T(2);
   const V by_half = by.by_n_dot_h * d.half_inverse;  // h in terms of l and v
-  const V lit = lobe.free.n_dot_l > T(kDotClamp) ? by_cosine : V{};
+  const V lit = lobe.lobes[0].free.n_dot_l > T(kDotClamp) ? by_cosine : V{};
   const V by_light = by.by_n_dot_l + lit + by_half;
   const V by_camera = by.by_n_dot_v + by_half;
   for (int i = 0; i < 3; ++i) {

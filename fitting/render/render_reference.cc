@@ -2,6 +2,8 @@
 
 #include <torch/torch.h>
 
+#include <cmath>
+
 #include "fitting/reflectance/brdf_constants.h"
 #include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/render/view_tensors.h"
@@ -13,9 +15,9 @@ using torch::Tensor;
 
 Tensor Dot(const Tensor& a, const Tensor& b) { return (a * b).sum(2, /*keepdim=*/true); }
 
-// D·G / (4·NoL·NoV), from clamped cosines.
-Tensor SpecularFactor(const Tensor& normal, const Tensor& half, const Tensor& n_dot_l,
-                      const Tensor& n_dot_v, const Tensor& roughness) {
+// D·G / (4·NoL·NoV) of one lobe, from clamped cosines.
+Tensor LobeFactor(const Tensor& normal, const Tensor& half, const Tensor& n_dot_l,
+                  const Tensor& n_dot_v, const Tensor& roughness) {
   const Tensor alpha = roughness * roughness;
   const Tensor k = (alpha * 0.5).clamp_min(kDenominatorClamp);
   const Tensor n_dot_h = Dot(normal, half);
@@ -27,6 +29,17 @@ Tensor SpecularFactor(const Tensor& normal, const Tensor& half, const Tensor& n_
   const Tensor ratio = alpha / t.clamp_min(kDenominatorClamp);
   const Tensor masking = (n_dot_l * (1 - k) + k) * (n_dot_v * (1 - k) + k);
   return ratio * ratio * (0.25 * kInversePi) / masking;
+}
+
+// Of the sample's lobes (fitting/reflectance/convention.h).
+Tensor SpecularFactor(const SpecularLobes& lobes, const Tensor& normal, const Tensor& half,
+                      const Tensor& n_dot_l, const Tensor& n_dot_v, const Tensor& roughness) {
+  if (!lobes.two()) return LobeFactor(normal, half, n_dot_l, n_dot_v, roughness);
+  const double share = lobes.narrow_share, wide = std::pow(lobes.narrow_ratio, -share);
+  const auto of = [&](double scale) {
+    return LobeFactor(normal, half, n_dot_l, n_dot_v, (roughness * scale).clamp_max(1));
+  };
+  return of(wide) * (1 - share) + of(wide * lobes.narrow_ratio) * share;
 }
 
 }  // namespace
@@ -51,7 +64,9 @@ Tensor RenderReference(const Tensor& maps, const Tensor& light_rgb, const ViewBa
   if (batch.convention.diffuse_weight == DiffuseWeight::kOneMinusSpecular) {
     lobe = lobe * (1 - specular);
   }
-  const Tensor brdf = lobe + SpecularFactor(normal, half, n_dot_l, n_dot_v, roughness) * fresnel;
+  const Tensor factor =
+      SpecularFactor(batch.convention.lobes, normal, half, n_dot_l, n_dot_v, roughness);
+  const Tensor brdf = lobe + factor * fresnel;
   Tensor irradiance = light_rgb.defined() ? light_rgb.unsqueeze(-1).unsqueeze(-1) : views.light_rgb;
   if (batch.convention.falloff == LightFalloff::kInverseSquare) {
     irradiance = irradiance / light_distance_squared;

@@ -71,7 +71,8 @@ struct BatchKernel {
   void (*solve)(const KernelOptions& options, const SolveOptions& solve, const BatchViews& views,
                 const BatchPrior& prior, LaneBits active, Solving how, BatchSolution* solution);
   // AlbedoSums (texel_albedos.h).
-  void (*albedo_sums)(const BatchViews& views, const BatchValues& values, BatchAlbedoSums* sums);
+  void (*albedo_sums)(const KernelOptions& options, const BatchViews& views,
+                      const BatchValues& values, BatchAlbedoSums* sums);
 };
 
 const BatchKernel& BatchKernelFor(InstructionSet set);

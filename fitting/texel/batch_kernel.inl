@@ -105,13 +105,15 @@ GLINT_INLINE Floats Dot3(const Floats* a, const Floats* b) {
   return Fma(a[2], b[2], Fma(a[1], b[1], a[0] * b[0]));
 }
 
-// n·l, the specular lobe S of brdf_core.h and their derivatives by slope_x, slope_y and roughness.
+// n·l, the specular lobes' S of brdf_core.h and their derivatives by slope_x, slope_y and
+// roughness.
 enum Lobe { kNormalLight, kByXNormalLight, kByYNormalLight, kLobe, kByXLobe, kByYLobe, kByRLobe };
 static_assert(kByRLobe + 1 == BatchViews::kScratchRows);
 
 // Of every view into the scratch memory, as vectors.
 template <bool kSlopes>
-GLINT_INLINE Floats* EvaluateLobes(const BatchViews& views, const VectorValues& x, int first) {
+GLINT_INLINE Floats* EvaluateLobes(const KernelOptions& options, const BatchViews& views,
+                                   const VectorValues& x, int first) {
   const Tilt tilt = TiltOf(x.of[kSlopeX], x.of[kSlopeY]);
   const Floats roughness = x.of[kRough];
   Floats* lobes = reinterpret_cast<Floats*>(views.scratch);
@@ -132,12 +134,12 @@ GLINT_INLINE Floats* EvaluateLobes(const BatchViews& views, const VectorValues& 
     Floats across[3];
     for (int i = 0; i < 3; ++i) across[i] = Fma(-scale, sum[i], tilt.n[i]);
     cosines.sine_squared = Dot3(across, across);
-    const SpecularTerms<Floats> lobe = EvaluateSpecular(cosines, roughness);
+    const MixTerms<Floats> lobe = EvaluateMix(cosines, roughness, options.mix);
     Floats* out = lobes + v * BatchViews::kScratchRows;
     out[kNormalLight] = lobe.n_dot_l;
     out[kLobe] = lobe.value;
     if constexpr (kSlopes) {
-      const SpecularSlopes<Floats> by = DifferentiateSpecular(lobe, roughness);
+      const SpecularSlopes<Floats> by = DifferentiateMix(lobe, roughness, options.mix);
       const Floats nl_x = Dot3(tilt.by_x, light), nl_y = Dot3(tilt.by_y, light);
       const Floats nv_x = Dot3(tilt.by_x, camera), nv_y = Dot3(tilt.by_y, camera);
       const Floats by_half = by.by_n_dot_h * half_inverse;
@@ -170,7 +172,7 @@ enum Shared { kRR, kRX, kRY, kRF, kXX, kXY, kXF, kYY, kYF, kFF };
 template <bool kRows>
 GLINT_INLINE Normal EvaluateProducts(const KernelOptions& options, const BatchViews& views,
                                      const VectorValues& x, int first, BatchRow* residuals) {
-  const Floats* lobes = EvaluateLobes<true>(views, x, first);
+  const Floats* lobes = EvaluateLobes<true>(options, views, x, first);
   const bool one_minus_specular = options.diffuse_weight == DiffuseWeight::kOneMinusSpecular;
   const float inverse_scale = 1.0f / float(options.robust_scale);
   Normal sums;
@@ -665,9 +667,10 @@ void Solve(const KernelOptions& options, const SolveOptions& solve, const BatchV
 }
 
 // Weighted rows relative to I + 0.01, whose inverse is the exponential of −log.
-void AlbedoSums(const BatchViews& views, const BatchValues& values, BatchAlbedoSums* sums) {
+void AlbedoSums(const KernelOptions& options, const BatchViews& views, const BatchValues& values,
+                BatchAlbedoSums* sums) {
   for (int first = 0; first < kBatch; first += kLanes<float>) {
-    const Floats* lobes = EvaluateLobes<false>(views, LoadValues(values, first), first);
+    const Floats* lobes = EvaluateLobes<false>(options, views, LoadValues(values, first), first);
     // The diffuse unknown is w·k_d: it has the slopes of w = 1.
     const DiffuseTerms<Floats> diffuse = EvaluateDiffuse(Floats{}, Floats{}, false);
     for (int c = 0; c < 3; ++c) {

@@ -116,6 +116,10 @@ BatchEvaluator::BatchEvaluator(const KernelOptions& options, int most_views)
       kernel_(kernel::BatchKernelFor(BestInstructionSet())),
       scratch_(static_cast<size_t>(most_views) * kernel::BatchViews::kScratchRows) {}
 
+void BatchEvaluator::SetLobes(const SpecularLobes& lobes) {
+  options_.mix = LobeMixOf<float>(lobes);
+}
+
 kernel::BatchViews BatchEvaluator::ViewsOf(const BatchObservations& observations) {
   return {observations.rows(), observations.views(), scratch_.data()};
 }
@@ -139,7 +143,7 @@ void BatchEvaluator::Solve(const kernel::SolveOptions& solve, const BatchObserva
 
 void BatchEvaluator::AlbedoSums(const BatchObservations& observations, const BatchValues& values,
                                 BatchAlbedoSums* sums) {
-  kernel_.albedo_sums(ViewsOf(observations), values, sums);
+  kernel_.albedo_sums(options_, ViewsOf(observations), values, sums);
 }
 
 BatchSearch::BatchSearch(const KernelOptions& options, int most_iterations, int most_views,

@@ -25,6 +25,7 @@ class BatchEvaluator {
   BatchEvaluator(const KernelOptions& options, int most_views);
 
   const KernelOptions& options() const { return options_; }
+  void SetLobes(const SpecularLobes& lobes);
   // Of the photographs alone.
   void Gram(const BatchObservations& observations, const BatchValues& values, BatchGram* gram,
             BatchResiduals* residuals = nullptr);
@@ -83,6 +84,8 @@ class BatchSearch {
   void SetExplained(double residual_sigma) { variance_ = residual_sigma * residual_sigma; }
   // The same, and solves end when they gain a small part of such a residual's square.
   void SetNoise(double residual_sigma);
+
+  void SetLobes(const SpecularLobes& lobes) { evaluator_.SetLobes(lobes); }
 
   // From here on tasks are `from`; `done` is called with each in any order, by Finish() at the
   // latest.

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "fitting/reflectance/lobe_mix.h"
 #include "fitting/reflectance/view.h"
 #include "fitting/texel/texel_albedos.h"
 #include "fitting/texel/texel_parameters.h"
@@ -16,6 +17,7 @@ inline constexpr int kBatch = 16;
 
 struct KernelOptions {
   DiffuseWeight diffuse_weight = DiffuseWeight::kOne;
+  LobeMix<float> mix;         // of the sample's specular lobes
   double robust_scale = 0.1;  // δ (batch_kernel.h), in units of the logarithm
 };
 

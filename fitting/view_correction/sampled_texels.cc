@@ -67,7 +67,7 @@ void ShadeByLight(const TexelSvbrdf<double>& svbrdf, const View& view,
   ShadeRadiance(
       constant,
       TexelGeometryLitFrom(view, convention.falloff, light_in_sample_mm, Jet(x_mm), Jet(y_mm)),
-      convention.diffuse_weight, radiance);
+      convention, radiance);
 }
 
 // How the residual of batch_kernel.h depends on the radiances that it compares.
@@ -170,6 +170,7 @@ SampledTexels::SampledTexels(const PhotographSet& set, const SvbrdfMaps& maps,
   following_.resize(texels_.size());
   KernelOptions kernel;
   kernel.diffuse_weight = set.convention.diffuse_weight;
+  kernel.mix = LobeMixOf<float>(set.convention.lobes);
   kernel.robust_scale = robust_scale;
   for (int i = 0; i < threads_; ++i) {
     workers_.push_back(std::make_unique<Worker>(kernel, unknowns.views()));

@@ -42,14 +42,14 @@ LinearInBase MetalReflectance(double lobe, double fresnel) {
   return {lobe * (1 - fresnel), lobe * fresnel};
 }
 
-PairTerms TermsOf(double roughness) {
+PairTerms TermsOf(double roughness, const SpecularLobes& lobes) {
   const std::vector<DirectionPair> pairs = PairsForRoughness(roughness);
   const TexelSvbrdf<double> texel{{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, roughness};
   PairTerms terms;
   for (size_t i = 0; i < pairs.size(); ++i) {
     const DirectionPair& pair = pairs[i];
     const double received = std::numbers::pi * pair.light[2];
-    const double ours = received * SpecularFactor(texel, pair.geometry);
+    const double ours = received * EvaluateMix(texel, pair.geometry, lobes).over_cosine;
     const double power = pair.geometry.fresnel;
     terms.matte[i] = static_cast<float>(received / std::numbers::pi);
     terms.mirror[i] = static_cast<float>(ours * (1 - power));

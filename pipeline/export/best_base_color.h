@@ -29,7 +29,8 @@ struct PairTerms {
   alignas(64) Row dielectric_slope{}, dielectric_rest{}, metal_slope{}, metal_rest{};
 };
 
-PairTerms TermsOf(double roughness);
+// `lobes`: ours; the target has one.
+PairTerms TermsOf(double roughness, const SpecularLobes& lobes);
 
 struct BestBase {
   float base = 0;   // 0 to 1

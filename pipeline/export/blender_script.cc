@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "fitting/reflectance/brdf.h"
 #include "pipeline/files/json.h"
 
 namespace glint {
@@ -23,6 +24,23 @@ def _picture(tree, file, colour, y):
     node.image = bpy.data.images.load(os.path.join(FOLDER, file), check_existing=True)
     node.image.colorspace_settings.name = "sRGB" if colour else "Non-Color"
     return node.outputs["Color"]
+
+
+def _glossy(tree, fresnel, roughness, bend, scale, y):
+    """A GGX lobe of the roughness map times scale, at most 1."""
+    glossy = _node(tree, "ShaderNodeBsdfGlossy", 0, y)
+    glossy.distribution = "GGX"
+    tree.links.new(fresnel.outputs["Color"], glossy.inputs["Color"])
+    if scale != 1:
+        times = _node(tree, "ShaderNodeMath", -200, y)
+        times.operation = "MULTIPLY"
+        times.inputs[1].default_value = scale
+        times.use_clamp = True
+        tree.links.new(roughness, times.inputs[0])
+        roughness = times.outputs["Value"]
+    tree.links.new(roughness, glossy.inputs["Roughness"])
+    tree.links.new(bend.outputs["Normal"], glossy.inputs["Normal"])
+    return glossy
 
 
 def make_material():
@@ -61,15 +79,18 @@ def make_material():
 
     matte = _node(tree, "ShaderNodeBsdfDiffuse", 0, 400, Roughness=0.0)
     link(diffuse, matte.inputs["Color"])
-    glossy = _node(tree, "ShaderNodeBsdfGlossy", 0, 200)
-    glossy.distribution = "GGX"
-    link(fresnel.outputs["Color"], glossy.inputs["Color"])
-    link(roughness, glossy.inputs["Roughness"])
-    for lobe in (matte, glossy):
-        link(bend.outputs["Normal"], lobe.inputs["Normal"])
+    link(bend.outputs["Normal"], matte.inputs["Normal"])
+    glossy = [_glossy(tree, fresnel, roughness, bend, scale, 200 - 200 * i)
+              for i, scale in enumerate(LOBE_SCALES)]
+    shine = glossy[0].outputs["BSDF"]
+    if len(glossy) == 2:  # a wide and a narrow lobe
+        mix = _node(tree, "ShaderNodeMixShader", 200, 100, Fac=NARROW_SHARE)
+        link(glossy[0].outputs["BSDF"], mix.inputs[1])
+        link(glossy[1].outputs["BSDF"], mix.inputs[2])
+        shine = mix.outputs["Shader"]
     both = _node(tree, "ShaderNodeAddShader", 200, 300)
     link(matte.outputs["BSDF"], both.inputs[0])
-    link(glossy.outputs["BSDF"], both.inputs[1])
+    link(shine, both.inputs[1])
     output = _node(tree, "ShaderNodeOutputMaterial", 400, 300)
     link(both.outputs["Shader"], output.inputs["Surface"])
 
@@ -106,10 +127,18 @@ if __name__ == "__main__":
 // A Python string: JSON's quotes and escapes are Python's too.
 std::string Quoted(const std::string& text) { return Json(text).dump(); }
 
+// "(1.0,)", "(1.58, 0.63)"
+std::string LobeScales(const SpecularLobes& lobes) {
+  if (!lobes.two()) return "(1.0,)";
+  const LobeMix<double> mix = LobeMixOf<double>(lobes);
+  return fmt::format("({:.6g}, {:.6g})", mix.scale[0], mix.scale[1]);
+}
+
 }  // namespace
 
 std::string BlenderScriptOf(const ExportedMaterial& material,
                             const std::function<std::string(const std::string& map)>& file_of) {
+  const SpecularLobes& lobes = material.convention.lobes;
   const double low_mm = material.height_range_mm[0], high_mm = material.height_range_mm[1];
   return fmt::format(
              R"(# Makes the material and a plane of its true size (metres). In Blender: Scripting > Open > Run
@@ -128,13 +157,15 @@ DIFFUSE, SPECULAR = {4}, {5}
 ROUGHNESS, NORMAL, HEIGHT = {6}, {7}, {8}
 HEIGHT_LOW_M, HEIGHT_RANGE_M = {9}, {10}
 DIFFUSE_WHOLE = {11}  # False: the diffuse lobe has weight 1 - F0
+LOBE_SCALES, NARROW_SHARE = {12}, {13}  # of roughness, of each specular lobe
 USE_DISPLACEMENT = False  # True: moves the surface too; subdivide the plane first
 )",
              material.name, Quoted(material.name), material.width_mm / 1000,
              material.height_mm / 1000, Quoted(file_of("diffuse")), Quoted(file_of("specular")),
              Quoted(file_of("roughness")), Quoted(file_of("normal_gl")), Quoted(file_of("height")),
              low_mm / 1000, (high_mm - low_mm) / 1000,
-             material.diffuse_weight == DiffuseWeight::kOne ? "True" : "False") +
+             material.convention.diffuse_weight == DiffuseWeight::kOne ? "True" : "False",
+             LobeScales(lobes), lobes.narrow_share) +
          kBody;
 }
 

@@ -88,6 +88,15 @@ double SmithSpecular(const DirectionPair& pair, double roughness) {
   return distribution * 0.5 / std::max(masking, 1e-9);
 }
 
+double SmithSpecular(const DirectionPair& pair, double roughness, const SpecularLobes& lobes) {
+  const LobeMix<double> mix = LobeMixOf<double>(lobes);
+  double sum = 0;
+  for (int i = 0; i < (mix.two ? 2 : 1); ++i) {
+    sum += mix.share[i] * SmithSpecular(pair, LobeRoughness(roughness, mix, i));
+  }
+  return sum;
+}
+
 double SchlickWeight(double cosine) { return std::pow(1 - std::clamp(cosine, 0.0, 1.0), 5); }
 
 std::vector<DirectionPair> PairsForRoughness(double roughness) {
@@ -101,7 +110,7 @@ double LogRadiance(double brdf, const DirectionPair& pair) {
 }
 
 // Adds up the texel's errors of each shading.
-void AddErrors(const SvbrdfMaps& maps, DiffuseWeight weight, size_t i,
+void AddErrors(const SvbrdfMaps& maps, const ReflectanceConvention& convention, size_t i,
                const std::vector<Shading>& shadings, std::span<double> sums) {
   TexelSvbrdf<double> texel{{0, 0, 1}, {}, {}, maps.plane(kRoughness)[i]};
   for (int c = 0; c < 3; ++c) {
@@ -110,7 +119,7 @@ void AddErrors(const SvbrdfMaps& maps, DiffuseWeight weight, size_t i,
   }
   for (const DirectionPair& pair : Pairs(texel.roughness, kErrorPairs)) {
     double ours[3];
-    EvaluateBrdf(texel, pair.geometry, weight, ours);
+    EvaluateBrdf(texel, pair.geometry, convention, ours);
     for (double& value : ours) value = LogRadiance(value, pair);
     for (size_t s = 0; s < shadings.size(); ++s) {
       const std::array<double, 3> theirs = shadings[s](i, pair);
@@ -121,14 +130,14 @@ void AddErrors(const SvbrdfMaps& maps, DiffuseWeight weight, size_t i,
 
 }  // namespace
 
-std::vector<double> ShadingErrors(const SvbrdfMaps& maps, DiffuseWeight weight,
+std::vector<double> ShadingErrors(const SvbrdfMaps& maps, const ReflectanceConvention& convention,
                                   const std::vector<Shading>& shadings, int threads) {
   const size_t count = std::min(maps.texels(), kErrorTexels), kinds = shadings.size();
   std::vector<double> by_texel(count * kinds, 0.0), errors(kinds, 0.0);
   ForEachBlock(static_cast<int>(count), 64, threads, [&](int begin, int end) {
     for (size_t k = static_cast<size_t>(begin); k < static_cast<size_t>(end); ++k) {
       const size_t texel = (2 * k + 1) * maps.texels() / (2 * count);
-      AddErrors(maps, weight, texel, shadings, std::span(by_texel).subspan(k * kinds, kinds));
+      AddErrors(maps, convention, texel, shadings, std::span(by_texel).subspan(k * kinds, kinds));
     }
   });
   for (size_t i = 0; i < by_texel.size(); ++i) errors[i % kinds] += by_texel[i];

@@ -24,6 +24,8 @@ DirectionPair MakePair(const std::array<double, 3>& light, const std::array<doub
 // masking (Heitz, JCGT 2014) of α = roughness², and Schlick's (1 − VoH)⁵.
 double SmithSpecular(const DirectionPair& pair, double roughness);
 double SchlickWeight(double cosine);
+// The first of a mix of lobes (fitting/reflectance/convention.h), each with its own roughness.
+double SmithSpecular(const DirectionPair& pair, double roughness, const SpecularLobes& lobes);
 
 // Half of them on the highlight of that roughness (half vectors distributed as its normals are),
 // half anywhere within 70° of the normal.
@@ -36,7 +38,7 @@ using Shading = std::function<std::array<double, 3>(size_t texel, const Directio
 // How far shading models are from ours: for each the mean over channels, a hundred pairs (fifty of
 // each kind) and up to 4,096 texels of |log(theirs + 0.01) − log(ours + 0.01)|, in radiance of
 // which a white matte texel under perpendicular light has 1. The same for any number of threads.
-std::vector<double> ShadingErrors(const SvbrdfMaps& maps, DiffuseWeight weight,
+std::vector<double> ShadingErrors(const SvbrdfMaps& maps, const ReflectanceConvention& convention,
                                   const std::vector<Shading>& shadings, int threads);
 
 }  // namespace glint

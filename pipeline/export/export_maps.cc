@@ -124,7 +124,7 @@ MapPicture HeightPicture(const HeightField& field, const std::array<double, 2>& 
 }
 
 std::array<double, 3> LayeredDiffuse(const ExportedMaterial& material, size_t texel) {
-  const bool whole = material.diffuse_weight == DiffuseWeight::kOne;
+  const bool whole = material.convention.diffuse_weight == DiffuseWeight::kOne;
   std::array<double, 3> albedo;
   for (int c = 0; c < 3; ++c) {
     const double f0 = material.maps.plane(kSpecularR + c)[texel];

@@ -61,7 +61,7 @@ struct MapPicture {
 struct ExportedMaterial {
   std::string name;
   SvbrdfMaps maps;
-  DiffuseWeight diffuse_weight = DiffuseWeight::kOne;
+  ReflectanceConvention convention = {};
   double width_mm = 0, height_mm = 0;
   MetalRoughness metal;
   std::array<double, 2> height_range_mm{0, 0};  // of 0 and 1 in the height map

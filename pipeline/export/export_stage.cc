@@ -40,7 +40,7 @@ std::pair<Json, Json> WriteMaterials(const ExportedMaterial& material,
     });
   }
   const std::vector<double> errors =
-      ShadingErrors(material.maps, material.diffuse_weight, shadings, threads);
+      ShadingErrors(material.maps, material.convention, shadings, threads);
   Json files = Json::array();
   for (size_t i = 0; i < formats.size(); ++i) {
     const std::string file = material.name + formats[i].suffix;
@@ -93,8 +93,9 @@ class EnlargedRows {
 // Base colour and metalness by rows, with the neighbours that they depend on.
 class MetalRows {
  public:
-  MetalRows(DiffuseWeight weight, const MetalRoughnessOptions& options, int threads)
-      : converter_(weight, options, threads), radius_(options.radius) {}
+  MetalRows(const ReflectanceConvention& convention, const MetalRoughnessOptions& options,
+            int threads)
+      : converter_(convention, options, threads), radius_(options.radius) {}
   // `rows_of`: maps of rows; `height`: of them all. Also gives the maps of these rows.
   template <class RowsOfMaps>
   std::pair<SvbrdfMaps, MetalRoughness> Rows(const RowsOfMaps& rows_of, int height, int first,
@@ -147,7 +148,7 @@ Json WriteMapsByRows(const ExportedMaterial& whole, const HeightField& relief,
   const int at_once = rows_at_once > 0 ? rows_at_once : RowsAtOnce(width);
   for (int first = 0; first < height; first += at_once) {
     const int count = std::min(at_once, height - first);
-    ExportedMaterial rows{whole.name,      {}, whole.diffuse_weight, whole.width_mm,
+    ExportedMaterial rows{whole.name,      {}, whole.convention,     whole.width_mm,
                           whole.height_mm, {}, whole.height_range_mm};
     if (at_hand) {
       rows.maps = SvbrdfMaps(width, count);
@@ -176,12 +177,12 @@ Json ExportMaterial(const ExportTask& task, const ExportOptions& options,
   ExportedMaterial material;
   material.name = options.name;
   material.maps = source.AtSize(width, height);
-  material.diffuse_weight = convention.diffuse_weight;
+  material.convention = convention;
   material.width_mm = task.size_mm[0];
   material.height_mm = task.size_mm[1];
   MetalRoughnessOptions metal_options = options.metal;
   metal_options.metal_share = MetalShareOf(task.metals);
-  MetalRows metal(material.diffuse_weight, metal_options, threads);
+  MetalRows metal(material.convention, metal_options, threads);
   material.metal = MetalOf(material.maps, &metal);
 
   const SamplePlane plane{width, height, task.size_mm[0], task.size_mm[1], convention.sampling};

@@ -138,7 +138,7 @@ std::array<double, 3> GltfBaseColor(const ExportedMaterial& material, size_t tex
   const SvbrdfMaps& maps = material.maps;
   float most = 0;
   for (int c = 0; c < 3; ++c) most = std::max(most, maps.plane(kSpecularR + c)[texel]);
-  const bool whole = material.diffuse_weight == DiffuseWeight::kOne;
+  const bool whole = material.convention.diffuse_weight == DiffuseWeight::kOne;
   const double left = whole ? std::max(1e-3f, 1 - most) : 1.0f;
   std::array<double, 3> base;
   for (int c = 0; c < 3; ++c) {

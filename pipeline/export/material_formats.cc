@@ -25,7 +25,7 @@ Rgb Specular(const ExportedMaterial& material, size_t texel) {
 // The albedo of a diffuse lobe that nothing weights.
 Rgb Diffuse(const ExportedMaterial& material, size_t texel) {
   const Rgb specular = Specular(material, texel);
-  const bool whole = material.diffuse_weight == DiffuseWeight::kOne;
+  const bool whole = material.convention.diffuse_weight == DiffuseWeight::kOne;
   Rgb rgb;
   for (size_t c = 0; c < 3; ++c) {
     const double albedo = material.maps.plane(kDiffuseR + static_cast<int>(c))[texel];
@@ -34,11 +34,12 @@ Rgb Diffuse(const ExportedMaterial& material, size_t texel) {
   return rgb;
 }
 
-// Two lobes that are added, Schlick's Fresnel by the cosine given.
+// Diffuse and specular lobes that are added, Schlick's Fresnel by the cosine given.
 Rgb Added(const ExportedMaterial& material, size_t texel, const DirectionPair& pair,
           double cosine) {
   const Rgb diffuse = Diffuse(material, texel), specular = Specular(material, texel);
-  const double lobe = SmithSpecular(pair, material.maps.plane(kRoughness)[texel]);
+  const double lobe =
+      SmithSpecular(pair, material.maps.plane(kRoughness)[texel], material.convention.lobes);
   const double weight = SchlickWeight(cosine);
   Rgb brdf;
   for (size_t c = 0; c < 3; ++c) {

@@ -1,5 +1,9 @@
 #include "pipeline/export/materialx_material.h"
 
+#include <fmt/format.h>
+
+#include "fitting/reflectance/brdf.h"
+
 namespace glint {
 namespace {
 
@@ -22,22 +26,43 @@ std::string Picture(const std::string& name, const std::string& type, const std:
   return Node("image", name, type, Input("file", "filename", Value(file) + space));
 }
 
+// The specular lobe `name` of the roughness map times `scale`, at most 1; α is its square.
+std::string Glossy(const std::string& name, double scale) {
+  std::string nodes;
+  std::string roughness = "roughness", of = name == "glossy" ? "" : "_" + name;
+  if (scale != 1) {
+    nodes += Node("multiply", "scaled" + of, "float",
+                  Input("in1", "float", From("roughness")) +
+                      Input("in2", "float", Value(fmt::format("{:.6g}", scale))));
+    nodes += Node("min", "roughness" + of, "float",
+                  Input("in1", "float", From("scaled" + of)) + Input("in2", "float", Value("1")));
+    roughness += of;
+  }
+  nodes += Node("multiply", "alpha" + of, "float",
+                Input("in1", "float", From(roughness)) + Input("in2", "float", From(roughness)));
+  nodes +=
+      Node("combine2", "alpha_both" + of, "vector2",
+           Input("in1", "float", From("alpha" + of)) + Input("in2", "float", From("alpha" + of)));
+  return nodes + Node("generalized_schlick_bsdf", name, "BSDF",
+                      Input("color0", "color3", From("specular")) +
+                          Input("color90", "color3", Value("1, 1, 1")) +
+                          Input("exponent", "float", Value("5")) +
+                          Input("roughness", "vector2", From("alpha_both" + of)) +
+                          Input("normal", "vector3", From("bent")) +
+                          Input("scatter_mode", "string", Value("R")));
+}
+
 }  // namespace
 
 std::string MaterialXOf(const ExportedMaterial& material,
                         const std::function<std::string(const std::string& map)>& file_of) {
-  const bool whole = material.diffuse_weight == DiffuseWeight::kOne;
+  const bool whole = material.convention.diffuse_weight == DiffuseWeight::kOne;
   std::string graph;
   graph += Picture("diffuse", "color3", file_of("diffuse"), true);
   graph += Picture("specular", "color3", file_of("specular"), true);
   graph += Picture("roughness", "float", file_of("roughness"), false);
   graph += Picture("normal", "vector3", file_of("normal_gl"), false);
   graph += Node("normalmap", "bent", "vector3", Input("in", "vector3", From("normal")));
-  graph +=
-      Node("multiply", "alpha", "float",
-           Input("in1", "float", From("roughness")) + Input("in2", "float", From("roughness")));
-  graph += Node("combine2", "alpha_both", "vector2",
-                Input("in1", "float", From("alpha")) + Input("in2", "float", From("alpha")));
   if (!whole) {  // the diffuse lobe has weight 1 − F0
     graph += Node("invert", "left", "color3", Input("in", "color3", From("specular")));
     graph += Node("multiply", "albedo", "color3",
@@ -47,12 +72,16 @@ std::string MaterialXOf(const ExportedMaterial& material,
       Node("oren_nayar_diffuse_bsdf", "matte", "BSDF",
            Input("color", "color3", From(whole ? "diffuse" : "albedo")) +
                Input("roughness", "float", Value("0")) + Input("normal", "vector3", From("bent")));
-  graph += Node(
-      "generalized_schlick_bsdf", "glossy", "BSDF",
-      Input("color0", "color3", From("specular")) + Input("color90", "color3", Value("1, 1, 1")) +
-          Input("exponent", "float", Value("5")) +
-          Input("roughness", "vector2", From("alpha_both")) +
-          Input("normal", "vector3", From("bent")) + Input("scatter_mode", "string", Value("R")));
+  const SpecularLobes& lobes = material.convention.lobes;
+  if (lobes.two()) {
+    const LobeMix<double> mix = LobeMixOf<double>(lobes);
+    for (int i = 0; i < 2; ++i) graph += Glossy(i == 0 ? "wide" : "narrow", mix.scale[i]);
+    graph += Node("mix", "glossy", "BSDF",
+                  Input("fg", "BSDF", From("narrow")) + Input("bg", "BSDF", From("wide")) +
+                      Input("mix", "float", Value(fmt::format("{}", lobes.narrow_share))));
+  } else {
+    graph += Glossy("glossy", 1);
+  }
   graph += Node("add", "both", "BSDF",
                 Input("in1", "BSDF", From("matte")) + Input("in2", "BSDF", From("glossy")));
   graph += Node("surface", "reflectance", "surfaceshader", Input("bsdf", "BSDF", From("both")));

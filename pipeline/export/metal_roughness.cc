@@ -42,10 +42,10 @@ size_t BinOf(double roughness) {
 
 using TermsTable = std::vector<PairTerms>;  // by roughness
 
-TermsTable TermsByRoughness() {
+TermsTable TermsByRoughness(const SpecularLobes& lobes) {
   TermsTable table;
   for (int bin = 0; bin < kRoughnessBins; ++bin) {
-    table.push_back(TermsOf(std::max(kLeastRoughness, (bin + 0.5) / kRoughnessBins)));
+    table.push_back(TermsOf(std::max(kLeastRoughness, (bin + 0.5) / kRoughnessBins), lobes));
   }
   return table;
 }
@@ -278,19 +278,20 @@ std::array<float, 3> MetalRoughness::ColorAt(size_t texel) const {
 }
 
 struct MetalConverter::Tables {
-  explicit Tables(double metal_share) : kinds(AllMetalnesses(), metal_share) {}
+  Tables(const SpecularLobes& lobes, double metal_share)
+      : terms(TermsByRoughness(lobes)), kinds(AllMetalnesses(), metal_share) {}
 
-  TermsTable terms = TermsByRoughness();
+  TermsTable terms;
   CostTable costs;
   KindCosts kinds;
 };
 
-MetalConverter::MetalConverter(DiffuseWeight weight, const MetalRoughnessOptions& options,
-                               int threads)
-    : weight_(weight),
+MetalConverter::MetalConverter(const ReflectanceConvention& convention,
+                               const MetalRoughnessOptions& options, int threads)
+    : convention_(convention),
       options_(options),
       threads_(threads),
-      tables_(new Tables(options.metal_share)) {}
+      tables_(new Tables(convention.lobes, options.metal_share)) {}
 
 MetalConverter::~MetalConverter() = default;
 
@@ -302,15 +303,17 @@ MetalRoughness MetalConverter::Convert(const SvbrdfMaps& maps, int above, int be
   ForEachBlock(texels, kBlock, threads_, [&](int begin, int end) {
     SetColours(maps, static_cast<size_t>(begin), static_cast<size_t>(end), &rows);
     for (size_t i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
-      const std::array<std::uint32_t, 3> own = CellsOf(TexelOf(maps, weight_, i));
+      const std::array<std::uint32_t, 3> own =
+          CellsOf(TexelOf(maps, convention_.diffuse_weight, i));
       std::copy(own.begin(), own.end(), cells.begin() + static_cast<std::ptrdiff_t>(3 * i));
     }
   });
   tables_->costs.Add(tables_->terms, cells, threads_);
   ForEachBlock(texels, kBlock, threads_, [&](int begin, int end) {
     SetCosts(
-        tables_->costs, tables_->kinds, cells, [&](size_t i) { return TexelOf(maps, weight_, i); },
-        options_.blend_cost, static_cast<size_t>(begin), static_cast<size_t>(end), &rows);
+        tables_->costs, tables_->kinds, cells,
+        [&](size_t i) { return TexelOf(maps, convention_.diffuse_weight, i); }, options_.blend_cost,
+        static_cast<size_t>(begin), static_cast<size_t>(end), &rows);
   });
   const int converted = maps.height - above - below;
   MetalRoughness result{maps.width, converted, {}, {}};
@@ -336,7 +339,8 @@ void MetalConverter::ConvertRow(const SvbrdfMaps& maps, const Rows& rows, int ab
       const auto metallic = static_cast<float>(BestMetalness(costs));
       const size_t to = static_cast<size_t>(row) * width + column;
       result->metallic[to] = metallic;
-      const Texel texel = TexelOf(maps, weight_, static_cast<size_t>(above + row) * width + column);
+      const Texel texel = TexelOf(maps, convention_.diffuse_weight,
+                                  static_cast<size_t>(above + row) * width + column);
       const PairTerms& pairs = tables_->terms[BinOf(texel.roughness)];
       for (size_t k = 0; k < 3; ++k) {
         result->base_color[k * converted + to] =
@@ -346,9 +350,9 @@ void MetalConverter::ConvertRow(const SvbrdfMaps& maps, const Rows& rows, int ab
   }
 }
 
-MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, DiffuseWeight weight,
+MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, const ReflectanceConvention& convention,
                                 const MetalRoughnessOptions& options, int threads) {
-  return MetalConverter(weight, options, threads).Convert(maps, 0, 0);
+  return MetalConverter(convention, options, threads).Convert(maps, 0, 0);
 }
 
 std::array<double, 3> MetalRoughnessBrdf(const std::array<float, 3>& base_color, double metallic,

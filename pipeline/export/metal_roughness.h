@@ -45,13 +45,14 @@ struct MetalRoughness {
 };
 
 // The same for any number of threads.
-MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, DiffuseWeight weight,
+MetalRoughness ToMetalRoughness(const SvbrdfMaps& maps, const ReflectanceConvention& convention,
                                 const MetalRoughnessOptions& options, int threads);
 
 // The same by rows.
 class MetalConverter {
  public:
-  MetalConverter(DiffuseWeight weight, const MetalRoughnessOptions& options, int threads);
+  MetalConverter(const ReflectanceConvention& convention, const MetalRoughnessOptions& options,
+                 int threads);
   ~MetalConverter();
   // Of `maps`, all but the first `above` and last `below` rows: options.radius where the sample
   // goes on, 0 at its border.
@@ -61,7 +62,7 @@ class MetalConverter {
   struct Tables;
   void ConvertRow(const SvbrdfMaps& maps, const metal_tables::Rows& rows, int above, int row,
                   MetalRoughness* result) const;
-  DiffuseWeight weight_;
+  ReflectanceConvention convention_;
   MetalRoughnessOptions options_;
   int threads_;
   std::unique_ptr<Tables> tables_;

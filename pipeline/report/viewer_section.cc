@@ -8,6 +8,7 @@
 #include "base/colour/srgb.h"
 #include "base/parallel/parallel.h"
 #include "base/resampling/resampling.h"
+#include "fitting/reflectance/brdf.h"
 #include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/picture.h"
@@ -93,6 +94,11 @@ Json ViewsJson(const ReportInput& input, const std::vector<ShownView>& shown) {
   return views;
 }
 
+Json LobesJson(const SpecularLobes& lobes) {
+  const LobeMix<double> mix = LobeMixOf<double>(lobes);
+  return {{"shares", mix.share}, {"scales", mix.scale}};
+}
+
 // JSON inside <script>: what could end it is escaped.
 std::string ScriptJson(const Json& json) {
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -131,6 +137,7 @@ std::string ViewerSection(const ReportInput& input, const ReportOptions& options
       {"size_mm", {input.set.plane.width_mm, input.set.plane.height_mm}},
       {"size_texel", {maps.width, maps.height}},
       {"diffuse_whole", input.fit.convention.diffuse_weight == DiffuseWeight::kOne},
+      {"lobes", LobesJson(input.fit.convention.lobes)},
       {"falls_off", input.set.convention.falloff == LightFalloff::kInverseSquare},
       {"maps", MapsJson(input, maps, options, threads)},
       {"views", ViewsJson(input, shown)}};

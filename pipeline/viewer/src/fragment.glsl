@@ -34,10 +34,16 @@ vec2 lobeShare(float roughness, float noV) {
   return vec2(-1.04, 1.04) * a + r.zw;
 }
 
+vec3 environmentInLobe(Texel t, int lobe, vec3 n, vec3 v) {
+  float roughness = lobeRoughness(t, lobe);
+  vec2 share = lobeShare(roughness, max(dot(n, v), 0.0));
+  return (t.specular * share.x + share.y) * environment(reflect(-v, n), roughness);
+}
+
 vec3 underEnvironment(Texel t, vec3 n, vec3 v) {
-  vec2 share = lobeShare(t.roughness, max(dot(n, v), 0.0));
-  return t.diffuse * environment(n, 1.0)
-         + (t.specular * share.x + share.y) * environment(reflect(-v, n), t.roughness);
+  vec3 mirrored = lobeShares.x * environmentInLobe(t, 0, n, v);
+  if (lobeShares.y > 0.0) mirrored += lobeShares.y * environmentInLobe(t, 1, n, v);
+  return t.diffuse * environment(n, 1.0) + mirrored;
 }
 
 vec3 radianceOf(Texel t, vec3 n, vec3 v) {

@@ -47,6 +47,8 @@ export class MaterialScene {
       geometryHighMap: { value: high }, geometryLowMap: { value: low },
       confidenceMap: { value: confidence || diffuse },
       diffuseWhole: { value: this.material.diffuse_whole },
+      lobeShares: { value: new THREE.Vector2(...this.material.lobes.shares) },
+      lobeScales: { value: new THREE.Vector2(...this.material.lobes.scales) },
       fallsOff: { value: true }, lighting: { value: 0 }, exposure: { value: 1 },
       channel: { value: 0 }, tiles: { value: new THREE.Vector2(1, 1) },
       lightPosition: { value: new THREE.Vector3() }, lightRadiance: { value: new THREE.Vector3() },

@@ -12,6 +12,8 @@ uniform sampler2D specularMap;      // likewise
 uniform sampler2D geometryHighMap;  // normal x, normal y, roughness: high bytes …
 uniform sampler2D geometryLowMap;   // … and low bytes of 16 bits
 uniform bool diffuseWhole;
+uniform vec2 lobeShares;  // of the wide and the narrow specular lobe …
+uniform vec2 lobeScales;  // … and what multiplies roughness in them
 
 Texel texelAt(vec2 uv) {
   Texel t;
@@ -26,11 +28,9 @@ Texel texelAt(vec2 uv) {
   return t;
 }
 
-// f of unit directions n, l, v.
-vec3 brdf(Texel t, vec3 n, vec3 l, vec3 v) {
-  vec3 h = normalize(l + v);
-  float noL = max(dot(n, l), 1e-8), noV = max(dot(n, v), 1e-8), voH = max(dot(v, h), 1e-8);
-  float alpha = t.roughness * t.roughness;
+// D·G/(4·NoL·NoV) of one lobe.
+float specularLobe(float roughness, vec3 n, vec3 h, float noL, float noV) {
+  float alpha = roughness * roughness;
   vec3 across = n - dot(n, h) * h;
   float noH = max(dot(n, h), 0.0);
   // noH²(α² − 1) + 1, without cancellation near the peak.
@@ -38,7 +38,17 @@ vec3 brdf(Texel t, vec3 n, vec3 l, vec3 v) {
   float ratio = alpha / max(denominator, 1e-8);
   float k = 0.5 * alpha;
   float masking = (noL * (1.0 - k) + k) * (noV * (1.0 - k) + k);
-  float lobe = ratio * ratio / (4.0 * 3.14159265358979 * masking);
+  return ratio * ratio / (4.0 * 3.14159265358979 * masking);
+}
+
+float lobeRoughness(Texel t, int lobe) { return min(t.roughness * lobeScales[lobe], 1.0); }
+
+// f of unit directions n, l, v.
+vec3 brdf(Texel t, vec3 n, vec3 l, vec3 v) {
+  vec3 h = normalize(l + v);
+  float noL = max(dot(n, l), 1e-8), noV = max(dot(n, v), 1e-8), voH = max(dot(v, h), 1e-8);
+  float lobe = lobeShares.x * specularLobe(lobeRoughness(t, 0), n, h, noL, noV);
+  if (lobeShares.y > 0.0) lobe += lobeShares.y * specularLobe(lobeRoughness(t, 1), n, h, noL, noV);
   vec3 fresnel = t.specular + (1.0 - t.specular) * exp2(voH * (-5.55473 * voH - 6.98316));
   return t.diffuse / 3.14159265358979 + lobe * fresnel;
 }

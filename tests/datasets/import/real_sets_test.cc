@@ -116,7 +116,7 @@ TEST(RealSets, DirRenderingsFollowFromDirMaps) {
       const auto geometry = TexelGeometryInView<double>(
           set.views[v].view, set.convention.falloff, set.plane.x_mm(column), set.plane.y_mm(row));
       double radiance[3];
-      ShadeRadiance(TexelAt(maps, i), geometry, set.convention.diffuse_weight, radiance);
+      ShadeRadiance(TexelAt(maps, i), geometry, set.convention, radiance);
       for (size_t c = 0; c < 3; ++c) {
         const double stored = std::pow(image.rgb[c * maps.texels() + i], 1 / 2.2);
         const double rendered = std::pow(std::clamp(radiance[c], 0.0, 1.0), 1 / 2.2);

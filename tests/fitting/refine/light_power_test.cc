@@ -27,9 +27,9 @@ TEST(SetUnderPower, MapsLookTheSameUnderTheOtherLight) {
       double was[3], is[3];
       const double one[3] = {1, 1, 1}, stronger[3] = {kPower, kPower, kPower};
       ShadeRadiance(TexelAt(before, t), MakeTexelGeometry(direction, direction, one, ambient),
-                    weight, was);
+                    {weight}, was);
       ShadeRadiance(TexelAt(maps, t), MakeTexelGeometry(direction, direction, stronger, ambient),
-                    weight, is);
+                    {weight}, is);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(is[c], was[c], 5e-3 * was[c]);
     }
   }

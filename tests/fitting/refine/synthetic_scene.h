@@ -71,10 +71,13 @@ inline SvbrdfMaps QuarteredMaps(int size, unsigned seed) {
 }
 
 // `bits` 0: float radiance; otherwise clipped at 1 and quantised in gamma 2.2.
-// `light`: what is not said of the views' lights.
+// `light`: what is not said of the views' lights. `lobes`: nor of the sample's.
 inline SyntheticScene Photograph(const SvbrdfMaps& truth, int views, int bits = 0,
-                                 unsigned seed = 5, const SharedLight& light = {}) {
+                                 unsigned seed = 5, const SharedLight& light = {},
+                                 const SpecularLobes& lobes = {}) {
   SyntheticScene scene;
+  ReflectanceConvention reflecting = scene.convention;
+  reflecting.lobes = lobes;
   scene.truth = truth;
   scene.ldr = bits > 0;
   scene.plane = {truth.width, truth.height, 2.0, 2.0, TexelSampling::kCornerToCorner};
@@ -92,7 +95,7 @@ inline SyntheticScene Photograph(const SvbrdfMaps& truth, int views, int bits = 
           TexelGeometryInView<double>(lit, scene.convention.falloff,
                                       scene.plane.x_mm(static_cast<int>(t) % truth.width),
                                       scene.plane.y_mm(static_cast<int>(t) / truth.width)),
-          scene.convention.diffuse_weight, radiance);
+          reflecting, radiance);
       for (int c = 0; c < 3; ++c) {
         double value = radiance[c];
         if (bits > 0) {

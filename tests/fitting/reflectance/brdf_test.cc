@@ -65,7 +65,7 @@ class RandomPoints {
 };
 
 // The model written as method.md prints it, one line a formula, with nothing rearranged.
-std::array<double, 3> TextbookRadiance(const Point& point, DiffuseWeight weight) {
+std::array<double, 3> TextbookRadiance(const Point& point, const ReflectanceConvention& model) {
   const auto clamped_dot = [](const double a[3], const double b[3]) {
     return std::max(a[0] * b[0] + a[1] * b[1] + a[2] * b[2], 1e-8);
   };
@@ -76,31 +76,43 @@ std::array<double, 3> TextbookRadiance(const Point& point, DiffuseWeight weight)
   for (int i = 0; i < 3; ++i) h[i] = (g.light[i] + g.camera[i]) / std::sqrt(length);
   const double noh = clamped_dot(s.normal, h), nol = clamped_dot(s.normal, g.light);
   const double nov = clamped_dot(s.normal, g.camera), voh = clamped_dot(g.camera, h);
-  const double alpha = s.roughness * s.roughness, k = alpha / 2;
-  const double d = std::pow(alpha / (noh * noh * (alpha * alpha - 1) + 1), 2) / kPi;
-  const auto g1 = [k](double x) { return x / (x * (1 - k) + k); };
+  const auto lobe = [&](double roughness) {  // D·G
+    const double alpha = roughness * roughness, k = alpha / 2;
+    const double d = std::pow(alpha / (noh * noh * (alpha * alpha - 1) + 1), 2) / kPi;
+    const auto g1 = [k](double x) { return x / (x * (1 - k) + k); };
+    return d * g1(nol) * g1(nov);
+  };
+  const double share = model.lobes.narrow_share, ratio = model.lobes.narrow_ratio;
+  const double wide = std::min(1.0, s.roughness * std::pow(ratio, -share));
+  const double narrow = std::min(1.0, s.roughness * std::pow(ratio, 1 - share));
+  const double lobes = (1 - share) * lobe(wide) + share * lobe(narrow);
   std::array<double, 3> radiance;
   for (int c = 0; c < 3; ++c) {
     const double f0 = s.specular[c];
     const double f = f0 + (1 - f0) * std::pow(2.0, voh * (-5.55473 * voh - 6.98316));
-    const double w = weight == DiffuseWeight::kOne ? 1 : 1 - f0;
-    const double brdf = w * s.diffuse[c] / kPi + d * g1(nol) * g1(nov) * f / (4 * nol * nov);
+    const double w = model.diffuse_weight == DiffuseWeight::kOne ? 1 : 1 - f0;
+    const double brdf = w * s.diffuse[c] / kPi + lobes * f / (4 * nol * nov);
     radiance[c] =
         g.irradiance[c] * brdf * nol + g.ambient[c] * (w * s.diffuse[c] + s.specular[c]) / kPi;
   }
   return radiance;
 }
 
-constexpr DiffuseWeight kWeights[] = {DiffuseWeight::kOne, DiffuseWeight::kOneMinusSpecular};
+// Each diffuse weight, with one specular lobe and with two.
+const std::array<ReflectanceConvention, 4> kModels = {
+    {{.diffuse_weight = DiffuseWeight::kOne},
+     {.diffuse_weight = DiffuseWeight::kOneMinusSpecular},
+     {.diffuse_weight = DiffuseWeight::kOne, .lobes = {0.5, 0.4}},
+     {.diffuse_weight = DiffuseWeight::kOneMinusSpecular, .lobes = {0.85, 0.25}}}};
 
 TEST(BrdfTest, RadianceIsTheTextbookFormula) {
   RandomPoints random(1);
-  for (const DiffuseWeight weight : kWeights) {
+  for (const ReflectanceConvention& model : kModels) {
     for (int i = 0; i < kPoints; ++i) {
       const Point point = random.Next();
-      const auto expected = TextbookRadiance(point, weight);
+      const auto expected = TextbookRadiance(point, model);
       double radiance[3];
-      ShadeRadiance(point.texel, point.geometry, weight, radiance);
+      ShadeRadiance(point.texel, point.geometry, model, radiance);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(radiance[c], expected[c], 1e-9 * expected[c]);
     }
   }
@@ -116,9 +128,9 @@ TEST(BrdfTest, ClampedDotProductsFollowTheTextbookToo) {
     if (i % 2) std::swap(point.texel.normal[0], point.texel.normal[2]);
     behind_camera += Dot(point.texel.normal, point.geometry.camera) < 0;
     behind_half += Dot(point.texel.normal, point.geometry.half) < 0;
-    const auto expected = TextbookRadiance(point, DiffuseWeight::kOne);
+    const auto expected = TextbookRadiance(point, {DiffuseWeight::kOne});
     double radiance[3];
-    ShadeRadiance(point.texel, point.geometry, DiffuseWeight::kOne, radiance);
+    ShadeRadiance(point.texel, point.geometry, {DiffuseWeight::kOne}, radiance);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(radiance[c], expected[c], 1e-9 * expected[c]);
   }
   EXPECT_GT(behind_camera, kPoints / 4);
@@ -132,8 +144,8 @@ TEST(BrdfTest, Reciprocity) {
     const TexelGeometry<double>& g = point.geometry;
     const auto swapped = MakeTexelGeometry(g.camera, g.light, g.irradiance, g.ambient);
     double forward[3], backward[3];
-    EvaluateBrdf(point.texel, g, DiffuseWeight::kOne, forward);
-    EvaluateBrdf(point.texel, swapped, DiffuseWeight::kOne, backward);
+    EvaluateBrdf(point.texel, g, {DiffuseWeight::kOne}, forward);
+    EvaluateBrdf(point.texel, swapped, {DiffuseWeight::kOne}, backward);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(forward[c], backward[c], 1e-6 * forward[c]);
   }
 }
@@ -172,11 +184,12 @@ TexelSvbrdf<Jet> AsVariables(const TexelSvbrdf<double>& texel) {
   return jets;
 }
 
-void ExpectJacobianMatchesAutodiff(const Point& point, DiffuseWeight weight, double tolerance) {
+void ExpectJacobianMatchesAutodiff(const Point& point, const ReflectanceConvention& model,
+                                   double tolerance) {
   double radiance[3], jacobian[3 * kSvbrdfPlanes];
-  ShadeTexel(point.texel, point.geometry, weight, radiance, jacobian);
+  ShadeTexel(point.texel, point.geometry, model, radiance, jacobian);
   Jet expected[3];
-  ShadeRadiance(AsVariables(point.texel), GeometryAs<Jet>(point.geometry), weight, expected);
+  ShadeRadiance(AsVariables(point.texel), GeometryAs<Jet>(point.geometry), model, expected);
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(radiance[c], expected[c].a, 1e-12 * std::abs(expected[c].a));
     const double largest = expected[c].v.cwiseAbs().maxCoeff();
@@ -192,8 +205,8 @@ void ExpectJacobianMatchesAutodiff(const Point& point, DiffuseWeight weight, dou
 
 TEST(BrdfDerivativesTest, JacobianMatchesAutodiff) {
   RandomPoints random(4);
-  for (const DiffuseWeight weight : kWeights) {
-    for (int i = 0; i < kPoints; ++i) ExpectJacobianMatchesAutodiff(random.Next(), weight, 1e-6);
+  for (const ReflectanceConvention& model : kModels) {
+    for (int i = 0; i < kPoints; ++i) ExpectJacobianMatchesAutodiff(random.Next(), model, 1e-6);
   }
 }
 
@@ -224,7 +237,7 @@ TEST(BrdfDerivativesTest, JacobianMatchesAutodiffBesideClamps) {
     } else {
       (i % 2 ? dark : hidden) += wanted < kDotClamp;
     }
-    ExpectJacobianMatchesAutodiff(point, kWeights[i / 2 % 2], 1e-4);
+    ExpectJacobianMatchesAutodiff(point, kModels[static_cast<size_t>(i / 2 % 4)], 1e-4);
   }
   EXPECT_GT(std::min({dark, hidden, narrow}), kPoints / 20);
 }
@@ -238,9 +251,12 @@ TEST(BrdfDerivativesTest, TangentDerivativesMatchDifferencesOfTheTextbookFormula
                   Dot(point.texel.normal, point.geometry.camera)}) < 0.01) {
       continue;  // differences across a clamp mean nothing
     }
-    const DiffuseWeight weight = kWeights[i % 2];
+    const SpecularLobes& lobes = kModels[static_cast<size_t>(i % 4)].lobes;
+    const double widest = point.texel.roughness * std::pow(lobes.narrow_ratio, -lobes.narrow_share);
+    if (lobes.two() && std::abs(widest - 1) < 1e-3) continue;
+    const ReflectanceConvention& model = kModels[static_cast<size_t>(i % 4)];
     double radiance[3], jacobian[3 * kSvbrdfPlanes];
-    ShadeTexel(point.texel, point.geometry, weight, radiance, jacobian);
+    ShadeTexel(point.texel, point.geometry, model, radiance, jacobian);
     const auto along = random.Direction(90);
     const auto moved = [&](double step) {
       Point copy = point;
@@ -251,7 +267,7 @@ TEST(BrdfDerivativesTest, TangentDerivativesMatchDifferencesOfTheTextbookFormula
       }
       for (double& x : copy.texel.normal) x /= std::sqrt(length);
       copy.texel.roughness += step;
-      return TextbookRadiance(copy, weight);
+      return TextbookRadiance(copy, model);
     };
     const double radial = along[0] * point.texel.normal[0] + along[1] * point.texel.normal[1] +
                           along[2] * point.texel.normal[2];
@@ -298,8 +314,8 @@ TEST(BrdfTest, SinglePrecisionKeepsNarrowHighlights) {
       e[a] = static_cast<float>(point.geometry.irradiance[a]);
       ambient[a] = static_cast<float>(point.geometry.ambient[a]);
     }
-    ShadeRadiance(texel, MakeTexelGeometry(l, v, e, ambient), DiffuseWeight::kOne, radiance);
-    const auto expected = TextbookRadiance(point, DiffuseWeight::kOne);
+    ShadeRadiance(texel, MakeTexelGeometry(l, v, e, ambient), {DiffuseWeight::kOne}, radiance);
+    const auto expected = TextbookRadiance(point, {DiffuseWeight::kOne});
     for (int c = 0; c < 3; ++c) {
       worst = std::max(worst, std::abs(radiance[c] / expected[c] - 1));
     }

@@ -13,10 +13,26 @@ TEST(ConventionTest, TextRoundTripKeepsEverySwitch) {
   for (const auto diffuse : {DiffuseWeight::kOne, DiffuseWeight::kOneMinusSpecular}) {
     for (const auto falloff : {LightFalloff::kNone, LightFalloff::kInverseSquare}) {
       for (const auto sampling : {TexelSampling::kPixelCentres, TexelSampling::kCornerToCorner}) {
-        const ReflectanceConvention convention{diffuse, falloff, sampling};
-        EXPECT_EQ(ParseReflectanceConvention(ToString(convention)), convention);
+        for (const SpecularLobes& lobes : {SpecularLobes(), SpecularLobes{0.85, 0.25}}) {
+          const ReflectanceConvention convention{diffuse, falloff, sampling, lobes};
+          EXPECT_EQ(ParseReflectanceConvention(ToString(convention)), convention);
+        }
       }
     }
+  }
+}
+
+TEST(ConventionTest, OneLobeIsNotWritten) {
+  EXPECT_EQ(ToString(ReflectanceConvention()),
+            "diffuse=one light=inverse_square sampling=pixel_centres");
+}
+
+TEST(ConventionTest, RefusesLobesThatAreNone) {
+  for (const char* text : {"", "0.5", "x0.4", "0.5x", "0.5x0.4x", "1x0.4", "-0.1x0.4", "0.5x0",
+                           "0.5x1.1", "nanx0.4", "0.5xnan"}) {
+    EXPECT_THROW(ParseReflectanceConvention(std::string("narrow_lobe=") + text),
+                 std::invalid_argument)
+        << text;
   }
 }
 

@@ -92,7 +92,7 @@ EnvironmentHarmonics Reflected(const TexelSvbrdf<double>& texel, const double ca
   ForEachCell(0, std::numbers::pi / 2, [&](const double d[3], double solid_angle) {
     const TexelGeometry<double> geometry = MakeTexelGeometry(d, camera, none, none);
     double brdf[3];
-    EvaluateBrdf(texel, geometry, DiffuseWeight::kOne, brdf);
+    EvaluateBrdf(texel, geometry, {DiffuseWeight::kOne}, brdf);
     const double weight = std::numbers::pi * brdf[0] * d[2] * solid_angle;
     const EnvironmentHarmonics terms = Toward(d[0], d[1], d[2]);
     for (size_t j = 0; j < kEnvironmentTerms; ++j) sums[j] += weight * terms[j];

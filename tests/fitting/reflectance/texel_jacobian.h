@@ -12,14 +12,15 @@ namespace glint {
 // `jacobian`: 3×kSvbrdfPlanes row-major in the order of SvbrdfPlane. The normal's three components
 // are free variables (see brdf.h about the radial one).
 inline void ShadeTexel(const TexelSvbrdf<double>& texel, const TexelGeometry<double>& geometry,
-                       DiffuseWeight weight, double radiance[3],
+                       const ReflectanceConvention& convention, double radiance[3],
                        double jacobian[3 * kSvbrdfPlanes]) {
-  const SpecularTerms<double> lobe = EvaluateSpecular(texel, geometry);
-  const SpecularSlopes<double> by = DifferentiateSpecular(lobe, texel.roughness);
-  ShadeRadiance(texel, geometry, weight, radiance);
+  const MixTerms<double> lobe = EvaluateMix(texel, geometry, convention.lobes);
+  const SpecularSlopes<double> by =
+      DifferentiateMix(lobe, texel.roughness, LobeMixOf<double>(convention.lobes));
+  ShadeRadiance(texel, geometry, convention, radiance);
   std::fill_n(jacobian, 3 * kSvbrdfPlanes, 0.0);
   for (int c = 0; c < 3; ++c) {
-    const DiffuseTerms<double> diffuse = DiffuseLobe(texel, weight, c);
+    const DiffuseTerms<double> diffuse = DiffuseLobe(texel, convention.diffuse_weight, c);
     const ChannelTerms<double> channel =
         EvaluateChannel(diffuse, texel.specular[c], geometry.fresnel, lobe.n_dot_l, lobe.value);
     const ChannelSlopes<double> slopes = DifferentiateChannel(
@@ -29,7 +30,7 @@ inline void ShadeTexel(const TexelSvbrdf<double>& texel, const TexelGeometry<dou
     row[kDiffuseR + c] = slopes.by_diffuse;
     row[kSpecularR + c] = slopes.by_specular;
     row[kRoughness] = slopes.by_lobe * by.by_roughness;
-    const double lit = lobe.free.n_dot_l > kDotClamp ? slopes.by_n_dot_l : 0.0;
+    const double lit = lobe.lobes[0].free.n_dot_l > kDotClamp ? slopes.by_n_dot_l : 0.0;
     for (int i = 0; i < 3; ++i) {
       row[kNormalX + i] =
           lit * geometry.light[i] +

@@ -110,8 +110,8 @@ void ForEachTexel(const Scene<double>& scene, const CheckTexel& check) {
         const auto geometry = TexelGeometryInView(scene.views[v], scene.convention.falloff,
                                                   plane.x_mm(column), plane.y_mm(row));
         double radiance[3], jacobian[3 * kSvbrdfPlanes];
-        ShadeTexel(TexelOf(scene.planes, texels, i), geometry, scene.convention.diffuse_weight,
-                   radiance, jacobian);
+        ShadeTexel(TexelOf(scene.planes, texels, i), geometry, scene.convention, radiance,
+                   jacobian);
         check(v, i, radiance, jacobian);
       }
     }
@@ -197,7 +197,7 @@ TEST_P(KernelTest, LossGradientMatchesDifferencesAt1000RandomPoints) {
   const size_t texels = 25;
   int points = 0;
   for (unsigned seed = 0; points < 1000; ++seed) {
-    const auto& convention = AllConventions()[seed % 4];
+    const auto& convention = AllConventions()[seed % AllConventions().size()];
     Scene<double> scene = MakeScene<double>(100 + seed, 5, 5, 2, convention);
     scene.clamp = seed % 2 == 1;
     // Photographs apart from the renderings, as the loss has a corner where they are equal.

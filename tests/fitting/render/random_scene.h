@@ -65,7 +65,11 @@ inline const std::vector<ReflectanceConvention>& AllConventions() {
       ReflectanceConvention::Photograph(),
       ReflectanceConvention::Dir2019(),
       ReflectanceConvention::MaterialGan(),
-      {DiffuseWeight::kOneMinusSpecular, LightFalloff::kNone, TexelSampling::kPixelCentres}};
+      {DiffuseWeight::kOneMinusSpecular, LightFalloff::kNone, TexelSampling::kPixelCentres},
+      {DiffuseWeight::kOne,
+       LightFalloff::kInverseSquare,
+       TexelSampling::kPixelCentres,
+       {0.7, 0.4}}};
   return conventions;
 }
 

@@ -34,7 +34,7 @@ TEST(AddEnvironmentLighting, AddsWhatEachTexelReflects) {
       TexelGeometryInView(view, convention.falloff, plane.x_mm(4), plane.y_mm(3));
   EnvironmentReflection(svbrdf).AddTo(Window(), view.exposure, &geometry);
   double radiance[3];
-  ShadeRadiance(svbrdf, geometry, convention.diffuse_weight, radiance);
+  ShadeRadiance(svbrdf, geometry, convention, radiance);
   for (size_t c = 0; c < 3; ++c) {
     EXPECT_GT(radiance[c], 0);
     EXPECT_NEAR(rgb[c * maps.texels() + texel], 0.5 + radiance[c], 1e-6);

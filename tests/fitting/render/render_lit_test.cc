@@ -40,7 +40,7 @@ TEST(RenderLit, AgreesWithSingleTexels) {
                   TexelGeometryInView<double>(view, convention.falloff,
                                               plane.x_mm(static_cast<int>(t) % maps.width),
                                               plane.y_mm(static_cast<int>(t) / maps.width)),
-                  convention.diffuse_weight, radiance);
+                  convention, radiance);
     for (size_t c = 0; c < 3; ++c) {
       EXPECT_NEAR(rendered[c * maps.texels() + t], radiance[c], 1e-5 * radiance[c]) << t;
     }

@@ -26,7 +26,7 @@ TEST(RendererTest, EveryWidthRendersTheReflectanceModel) {
         const auto geometry =
             TexelGeometryInView(view, convention.falloff, plane.x_mm(column), plane.y_mm(row));
         double radiance[3];
-        ShadeRadiance(TexelAt(maps, i), geometry, convention.diffuse_weight, radiance);
+        ShadeRadiance(TexelAt(maps, i), geometry, convention, radiance);
         for (int c = 0; c < 3; ++c) {
           EXPECT_NEAR(rendered[c * maps.texels() + i], radiance[c], 2e-5 * radiance[c]);
         }

@@ -34,7 +34,7 @@ int main(int count, char** arguments) {
   const TexelSvbrdf<double> texel{{0, 0, 1}, {.3, .3, .3}, {.04, .04, .04}, .4};
   double expected[3];
   ShadeRadiance(texel, TexelGeometryInView(view, convention.falloff, plane.x_mm(2), plane.y_mm(1)),
-                convention.diffuse_weight, expected);
+                convention, expected);
   std::printf("rendered %.6f, by the formula %.6f\n", image[4 + 2], expected[0]);
   return std::abs(image[4 + 2] - expected[0]) < 1e-3 * expected[0] ? 0 : 1;
 }

@@ -21,10 +21,10 @@ inline ExportedMaterial MaterialOf(SvbrdfMaps maps, DiffuseWeight weight = Diffu
   ExportedMaterial material;
   material.name = "wood";
   material.maps = std::move(maps);
-  material.diffuse_weight = weight;
+  material.convention.diffuse_weight = weight;
   material.width_mm = 120;
   material.height_mm = 80;
-  material.metal = ToMetalRoughness(material.maps, weight, {}, 1);
+  material.metal = ToMetalRoughness(material.maps, material.convention, {}, 1);
   material.height_range_mm = {-0.5, 0.75};
   return material;
 }

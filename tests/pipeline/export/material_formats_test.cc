@@ -86,7 +86,7 @@ TEST(MaterialFormatsTest, BlendersScriptDisplacesInEveryVersion) {
 TEST(MaterialFormatsTest, WholeMaterialsAreMoreFaithfulThanMetalRoughness) {
   const ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));
   const auto error_of = [&](const Shading& shading) {
-    return ShadingErrors(material.maps, material.diffuse_weight, {shading}, 1)[0];
+    return ShadingErrors(material.maps, material.convention, {shading}, 1)[0];
   };
   const double metal_roughness = error_of(MetalRoughnessShading(material.metal, material.maps));
   for (const MaterialFormat& format : MaterialFormats()) {
@@ -99,6 +99,45 @@ TEST(MaterialFormatsTest, WholeMaterialsAreMoreFaithfulThanMetalRoughness) {
   }
 }
 
+ExportedMaterial TwoLobes() {
+  ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));
+  material.convention.lobes = {0.5, 0.4};
+  material.metal = ToMetalRoughness(material.maps, material.convention, {}, 1);
+  return material;
+}
+
+// MaterialX and Blender mix two lobes; the others have one, and their figures say what that costs.
+TEST(MaterialFormatsTest, TwoLobesAreKeptWhereTheFormatHasThem) {
+  const ExportedMaterial material = TwoLobes();
+  for (const MaterialFormat& format : MaterialFormats()) {
+    const Shading shading = [&](size_t texel, const DirectionPair& pair) {
+      return format.brdf(material, texel, pair);
+    };
+    const double error = ShadingErrors(material.maps, material.convention, {shading}, 1)[0];
+    if (format.name == "materialx" || format.name == "blender") {
+      EXPECT_LT(error, 0.06) << format.name;
+    } else {
+      EXPECT_GT(error, 0.06) << format.name;
+      EXPECT_LT(error, 0.25) << format.name;
+    }
+  }
+}
+
+TEST(MaterialFormatsTest, MaterialXAndBlenderMixTwoLobes) {
+  const std::string materialx = Format("materialx").write(TwoLobes(), FileOfMap, 1);
+  EXPECT_THAT(materialx, HasSubstr("generalized_schlick_bsdf name=\"narrow\""));
+  EXPECT_THAT(materialx, HasSubstr("name=\"mix\" type=\"float\" value=\"0.5\""));
+  EXPECT_THAT(materialx, HasSubstr("value=\"1.58114\""));  // 0.4 to the power of −½
+  const test::TemporaryFolder folder;
+  const std::filesystem::path script = folder / "material.py";
+  test::WriteAll(script, Format("blender").write(TwoLobes(), FileOfMap, 1));
+  EXPECT_THAT(test::ReadAll(script),
+              HasSubstr("LOBE_SCALES, NARROW_SHARE = (1.58114, 0.632456), 0.5"));
+  const test::Outcome run =
+      test::RunProgram({"python3", GLINT_STAND_IN_BPY, script.string(), "material"});
+  EXPECT_EQ(run.code, 0) << run.err;
+}
+
 // Together and by several threads as each by itself.
 TEST(MaterialFormatsTest, ShadingErrorsAreEachShadingsOwn) {
   const ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));
@@ -108,11 +147,10 @@ TEST(MaterialFormatsTest, ShadingErrorsAreEachShadingsOwn) {
       return format.brdf(material, texel, pair);
     });
   }
-  const auto together = ShadingErrors(material.maps, material.diffuse_weight, shadings, 3);
+  const auto together = ShadingErrors(material.maps, material.convention, shadings, 3);
   ASSERT_EQ(together.size(), shadings.size());
   for (size_t i = 0; i < shadings.size(); ++i) {
-    EXPECT_EQ(together[i],
-              ShadingErrors(material.maps, material.diffuse_weight, {shadings[i]}, 1)[0]);
+    EXPECT_EQ(together[i], ShadingErrors(material.maps, material.convention, {shadings[i]}, 1)[0]);
   }
 }
 

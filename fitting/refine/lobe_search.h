@@ -1,0 +1,21 @@
+// Whether a sample has a second, narrow specular lobe (fitting/reflectance/convention.h): as
+// photographs held out are predicted.
+#pragma once
+
+#include <functional>
+
+#include "fitting/refine/held_out_errors.h"
+#include "fitting/reflectance/convention.h"
+
+namespace glint {
+
+// Whether photographs held out, by their errors with each, are predicted so much better by two lobes
+// that there are two, although hardly one sample in twenty has a varnish or a polish that shows as
+// such (log odds 3).
+bool AskForTwoLobes(const HeldOutErrors& two, const HeldOutErrors& one);
+
+// From one lobe on over a lattice of shares and ratios of roughness, to the next that predicts
+// better until none does; one lobe unless these ask for two.
+SpecularLobes SearchLobes(const std::function<HeldOutErrors(const SpecularLobes& lobes)>& predict);
+
+}  // namespace glint
