@@ -9,9 +9,9 @@
 
 namespace glint {
 
-// Whether photographs held out, by their errors with each, are predicted so much better by two lobes
-// that there are two, although hardly one sample in twenty has a varnish or a polish that shows as
-// such (log odds 3).
+// Whether photographs held out, by their errors with each, are predicted so much better by two
+// lobes that there are two, although hardly one sample in twenty has a varnish or a polish that
+// shows as such (log odds 3).
 bool AskForTwoLobes(const HeldOutErrors& two, const HeldOutErrors& one);
 
 // From one lobe on over a lattice of shares and ratios of roughness, to the next that predicts

@@ -11,6 +11,7 @@
 
 #include "base/colour/srgb.h"
 #include "base/parallel/parallel.h"
+#include "fitting/reflectance/brdf.h"
 #include "pipeline/export/export_maps.h"
 #include "pipeline/files/json.h"
 #include "pipeline/images/image.h"
@@ -58,11 +59,26 @@ Image BaseColor(const ExportedMaterial& material) {
   return image;
 }
 
-// Roughness in green; red (occlusion) 1, blue (metalness) 0.
-Image OcclusionRoughnessMetallic(const SvbrdfMaps& maps) {
-  Image image(maps.width, maps.height, kRgbChannels);
+// Of the wide lobe, where there are two.
+Image OcclusionRoughnessMetallic(const ExportedMaterial& material) {
+  const SvbrdfMaps& maps = material.maps;
+  Image image(maps.width, maps.height, kRgbChannels);  // blue: metalness 0
   std::fill(image.channel(0).begin(), image.channel(0).end(), 1.0f);
-  std::copy(maps.plane(kRoughness).begin(), maps.plane(kRoughness).end(), image.channel(1).begin());
+  for (size_t i = 0; i < maps.texels(); ++i) {
+    image.channel(1)[i] = static_cast<float>(GltfLobesOf(material, i).roughness);
+  }
+  return image;
+}
+
+// Strength in red, roughness in green.
+Image Clearcoat(const ExportedMaterial& material) {
+  const SvbrdfMaps& maps = material.maps;
+  Image image(maps.width, maps.height, kRgbChannels);
+  for (size_t i = 0; i < maps.texels(); ++i) {
+    const GltfLobes lobes = GltfLobesOf(material, i);
+    image.channel(0)[i] = static_cast<float>(lobes.clearcoat);
+    image.channel(1)[i] = static_cast<float>(lobes.clearcoat_roughness);
+  }
   return image;
 }
 
@@ -76,29 +92,42 @@ Image Normal(const SvbrdfMaps& maps) {
 }
 
 // F0 over the largest of the sample.
-Image SpecularColor(const SvbrdfMaps& maps, float largest) {
-  Image image(maps.width, maps.height, kRgbChannels);
-  for (int c = 0; c < 3; ++c) {
-    std::transform(maps.plane(kSpecularR + c).begin(), maps.plane(kSpecularR + c).end(),
-                   image.channel(c).begin(),
-                   [largest](float f0) { return ClampedSrgb(f0 / largest); });
+Image SpecularColor(const ExportedMaterial& material, float largest) {
+  Image image(material.maps.width, material.maps.height, kRgbChannels);
+  for (size_t i = 0; i < material.maps.texels(); ++i) {
+    const GltfLobes lobes = GltfLobesOf(material, i);
+    for (int c = 0; c < 3; ++c) {
+      image.channel(c)[i] =
+          ClampedSrgb(static_cast<float>(lobes.f0[static_cast<size_t>(c)]) / largest);
+    }
   }
   return image;
 }
 
-Json MaterialJson(const std::string& name, float largest_f0) {
+constexpr int kNormalTexture = 2, kClearcoatTexture = 4;
+
+Json MaterialJson(const std::string& name, float largest_f0, bool clearcoat) {
   const double factor = largest_f0 / kGltfF0;
-  return {{"name", name},
-          {"doubleSided", true},
-          {"pbrMetallicRoughness",
-           {{"baseColorTexture", {{"index", 0}}},
-            {"metallicRoughnessTexture", {{"index", 1}}},
-            {"metallicFactor", 0.0}}},
-          {"normalTexture", {{"index", 2}}},
-          {"extensions",
-           {{"KHR_materials_specular",
-             {{"specularColorFactor", {factor, factor, factor}},
-              {"specularColorTexture", {{"index", 3}}}}}}}};
+  Json material = {{"name", name},
+                   {"doubleSided", true},
+                   {"pbrMetallicRoughness",
+                    {{"baseColorTexture", {{"index", 0}}},
+                     {"metallicRoughnessTexture", {{"index", 1}}},
+                     {"metallicFactor", 0.0}}},
+                   {"normalTexture", {{"index", kNormalTexture}}},
+                   {"extensions",
+                    {{"KHR_materials_specular",
+                      {{"specularColorFactor", {factor, factor, factor}},
+                       {"specularColorTexture", {{"index", 3}}}}}}}};
+  if (clearcoat) {
+    material["extensions"]["KHR_materials_clearcoat"] = {
+        {"clearcoatFactor", 1.0},
+        {"clearcoatTexture", {{"index", kClearcoatTexture}}},
+        {"clearcoatRoughnessFactor", 1.0},
+        {"clearcoatRoughnessTexture", {{"index", kClearcoatTexture}}},
+        {"clearcoatNormalTexture", {{"index", kNormalTexture}}}};
+  }
+  return material;
 }
 
 // A plane of four corners; texture coordinates run from the upper left.
@@ -136,10 +165,11 @@ void AppendChunk(const char type[4], std::string bytes, char padding, std::strin
 
 std::array<double, 3> GltfBaseColor(const ExportedMaterial& material, size_t texel) {
   const SvbrdfMaps& maps = material.maps;
-  float most = 0;
-  for (int c = 0; c < 3; ++c) most = std::max(most, maps.plane(kSpecularR + c)[texel]);
+  const GltfLobes lobes = GltfLobesOf(material, texel);
+  const double most = *std::max_element(lobes.f0.begin(), lobes.f0.end());
+  const double under_both = (1 - most) * (1 - kGltfF0 * lobes.clearcoat);
   const bool whole = material.convention.diffuse_weight == DiffuseWeight::kOne;
-  const double left = whole ? std::max(1e-3f, 1 - most) : 1.0f;
+  const double left = whole ? std::max(1e-3, under_both) : 1.0;
   std::array<double, 3> base;
   for (int c = 0; c < 3; ++c) {
     base[static_cast<size_t>(c)] = std::clamp(maps.plane(kDiffuseR + c)[texel] / left, 0.0, 1.0);
@@ -147,8 +177,28 @@ std::array<double, 3> GltfBaseColor(const ExportedMaterial& material, size_t tex
   return base;
 }
 
+GltfLobes GltfLobesOf(const ExportedMaterial& material, size_t texel) {
+  const SvbrdfMaps& maps = material.maps;
+  GltfLobes lobes;
+  for (int c = 0; c < 3; ++c) {
+    lobes.f0[static_cast<size_t>(c)] = maps.plane(kSpecularR + c)[texel];
+  }
+  lobes.roughness = maps.plane(kRoughness)[texel];
+  const SpecularLobes& ours = material.convention.lobes;
+  if (!ours.two()) return lobes;
+  const LobeMix<double> mix = LobeMixOf<double>(ours);
+  const double least = *std::min_element(lobes.f0.begin(), lobes.f0.end());
+  const double mean = (lobes.f0[0] + lobes.f0[1] + lobes.f0[2]) / 3;
+  lobes.clearcoat = std::min({1.0, ours.narrow_share * mean / kGltfF0, least / kGltfF0});
+  lobes.clearcoat_roughness = LobeRoughness(lobes.roughness, mix, 1);
+  lobes.roughness = LobeRoughness(lobes.roughness, mix, 0);
+  for (double& f0 : lobes.f0) f0 -= lobes.clearcoat * kGltfF0;
+  return lobes;
+}
+
 std::string GlbOf(const ExportedMaterial& material, int threads) {
   const SvbrdfMaps& maps = material.maps;
+  const bool clearcoat = material.convention.lobes.two();
   float largest = static_cast<float>(kGltfF0);
   for (int c = 0; c < 3; ++c) {
     for (const float f0 : maps.plane(kSpecularR + c)) largest = std::max(largest, f0);
@@ -161,11 +211,12 @@ std::string GlbOf(const ExportedMaterial& material, int threads) {
     std::function<Image()> image;
     std::string png;
   };
-  std::array<Texture, 4> of_material = {
-      {{"basecolor", [&] { return BaseColor(material); }, {}},
-       {"occlusion_roughness_metallic", [&] { return OcclusionRoughnessMetallic(maps); }, {}},
-       {"normal", [&] { return Normal(maps); }, {}},
-       {"specularcolor", [&] { return SpecularColor(maps, largest); }, {}}}};
+  std::vector<Texture> of_material = {
+      {"basecolor", [&] { return BaseColor(material); }, {}},
+      {"occlusion_roughness_metallic", [&] { return OcclusionRoughnessMetallic(material); }, {}},
+      {"normal", [&] { return Normal(maps); }, {}},
+      {"specularcolor", [&] { return SpecularColor(material, largest); }, {}}};
+  if (clearcoat) of_material.push_back({"clearcoat", [&] { return Clearcoat(material); }, {}});
   ForEachPiece(static_cast<int>(of_material.size()), threads, [&](int i) {
     Texture& texture = of_material[static_cast<size_t>(i)];
     texture.png = EncodePng(texture.image());
@@ -178,9 +229,11 @@ std::string GlbOf(const ExportedMaterial& material, int threads) {
                       {"bufferView", buffer.Add(texture.png)}});
   }
   constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kRepeat = 10497;
+  Json extensions = {"KHR_materials_specular"};
+  if (clearcoat) extensions.push_back("KHR_materials_clearcoat");
   const Json json = {
       {"asset", {{"version", "2.0"}, {"generator", "Glint"}}},
-      {"extensionsUsed", {"KHR_materials_specular"}},
+      {"extensionsUsed", extensions},
       {"scene", 0},
       {"scenes", {{{"nodes", {0}}}}},
       {"nodes", {{{"mesh", 0}, {"name", material.name}}}},
@@ -190,7 +243,7 @@ std::string GlbOf(const ExportedMaterial& material, int threads) {
           {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}, {"TANGENT", 2}, {"TEXCOORD_0", 3}}},
             {"indices", 4},
             {"material", 0}}}}}}},
-      {"materials", {MaterialJson(material.name, largest)}},
+      {"materials", {MaterialJson(material.name, largest, clearcoat)}},
       {"samplers",
        {{{"magFilter", kLinear},
          {"minFilter", kLinearMipmapLinear},

@@ -5,6 +5,10 @@
 // may be any colour; metalness is 0 throughout and metals are dielectrics of high F0. Its diffuse
 // lobe is weighted by 1 − max(F); where Glint's is not (convention "diffuse=one"), base colour is
 // divided by 1 − max(F0), so that both agree at normal incidence as far as base colour can reach 1.
+//
+// Of two specular lobes (fitting/reflectance/convention.h) the narrow one is a clear coat
+// (KHR_materials_clearcoat), whose F0 is 0.04 times its strength: what a dielectric's narrow lobe
+// reflects; where it is more, or coloured, the rest stays with the wide one.
 #pragma once
 
 #include <array>
@@ -19,6 +23,14 @@ inline constexpr double kGltfF0 = 0.04;  // of glTF's default index of refractio
 // The file's bytes, the same for any number of threads. The plane lies in x and y about the origin
 // and looks along +z; metres.
 std::string GlbOf(const ExportedMaterial& material, int threads);
+
+// The texel's specular lobes there.
+struct GltfLobes {
+  std::array<double, 3> f0{};
+  double roughness = 0;
+  double clearcoat = 0, clearcoat_roughness = 0;  // strength 0: none
+};
+GltfLobes GltfLobesOf(const ExportedMaterial& material, size_t texel);
 
 // The texel's base colour there, linear, up to 1.
 std::array<double, 3> GltfBaseColor(const ExportedMaterial& material, size_t texel);

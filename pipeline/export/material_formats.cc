@@ -62,8 +62,13 @@ Rgb Layered(const Rgb& base, const Rgb& f0, double roughness, const DirectionPai
 }
 
 Rgb GltfBrdf(const ExportedMaterial& material, size_t texel, const DirectionPair& pair) {
-  return Layered(GltfBaseColor(material, texel), Specular(material, texel),
-                 material.maps.plane(kRoughness)[texel], pair, true);
+  const GltfLobes lobes = GltfLobesOf(material, texel);
+  Rgb brdf = Layered(GltfBaseColor(material, texel), lobes.f0, lobes.roughness, pair, true);
+  if (lobes.clearcoat == 0) return brdf;
+  const double coat = lobes.clearcoat * (kGltfF0 + (1 - kGltfF0) * SchlickWeight(pair.camera[2]));
+  const double lobe = SmithSpecular(pair, lobes.clearcoat_roughness);
+  for (double& f : brdf) f = (1 - coat) * f + coat * lobe;
+  return brdf;
 }
 
 Rgb UsdBrdf(const ExportedMaterial& material, size_t texel, const DirectionPair& pair) {

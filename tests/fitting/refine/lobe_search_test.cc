@@ -79,9 +79,7 @@ TEST(Refine, AVarnishedSampleHasItsTwoLobes) {
   EXPECT_NEAR(mean, 0.4, 0.03);
 }
 
-TEST(Refine, ASampleOfOneLobeKeepsIt) {
-  EXPECT_FALSE(Refined({}, {}).summary.lobes.two());
-}
+TEST(Refine, ASampleOfOneLobeKeepsIt) { EXPECT_FALSE(Refined({}, {}).summary.lobes.two()); }
 
 }  // namespace
 }  // namespace glint

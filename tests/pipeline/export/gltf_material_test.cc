@@ -115,6 +115,34 @@ TEST_F(GltfTest, TexturesSayWhatTheMapsSay) {
   }
 }
 
+// Of one lobe there is no coat; of two, base and coat reflect together what ours do at normal
+// incidence.
+TEST_F(GltfTest, ANarrowLobeIsAClearCoat) {
+  Read(GlbOf(test::MaterialOf(Maps()), 1));
+  EXPECT_FALSE(json_["materials"][0]["extensions"].contains("KHR_materials_clearcoat"));
+  ExportedMaterial two = test::MaterialOf(Maps());
+  two.convention.lobes = {0.5, 0.4};
+  Read(GlbOf(two, 1));
+  EXPECT_EQ(json_["extensionsUsed"].size(), 2u);
+  const Json& material = json_["materials"][0];
+  const Json& specular = material["extensions"]["KHR_materials_specular"];
+  const Json& coat = material["extensions"]["KHR_materials_clearcoat"];
+  for (const size_t texel : {size_t{3}, size_t{7}}) {
+    const double strength = Texel(coat["clearcoatTexture"], 0, texel);
+    EXPECT_GT(strength, 0.3);
+    for (int c = 0; c < 3; ++c) {
+      const double f0 = kGltfF0 * specular["specularColorFactor"][c].get<double>() *
+                        LinearFromSrgb(Texel(specular["specularColorTexture"], c, texel));
+      EXPECT_NEAR(f0 + kGltfF0 * strength, two.maps.plane(kSpecularR + c)[texel], 0.004);
+    }
+    const Json& base = material["pbrMetallicRoughness"];
+    const double wide = Texel(base["metallicRoughnessTexture"], 1, texel);
+    const double narrow = Texel(coat["clearcoatRoughnessTexture"], 1, texel);
+    EXPECT_NEAR(narrow / wide, 0.4, 0.01);
+    EXPECT_NEAR(wide * narrow, 0.35 * 0.35, 0.004);
+  }
+}
+
 TEST_F(GltfTest, TheSameMapsGiveTheSameBytes) {
   const auto once = GlbOf(test::MaterialOf(Maps()), 1);
   EXPECT_EQ(once, GlbOf(test::MaterialOf(Maps()), 3));

@@ -13,8 +13,8 @@ namespace {
 using test::UniformMaps;
 
 double MetalRoughnessError(const MetalRoughness& converted, const SvbrdfMaps& maps,
-                           DiffuseWeight weight) {
-  return ShadingErrors(maps, weight, {MetalRoughnessShading(converted, maps)}, 1)[0];
+                           const ReflectanceConvention& convention) {
+  return ShadingErrors(maps, convention, {MetalRoughnessShading(converted, maps)}, 1)[0];
 }
 
 // Two foils on card: a rough dielectric and a coloured metal, each with noise.
@@ -42,12 +42,12 @@ SvbrdfMaps Foils(int size) {
 TEST(MetalRoughnessTest, RecoversWhatItCanBe) {
   const auto plastic =
       ToMetalRoughness(UniformMaps({0, 0, 1, 0.8f, 0.5f, 0.2f, 0.04f, 0.04f, 0.04f, 0.4f}),
-                       DiffuseWeight::kOneMinusSpecular, {}, 1);
+                       {DiffuseWeight::kOneMinusSpecular}, {}, 1);
   EXPECT_NEAR(plastic.metallic[5], 0, 0.01);
   EXPECT_NEAR(plastic.ColorAt(5)[0], 0.8, 0.03);
   EXPECT_NEAR(plastic.ColorAt(5)[2], 0.2, 0.02);
   const auto gold = ToMetalRoughness(UniformMaps({0, 0, 1, 0, 0, 0, 0.9f, 0.7f, 0.3f, 0.3f}),
-                                     DiffuseWeight::kOne, {}, 1);
+                                     {DiffuseWeight::kOne}, {}, 1);
   EXPECT_NEAR(gold.metallic[5], 1, 0.02);
   EXPECT_NEAR(gold.ColorAt(5)[0], 0.9, 0.03);
   EXPECT_NEAR(gold.ColorAt(5)[2], 0.3, 0.03);
@@ -58,9 +58,9 @@ TEST(MetalRoughnessTest, AMetalKeepsItsLittleDiffuseLight) {
   for (const float diffuse : {0.007f, 0.1f}) {
     const SvbrdfMaps maps =
         UniformMaps({0, 0, 1, diffuse, diffuse, diffuse, 0.45f, 0.45f, 0.45f, 0.25f});
-    const auto found = ToMetalRoughness(maps, DiffuseWeight::kOneMinusSpecular, {}, 1);
+    const auto found = ToMetalRoughness(maps, {DiffuseWeight::kOneMinusSpecular}, {}, 1);
     EXPECT_LT(found.metallic[5], 1.0f);
-    EXPECT_LT(MetalRoughnessError(found, maps, DiffuseWeight::kOneMinusSpecular), 0.05);
+    EXPECT_LT(MetalRoughnessError(found, maps, {DiffuseWeight::kOneMinusSpecular}), 0.05);
   }
 }
 
@@ -72,7 +72,7 @@ TEST(MetalRoughnessTest, DarkDielectricsAreNoMetals) {
                                          0.03f, 0.003f, 0.003f, 0.006f, 0.4f};
   for (const auto& texel : {felt, wood, leather}) {
     const auto found =
-        ToMetalRoughness(UniformMaps(texel), DiffuseWeight::kOneMinusSpecular, {}, 1);
+        ToMetalRoughness(UniformMaps(texel), {DiffuseWeight::kOneMinusSpecular}, {}, 1);
     EXPECT_LT(found.metallic[5], 0.05f) << texel[6];
   }
 }
@@ -82,7 +82,7 @@ TEST(MetalRoughnessTest, DarkDielectricsAreNoMetals) {
 TEST(MetalRoughnessTest, ColouredFoilIsMetal) {
   const auto found =
       ToMetalRoughness(UniformMaps({0, 0, 1, 0.004f, 0.004f, 0.004f, 0.21f, 0.19f, 0.08f, 0.1f}),
-                       DiffuseWeight::kOneMinusSpecular, {}, 1);
+                       {DiffuseWeight::kOneMinusSpecular}, {}, 1);
   EXPECT_GT(found.metallic[5], 0.7f);
 }
 
@@ -93,14 +93,14 @@ TEST(MetalRoughnessTest, BetweenTheKindsTheShareOfMetalsDecides) {
   MetalRoughnessOptions rare;
   rare.metal_share = 0.01;
   const auto metallic = [&](const MetalRoughnessOptions& options) {
-    return ToMetalRoughness(maps, DiffuseWeight::kOne, options, 1).metallic[5];
+    return ToMetalRoughness(maps, {DiffuseWeight::kOne}, options, 1).metallic[5];
   };
   EXPECT_GT(metallic(possible), metallic(rare) + 0.3f);
 }
 
 TEST(MetalRoughnessTest, MetalnessIsOfSubstancesNotOfTexels) {
   const SvbrdfMaps maps = Foils(48);
-  const auto found = ToMetalRoughness(maps, DiffuseWeight::kOne, {}, 2);
+  const auto found = ToMetalRoughness(maps, {DiffuseWeight::kOne}, {}, 2);
   int wrong = 0;
   for (int row = 0; row < 48; ++row) {
     for (int column = 0; column < 48; ++column) {
@@ -113,9 +113,9 @@ TEST(MetalRoughnessTest, MetalnessIsOfSubstancesNotOfTexels) {
   alone.radius = 0;
   alone.blend_cost = 0;
   // Sharing costs little of what single texels could be.
-  EXPECT_LT(MetalRoughnessError(found, maps, DiffuseWeight::kOne),
-            1.2 * MetalRoughnessError(ToMetalRoughness(maps, DiffuseWeight::kOne, alone, 1), maps,
-                                      DiffuseWeight::kOne));
+  EXPECT_LT(MetalRoughnessError(found, maps, {DiffuseWeight::kOne}),
+            1.2 * MetalRoughnessError(ToMetalRoughness(maps, {DiffuseWeight::kOne}, alone, 1), maps,
+                                      {DiffuseWeight::kOne}));
 }
 
 // No base colour nearby explains it better.
@@ -123,15 +123,15 @@ TEST(MetalRoughnessTest, IsTheBestOfItsNeighbourhood) {
   const SvbrdfMaps maps = UniformMaps({0, 0, 1, 0.3f, 0.2f, 0.1f, 0.12f, 0.1f, 0.08f, 0.35f});
   MetalRoughnessOptions options;
   options.blend_cost = 0;
-  const MetalRoughness found = ToMetalRoughness(maps, DiffuseWeight::kOne, options, 1);
-  const double error = MetalRoughnessError(found, maps, DiffuseWeight::kOne);
+  const MetalRoughness found = ToMetalRoughness(maps, {DiffuseWeight::kOne}, options, 1);
+  const double error = MetalRoughnessError(found, maps, {DiffuseWeight::kOne});
   for (const float factor : {0.8f, 1.25f}) {
     MetalRoughness other = found;
     for (float& base : other.base_color) base = std::min(1.0f, base * factor);
-    EXPECT_GT(MetalRoughnessError(other, maps, DiffuseWeight::kOne), error);
+    EXPECT_GT(MetalRoughnessError(other, maps, {DiffuseWeight::kOne}), error);
     other = found;
     for (float& metallic : other.metallic) metallic = std::min(1.0f, metallic * factor * factor);
-    EXPECT_GT(MetalRoughnessError(other, maps, DiffuseWeight::kOne), 0.98 * error);
+    EXPECT_GT(MetalRoughnessError(other, maps, {DiffuseWeight::kOne}), 0.98 * error);
   }
 }
 
@@ -150,8 +150,8 @@ TEST(MetalRoughnessTest, MirroredMapsAreConvertedAlike) {
   }
   MetalRoughnessOptions options;
   options.radius = 64;
-  const auto found = ToMetalRoughness(maps, DiffuseWeight::kOne, options, 1);
-  const auto of_mirrored = ToMetalRoughness(mirrored, DiffuseWeight::kOne, options, 1);
+  const auto found = ToMetalRoughness(maps, {DiffuseWeight::kOne}, options, 1);
+  const auto of_mirrored = ToMetalRoughness(mirrored, {DiffuseWeight::kOne}, options, 1);
   for (int row = 0; row < kFoilsHeight; ++row) {
     for (int column = 0; column < kFoilsWidth; ++column) {
       const size_t i = static_cast<size_t>(row) * kFoilsWidth + static_cast<size_t>(column);
@@ -164,17 +164,17 @@ TEST(MetalRoughnessTest, MirroredMapsAreConvertedAlike) {
 
 TEST(MetalRoughnessTest, DoesNotDependOnTheNumberOfThreads) {
   const SvbrdfMaps maps = Foils(24);
-  const auto one = ToMetalRoughness(maps, DiffuseWeight::kOne, {}, 1);
-  const auto three = ToMetalRoughness(maps, DiffuseWeight::kOne, {}, 3);
+  const auto one = ToMetalRoughness(maps, {DiffuseWeight::kOne}, {}, 1);
+  const auto three = ToMetalRoughness(maps, {DiffuseWeight::kOne}, {}, 3);
   EXPECT_EQ(one.base_color, three.base_color);
   EXPECT_EQ(one.metallic, three.metallic);
 }
 
 TEST(MetalRoughnessTest, RowsAreThoseOfTheWhole) {
   const SvbrdfMaps maps = Foils(24);
-  const auto whole = ToMetalRoughness(maps, DiffuseWeight::kOne, {}, 1);
+  const auto whole = ToMetalRoughness(maps, {DiffuseWeight::kOne}, {}, 1);
   const MetalRoughnessOptions options;
-  MetalConverter converter(DiffuseWeight::kOne, options, 2);
+  MetalConverter converter({DiffuseWeight::kOne}, options, 2);
   for (int first = 0; first < 24; first += 5) {
     const int rows = std::min(5, 24 - first);
     const int above = std::min(first, options.radius);
