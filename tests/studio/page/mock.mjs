@@ -89,7 +89,7 @@ const options = {
 export class Mock {
   constructor(app, { empty = false, judge_ms = 500, run_ms = 400 } = {}) {
     const now = Math.floor(Date.now() / 1000);
-    Object.assign(this, { app, judge_ms, run_ms, drop: 0, phones: new Map(), clients: new Set(), sockets: new Set(), next: 1, log: [] });
+    Object.assign(this, { app, judge_ms, run_ms, broken: false, phones: new Map(), clients: new Set(), sockets: new Set(), next: 1, log: [] });
     this.studio = { version: '0.1.0', folder: '/home/you/Glint', free_bytes: 120e9, read_only: false, lan: false };
     this.captures = new Map((empty ? [] : example(now)).map((c) => [c.id, c]));
     this.boards = empty ? [] : [
@@ -127,8 +127,7 @@ export class Mock {
       const chunks = [];
       for await (const chunk of request) {
         chunks.push(chunk);
-        if (this.drop > 0 && url.pathname.endsWith('/photographs') && request.method === 'POST') {
-          --this.drop;
+        if (this.broken && url.pathname.endsWith('/photographs') && request.method === 'POST') {
           request.socket.destroy();
           return;
         }
@@ -172,7 +171,7 @@ export class Mock {
     }
     if (action === 'phone' && method === 'POST') return send(this.openPhone(capture, request.headers.host));
     if (action === 'phone' && method === 'DELETE') {
-      this.phones.clear();
+      this.closePhone(capture);
       return send({});
     }
     throw new Refusal(404, 'No such request.');
@@ -336,10 +335,14 @@ export class Mock {
 
   openPhone(c, host) {
     const token = `demo${this.next++}${Math.random().toString(36).slice(2, 12)}`;
-    this.phones.clear();
+    this.closePhone(c);
     this.phones.set(token, c);
     const url = `http://${host}/p/${token}`;
     return { url, qr_svg: pictures.code(url), expires_s: 900 };
+  }
+
+  closePhone(capture) {
+    for (const [token, c] of this.phones) if (c === capture) this.phones.delete(token);
   }
 
   routePhone(method, parts, url, request, body, send, response) {

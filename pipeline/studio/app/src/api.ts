@@ -104,6 +104,7 @@ export type SavedOptions = Record<string, Record<string, OptionValue>>;
 
 export interface Capture extends Omit<CaptureRow, 'photographs'> {
   folder: string;
+  board?: string | null;
   photographs: Photograph[];
   advice: Advice;
   options: SavedOptions;
@@ -160,6 +161,7 @@ export interface SentPhotograph {
 
 export interface PhoneState {
   name: string;
+  kind?: Kind;
   advice: Advice;
   photographs: Photograph[];
   expires_s?: number;

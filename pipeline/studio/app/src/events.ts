@@ -8,6 +8,7 @@ export class Events {
   private readonly watchers = new Set<(connected: boolean) => void>();
   private source: EventSource | null = null;
   private timer = 0;
+  private closed = false;
   connected = true;
 
   constructor(private readonly path: string) {
@@ -28,7 +29,15 @@ export class Events {
     return () => this.watchers.delete(watcher);
   }
 
+  // For good: the address is no longer served.
+  close(): void {
+    this.closed = true;
+    clearTimeout(this.timer);
+    this.source?.close();
+  }
+
   private open(): void {
+    if (this.closed) return;
     clearTimeout(this.timer);
     this.source?.close();
     const source = new EventSource(this.path);
@@ -50,7 +59,7 @@ export class Events {
     source.onerror = () => {
       this.report(false);
       // A refused connection is closed for good by the browser; we go on asking.
-      if (source.readyState === EventSource.CLOSED) this.timer = window.setTimeout(() => this.open(), 3000);
+      if (source.readyState === EventSource.CLOSED && !this.closed) this.timer = window.setTimeout(() => this.open(), 3000);
     };
   }
 

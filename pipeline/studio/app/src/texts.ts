@@ -1,6 +1,7 @@
 // Every English text of the pages. What the programs say (reasons, remedies, advice, meanings) comes from the server.
 
-const count = (n: number, one: string, many = `${one}s`) => `${n} ${n === 1 ? one : many}`;
+const space = '\u00a0'; // between a number and what it counts, where lines must not break
+const count = (n: number, one: string, many = `${one}s`) => `${n}${space}${n === 1 ? one : many}`;
 const photographs = (n: number) => count(n, 'photograph');
 
 export const texts = {
@@ -12,7 +13,7 @@ export const texts = {
   retry: 'Try again',
   photographs,
   mm: (n: number) => `${n} mm`,
-  size: (w: number, h: number) => `${w} × ${h} mm`,
+  size: (w: number, h: number) => `${w}${space}×${space}${h}${space}mm`,
 
   errors: {
     noAnswer: 'Glint Studio does not answer.',
@@ -96,15 +97,13 @@ export const texts = {
     pictureWidthHelp: 'Hold the phone straight above the sample and measure what lies between the left and the right edge of the picture.',
     board: 'Board',
     boardHelp: 'Print it at 100 % on stiff, matt paper and cut out the window. The sample lies in it.',
-    boardKept: 'Boards you have',
-    boardChoose: 'Use this board',
-    boardNew: 'Print a new board',
-    boardLater: 'Choose a board later',
+    boardNew: 'A new board',
+    boardNewText: 'Made for the size of this sample, as a PDF to print. It is kept for other samples.',
     paper: 'Paper',
     papers: ['A4', 'A3', 'A5', 'Letter', 'Legal', 'Tabloid'],
-    makeBoard: 'Make this board',
+    makeBoard: 'Make it now',
     boardMade: (name: string) => `Board ${name} is ready to print`,
-    printPdf: 'Open the PDF to print',
+    printPdf: 'Open the board’s PDF',
     window: (w: number, h: number) => `window ${Math.round(w)} × ${Math.round(h)} mm`,
     ruler: 'Length of the printed ruler (mm)',
     rulerHelp: (mm: number) =>
@@ -140,6 +139,7 @@ export const texts = {
     list: (n: number, left: number) => `${photographs(n)}${left ? `, ${left} left out` : ''}`,
     none: 'No photographs yet',
     noneText: 'Flash on, room dark, the whole board in the picture. Start with one from straight above; the drawing then says where to hold the phone next.',
+    noneTextNoBoard: 'Flash on, room dark, the sample filling the picture.',
     more: 'Everything the capture lacks',
     states: { waiting: 'Waiting', checking: 'Checking', good: 'Good', weak: 'Weak', bad: 'Bad' },
     sending: (percent: number) => `Sending, ${percent} %`,
@@ -150,11 +150,12 @@ export const texts = {
     sendAgain: 'Send again',
     progress: (done: number, all: number) => `${done} of ${all} sent`,
     allSent: (n: number) => `${photographs(n)} sent`,
+    printFirst: 'Print the board at 100 % on stiff, matt paper, cut out its window, and lay the sample in it.',
     leftOut: 'Left out',
     leaveOut: 'Leave out',
     takeBack: 'Take back in',
-    leaveOutOf: (name: string) => `Leave out ${name}`,
-    takeBackOf: (name: string) => `Take ${name} back in`,
+    leaveOutOf: (name: string) => `Leave out: ${name}`,
+    takeBackOf: (name: string) => `Take back in: ${name}`,
     sameAs: (name: string) => `The same picture as ${name}`,
     isLeftOut: (name: string) => `${name} is left out`,
     isTakenBack: (name: string) => `${name} is taken back in`,
@@ -167,7 +168,6 @@ export const texts = {
     arrived: (name: string, verdict: string) => `${name}: ${verdict}`,
     tooLarge: (mb: number) => `The file is larger than ${mb} MB.`,
     empty: 'The file is empty.',
-    chooseOne: 'This kind of capture takes one photograph, from straight above.',
     showBad: 'Only those with a problem',
   },
 
@@ -237,7 +237,7 @@ export const texts = {
     noneFound: 'No option matches.',
     byDefault: (value: string) => `default: ${value}`,
     reset: 'Back to the default',
-    resetOf: (name: string) => `${name}: back to the default`,
+    resetOf: (name: string) => `Back to the default: ${name}`,
     changed: (n: number) => `${n} changed`,
     saved: 'Options are saved',
     on: 'on',
@@ -291,7 +291,8 @@ export const texts = {
     take: 'Take a photograph',
     gallery: 'Send from the gallery',
     reminderTitle: 'Before you start',
-    reminder: ['Flash on (not automatic)', 'HDR and night mode off', 'Room as dark as possible', 'The whole board in the picture, 20 to 40 cm away', 'Keep zoom and focus as they are'],
+    reminder: ['Flash on (not automatic)', 'HDR and night mode off', 'Room as dark as possible', 'Keep zoom and focus as they are'],
+    reminderBoard: 'The whole board in the picture, 20 to 40 cm away',
     understood: 'Understood',
     flash: 'Flash on?',
     next: 'Next',

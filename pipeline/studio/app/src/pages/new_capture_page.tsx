@@ -31,6 +31,7 @@ export function NewCapturePage() {
   const [height_mm, setHeightMm] = useState('0');
   const [pictureWidth, setPictureWidth] = useState('120');
   const [chosen, setChosen] = useState<string | null | undefined>(undefined);
+  const [paper, setPaper] = useState('A4');
   const [busy, setBusy] = useState(false);
   const [failure, setFailure] = useState<Failure | null>(null);
 
@@ -54,12 +55,19 @@ export function NewCapturePage() {
     if (!valid || busy) return;
     setBusy(true);
     try {
+      let boardId = board?.id ?? null;
+      if (kind === 'board' && boardId === null) {
+        const made = await api.makeBoard(paper, size);
+        replaceBoard(made);
+        setChosen(made.id); // should the capture be refused, the board is there already
+        boardId = made.id;
+      }
       const { id } = await api.makeCapture({
         name: title.trim(),
         kind,
         size_mm: single ? null : size,
         height_mm: kind === 'board' && thickness === 'given' ? Number(height_mm) || 0 : 'auto',
-        board: board?.id ?? null,
+        board: boardId,
         ...(single ? { picture_width_mm: Number(pictureWidth) } : {}),
       });
       go(links.step(id, 'photographs'));
@@ -122,13 +130,14 @@ export function NewCapturePage() {
               </fieldset>
             )}
           </fieldset>
-          {kind === 'board' && <BoardChooser boards={boards} chosen={chosen ?? null} onChoose={setChosen} onBoard={replaceBoard} />}
+          {kind === 'board' && <BoardChooser boards={boards} chosen={chosen ?? null} onChoose={setChosen} onBoard={replaceBoard} paper={paper} onPaper={setPaper} size={valid ? size : null} />}
         </div>
         <div class="stack sticky">
           <div class="panel">
             <SampleDrawing
               size={drawn}
               board={board}
+              paper={kind === 'board' ? paper : null}
               height_mm={kind === 'board' && thickness === 'given' ? Number(height_mm) || 0 : null}
               pictureWidth_mm={single ? Math.min(Math.max(Number(pictureWidth) || 0, 1), 2000) : null}
             />

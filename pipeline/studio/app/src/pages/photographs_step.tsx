@@ -4,8 +4,8 @@ import { announce } from '../announce';
 import { api, type Failure, type Photograph } from '../api';
 import { AdvicePanel } from '../parts/advice';
 import { DropArea } from '../parts/drop_area';
-import { PhoneIcon } from '../parts/icons';
-import { FailureNotice } from '../parts/notice';
+import { OutIcon, PhoneIcon } from '../parts/icons';
+import { FailureNotice, Notice } from '../parts/notice';
 import { PhonePanel } from '../parts/phone_panel';
 import { PhotographList } from '../parts/photograph_list';
 import { UploadProgress } from '../parts/upload_progress';
@@ -71,7 +71,16 @@ export function PhotographsStep({ capture, reload, set }: StepProps) {
             </label>
           )}
         </div>
-        {photographs.length === 0 && uploads.length === 0 && <p class="quiet">{t.noneText}</p>}
+        {photographs.length === 0 && uploads.length === 0 && (
+          <div class="stack start">
+            {capture.board && (
+              <Notice title={t.printFirst}>
+                <a class="button small" href={api.boardPdf(capture.board)} target="_blank" rel="noopener"><OutIcon />{texts.create.printPdf}</a>
+              </Notice>
+            )}
+            <p class="quiet">{capture.kind === 'board' ? t.noneText : t.noneTextNoBoard}</p>
+          </div>
+        )}
         <PhotographList photographs={shown} queue={queue} uploads={uploads} onLeaveOut={leaveOut} onSelect={setSelected} />
       </div>
       <div class="stack sticky first-on-phone">

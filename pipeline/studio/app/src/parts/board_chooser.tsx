@@ -1,7 +1,7 @@
 // The printed board of a capture: one that was kept, or a new one made for a paper size and printed from its PDF.
 import { useId, useState } from 'preact/hooks';
 import { announce } from '../announce';
-import { api, type Board, type Failure } from '../api';
+import { api, type Board, type Failure, type Size } from '../api';
 import { texts } from '../texts';
 import { OutIcon } from './icons';
 import { NumberField } from './field';
@@ -10,7 +10,8 @@ import { FailureNotice } from './notice';
 const t = texts.create;
 
 function Ruler({ board, onChange }: { board: Board; onChange: (board: Board) => void }) {
-  const [value, setValue] = useState('');
+  const measured = board.ruler_measured_mm ? String(board.ruler_measured_mm) : '';
+  const [value, setValue] = useState(measured);
   const [failure, setFailure] = useState<Failure | null>(null);
   if (board.ruler_mm === null) return null;
   const save = async () => {
@@ -19,7 +20,6 @@ function Ruler({ board, onChange }: { board: Board; onChange: (board: Board) => 
     try {
       onChange(await api.measureBoard(board.id, length));
       setFailure(null);
-      setValue('');
       announce(t.rulerSaved);
     } catch (error) {
       setFailure(error as Failure);
@@ -28,7 +28,7 @@ function Ruler({ board, onChange }: { board: Board; onChange: (board: Board) => 
   return (
     <div class="ruler">
       <NumberField label={t.ruler} value={value} onInput={setValue} help={t.rulerHelp(board.ruler_mm)} min={1} max={2000} />
-      <button type="button" class="button" disabled={!(Number(value) > 0)} onClick={save}>{t.rulerSave}</button>
+      <button type="button" class="button" disabled={!(Number(value) > 0) || value === measured} onClick={save}>{t.rulerSave}</button>
       {failure && <FailureNotice failure={failure} />}
     </div>
   );
@@ -36,25 +36,26 @@ function Ruler({ board, onChange }: { board: Board; onChange: (board: Board) => 
 
 interface ChooserProps {
   boards: Board[];
-  chosen: string | null;
+  chosen: string | null; // null: a new one, made with the capture or before it
   onChoose: (id: string | null) => void;
   onBoard: (board: Board) => void;
+  paper: string;
+  onPaper: (paper: string) => void;
+  size: Size | null; // that the window must hold
 }
 
-export function BoardChooser({ boards, chosen, onChoose, onBoard }: ChooserProps) {
+export function BoardChooser({ boards, chosen, onChoose, onBoard, paper, onPaper, size }: ChooserProps) {
   const group = useId();
-  const [paper, setPaper] = useState('A4');
-  const [adding, setAdding] = useState(false);
   const [busy, setBusy] = useState(false);
   const [failure, setFailure] = useState<Failure | null>(null);
   const board = boards.find((b) => b.id === chosen) ?? null;
   const make = async () => {
+    if (!size) return;
     setBusy(true);
     try {
-      const made = await api.makeBoard(paper);
+      const made = await api.makeBoard(paper, size);
       onBoard(made);
       onChoose(made.id);
-      setAdding(false);
       setFailure(null);
       announce(t.boardMade(made.name));
     } catch (error) {
@@ -62,40 +63,42 @@ export function BoardChooser({ boards, chosen, onChoose, onBoard }: ChooserProps
     }
     setBusy(false);
   };
-  const printing = adding || boards.length === 0;
   return (
     <fieldset class="panel">
       <legend>{t.board}</legend>
       <p class="quiet">{t.boardHelp}</p>
-      {boards.length > 0 && (
-        <div class="choices" role="radiogroup" aria-label={t.boardKept}>
-          {boards.map((b) => (
-            <label class="choice">
-              <input type="radio" name={group} checked={b.id === chosen} onChange={() => onChoose(b.id)} />
-              <span>
-                <b>{b.name}</b>
-                <small>
-                  {[b.paper, t.window(b.window_mm[0], b.window_mm[1]), b.ruler_measured_mm ? t.rulerIs(b.ruler_measured_mm) : null].filter(Boolean).join(' · ')}
-                </small>
-              </span>
-            </label>
-          ))}
-        </div>
-      )}
-      {printing ? (
+      <div class="choices">
+        {boards.map((b) => (
+          <label class="choice" key={b.id}>
+            <input type="radio" name={group} checked={b.id === chosen} onChange={() => onChoose(b.id)} />
+            <span>
+              <b>{b.name}</b>
+              <small>
+                {[b.paper, t.window(b.window_mm[0], b.window_mm[1]), b.ruler_measured_mm ? t.rulerIs(b.ruler_measured_mm) : null].filter(Boolean).join(' · ')}
+              </small>
+            </span>
+          </label>
+        ))}
+        <label class="choice">
+          <input type="radio" name={group} checked={board === null} onChange={() => onChoose(null)} />
+          <span>
+            <b>{t.boardNew}</b>
+            <small>{t.boardNewText}</small>
+          </span>
+        </label>
+      </div>
+      {board === null && (
         <div class="new-board">
           <label class="field">
             <span>{t.paper}</span>
-            <select value={paper} onChange={(event) => setPaper(event.currentTarget.value)}>
+            <select value={paper} onChange={(event) => onPaper(event.currentTarget.value)}>
               {t.papers.map((name) => (
                 <option value={name}>{name}</option>
               ))}
             </select>
           </label>
-          <button type="button" class="button" disabled={busy} onClick={make}>{t.makeBoard}</button>
+          <button type="button" class="button" disabled={busy || !size} onClick={make}>{t.makeBoard}</button>
         </div>
-      ) : (
-        <button type="button" class="link" onClick={() => setAdding(true)}>{t.boardNew}</button>
       )}
       {failure && <FailureNotice failure={failure} />}
       {board && (

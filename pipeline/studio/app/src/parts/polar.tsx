@@ -53,7 +53,7 @@ export function Polar({ photographs, target, selected }: PolarProps) {
   const [tx, ty] = target ? point(target) : [0, 0];
   return (
     <figure class="polar">
-      <svg viewBox="-128 -118 256 236" role="img" aria-label={label}>
+      <svg viewBox="-158 -126 316 250" role="img" aria-label={label}>
         <circle class="polar-ground" r={radius} />
         {[...covered].map((index) => (
           <path class="polar-covered" d={sector(index)} />
@@ -78,7 +78,7 @@ export function Polar({ photographs, target, selected }: PolarProps) {
           </text>
         ))}
         <text class="polar-side" y={-105} text-anchor="middle">{texts.polar.sides.top}</text>
-        <text class="polar-side" y={114} text-anchor="middle">{texts.polar.sides.bottom}</text>
+        <text class="polar-side" y={118} text-anchor="middle">{texts.polar.sides.bottom}</text>
         <text class="polar-side" x={104} y={3.5}>{texts.polar.sides.right}</text>
         <text class="polar-side" x={-104} y={3.5} text-anchor="end">{texts.polar.sides.left}</text>
         {seen.map((photograph) => {

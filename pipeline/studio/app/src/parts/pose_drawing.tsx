@@ -6,12 +6,17 @@ import { texts } from '../texts';
 
 type Point = [number, number, number]; // x right, y away from the photographer, z up
 
-const elevation = (48 * Math.PI) / 180; // of the eye above the table
-const distance = 1.75; // of the phone, in sides of the sample
-const unit = 62; // pixels of the drawing
+const elevation = (27 * Math.PI) / 180; // of the eye above the table
+const yaw = (24 * Math.PI) / 180; // the eye stands a little to the right, so that a tilt toward it shows
+const distance = 1.95; // of the phone, in sides of the sample
+const arcRadius = 1.3;
+const unit = 66; // pixels of the drawing
+const [cosYaw, sinYaw] = [Math.cos(yaw), Math.sin(yaw)];
+const toEye: Point = [Math.cos(elevation) * sinYaw, -Math.cos(elevation) * cosYaw, Math.sin(elevation)];
 
 function project([x, y, z]: Point): [number, number] {
-  return [unit * x, -unit * (y * Math.sin(elevation) + z * Math.cos(elevation))];
+  const [u, v] = [x * cosYaw + y * sinYaw, y * cosYaw - x * sinYaw];
+  return [unit * u, -unit * (v * Math.sin(elevation) + z * Math.cos(elevation))];
 }
 
 const path = (points: Point[]) => `M${points.map((p) => project(p).map((v) => v.toFixed(1)).join(' ')).join('L')}Z`;
@@ -56,37 +61,34 @@ export function poseSentence(target: Direction): string {
 }
 
 export function PoseDrawing({ target }: { target: Direction }) {
-  const side = sideOf(target);
+  const tilted = sideOf(target) !== null;
   const d = toward(target);
   const { right, up } = axes(d);
   const centre: Point = [distance * d[0], distance * d[1], distance * d[2]];
-  const lens = combine(centre, [-0.12, right], [0.3, up]);
-  const middle = toward({ ...target, tilt_deg: target.tilt_deg / 2 });
-  const [labelX, labelY] = project([1.28 * middle[0], 1.28 * middle[1], 1.28 * middle[2]]);
-  const [cx, cy] = project(centre);
-  const [zx, zy] = project([0, 0, 1.55]);
+  const seesBack = d[0] * toEye[0] + d[1] * toEye[1] + d[2] * toEye[2] < 0;
+  const [lensX, lensY] = project(combine(centre, [-0.13, right], [0.33, up]));
+  const [cx, cy] = project(centre).map((v) => v.toFixed(1));
+  const leansRight = project(d)[0] >= 0;
+  const labelY = project([0, 0, arcRadius])[1] + 5;
+  const [frontX, frontY] = project([0, -1.02, 0]);
   return (
     <figure class="pose">
-      <svg viewBox="-128 -150 256 236" role="img" aria-label={texts.pose.label(poseSentence(target))}>
-        <path class="pose-board" d={path(square(0.92))} />
-        <path class="pose-board-line" d={path(square(0.72))} />
-        <path class="pose-sample" d={path(square(0.5))} />
-        {square(0.5).map((corner) => {
-          const [x, y] = project(corner);
-          return <path class="pose-beam" d={`M${cx} ${cy}L${x.toFixed(1)} ${y.toFixed(1)}`} />;
-        })}
-        {side !== null && <path class="pose-vertical" d={`M0 0L${zx} ${zy}`} />}
-        <path class="pose-axis" d={`M0 0L${cx.toFixed(1)} ${cy.toFixed(1)}`} />
-        {side !== null && <path class="pose-arc" d={arc(target, 1.05)} />}
-        <path class="pose-phone" d={path(rectangle(centre, right, up, 0.24, 0.48))} />
-        <path class="pose-screen" d={path(rectangle(centre, right, up, 0.19, 0.4))} />
-        <circle class="pose-lens" cx={project(lens)[0]} cy={project(lens)[1]} r="3" />
-        {side !== null && (
-          <text class="pose-degree" x={labelX} y={labelY} text-anchor={d[0] < -0.1 ? 'end' : d[0] > 0.1 ? 'start' : 'middle'}>
+      <svg viewBox="-128 -142 256 196" role="img" aria-label={texts.pose.label(poseSentence(target))}>
+        <path class="pose-board" d={path(square(1))} />
+        <path class="pose-board-line" d={path(square(0.8))} />
+        <path class="pose-sample" d={path(square(0.56))} />
+        <path class="pose-light" d={square(0.56).map((corner) => `M${cx} ${cy}L${project(corner).map((v) => v.toFixed(1)).join(' ')}`).join('')} />
+        {tilted && <path class="pose-vertical" d={`M0 0L${project([0, 0, 2.05]).join(' ')}`} />}
+        <path class="pose-axis" d={`M0 0L${cx} ${cy}`} />
+        {tilted && <path class="pose-arc" d={arc(target, arcRadius)} />}
+        <path class="pose-phone" d={path(rectangle(centre, right, up, 0.25, 0.5))} />
+        {seesBack ? <circle class="pose-lens" cx={lensX} cy={lensY} r="3.5" /> : <path class="pose-screen" d={path(rectangle(centre, right, up, 0.21, 0.44))} />}
+        {tilted && (
+          <text class="pose-degree" x={leansRight ? -7 : 7} y={labelY} text-anchor={leansRight ? 'end' : 'start'}>
             {Math.round(target.tilt_deg)}°
           </text>
         )}
-        <text class="polar-side" y={project([0, -0.92, 0])[1] + 16} text-anchor="middle">{texts.polar.sides.bottom}</text>
+        <text class="polar-side" x={frontX - 4} y={frontY + 13} text-anchor="middle">{texts.polar.sides.bottom}</text>
       </svg>
     </figure>
   );

@@ -7,6 +7,7 @@ const t = texts.create;
 interface DrawingProps {
   size: Size;
   board: Board | null;
+  paper: string | null; // of a board that is still to be made
   height_mm: number | null; // of the surface above the board; null: unknown
   pictureWidth_mm: number | null; // set for one photograph without a board
 }
@@ -68,8 +69,8 @@ function SideView({ size, board, height_mm, scale }: { size: Size; board: Board 
   );
 }
 
-export function SampleDrawing({ size, board, height_mm, pictureWidth_mm }: DrawingProps) {
-  const sheet: Size | null = board ? (papers_mm[board.paper] ?? [board.squares[0] * board.square_mm, board.squares[1] * board.square_mm]) : null;
+export function SampleDrawing({ size, board, paper, height_mm, pictureWidth_mm }: DrawingProps) {
+  const sheet: Size | null = board ? (papers_mm[board.paper] ?? [board.squares[0] * board.square_mm, board.squares[1] * board.square_mm]) : (papers_mm[paper ?? ''] ?? null);
   const picture: Size | null = pictureWidth_mm === null ? null : [pictureWidth_mm, 0.75 * pictureWidth_mm];
   const extent: Size = [
     Math.max(size[0], sheet?.[0] ?? 0, picture?.[0] ?? 0),
@@ -79,7 +80,7 @@ export function SampleDrawing({ size, board, height_mm, pictureWidth_mm }: Drawi
   const [w, h] = [size[0] * scale, size[1] * scale];
   const label = picture
     ? t.drawingSingle(pictureWidth_mm!)
-    : t.drawing(size[0], size[1], height_mm) + (board ? t.drawingOnBoard(board.paper) : '');
+    : t.drawing(size[0], size[1], height_mm) + (board || paper ? t.drawingOnBoard(board?.paper ?? paper!) : '');
   return (
     <figure class="sample-drawing">
       <svg viewBox={`0 0 ${width} ${planHeight + sideHeight + 16}`} role="img" aria-label={label}>

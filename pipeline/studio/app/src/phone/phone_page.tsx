@@ -1,5 +1,5 @@
 // Takes photographs with the phone's camera or from its gallery, sends them, and says what to shoot next.
-import { useEffect, useMemo } from 'preact/hooks';
+import { useContext, useEffect, useMemo } from 'preact/hooks';
 import { Announcer } from '../announce';
 import { api } from '../api';
 import { Events } from '../events';
@@ -21,17 +21,21 @@ const gone = (status: number) => status === 401 || status === 403 || status === 
 function Photographs({ base }: { base: string }) {
   const { data, failure, reload } = useLive(() => api.phoneState(base), () => true, base);
   const { queue, uploads } = useUploads(`${base}/photographs`);
+  const events = useContext(EventsContext);
+  const expired = failure !== null && gone(failure.status);
   useEffect(() => {
+    if (expired) return events?.close();
     const timer = setInterval(() => document.visibilityState === 'visible' && reload(), poll_ms);
     return () => clearInterval(timer);
-  }, [reload]);
+  }, [reload, expired]);
   useEffect(() => {
     if (data) document.title = data.name;
   }, [data?.name]);
-  if (failure && gone(failure.status)) {
+  if (expired) {
     return (
       <main id="content" class="phone">
-        <Notice tone="error" urgent title={t.expiredTitle}><p>{t.expired}</p></Notice>
+        <h1>{t.title}</h1>
+        <Notice tone="error" urgent title={<b>{t.expiredTitle}</b>}><p>{t.expired}</p></Notice>
       </main>
     );
   }
@@ -40,7 +44,7 @@ function Photographs({ base }: { base: string }) {
   return (
     <main id="content" class="phone">
       <h1>{data?.name ?? t.title}</h1>
-      <Reminder />
+      <Reminder board={!data || !data.kind || data.kind === 'board'} />
       {offline ? <Notice tone="warning" title={t.offline} /> : failure && <FailureNotice failure={failure} retry={reload} />}
       {data && <AdvicePanel advice={data.advice} photographs={data.photographs} compact />}
       <section class="phone-list" aria-labelledby="sent-title">

@@ -6,7 +6,7 @@ import { texts } from '../texts';
 const t = texts.phone;
 const key = 'glint-reminder';
 
-export function Reminder() {
+export function Reminder({ board }: { board: boolean }) {
   const [open, setOpen] = useState(() => sessionStorage.getItem(key) === null);
   if (!open) {
     return (
@@ -23,7 +23,7 @@ export function Reminder() {
     <section class="panel reminder" aria-labelledby="reminder-title">
       <h2 id="reminder-title" class="with-icon"><FlashIcon />{t.reminderTitle}</h2>
       <ul>
-        {t.reminder.map((line) => (
+        {[...t.reminder, ...(board ? [t.reminderBoard] : [])].map((line) => (
           <li>{line}</li>
         ))}
       </ul>

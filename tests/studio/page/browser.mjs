@@ -1,0 +1,72 @@
+// What the page's tests share: the browser, a page whose console is listened to, axe, verdicts.
+import fs from 'node:fs';
+import { createRequire } from 'node:module';
+import path from 'node:path';
+import { chromium } from 'playwright-core';
+
+const axe = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
+
+export const shapes = [390, 1400].flatMap((width) => ['light', 'dark'].map((scheme) => ({ width, height: width < 600 ? 844 : 950, scheme })));
+
+export const launch = () =>
+  chromium.launch({
+    executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  });
+
+let failures = 0;
+
+export function verdict(fine, text) {
+  console.log(`${fine ? 'ok  ' : 'FAIL'} ${text}`);
+  if (!fine) ++failures;
+}
+
+export function finish() {
+  console.log(failures ? `${failures} failed` : 'all fine');
+  process.exit(failures ? 1 : 0);
+}
+
+// A page in a window of its own; `said` collects warnings and errors of the console and requests to elsewhere.
+export async function open(browser, { width, height, scheme }, address, options = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, ...options });
+  const page = await context.newPage();
+  const said = [];
+  const home = new URL(address).origin;
+  page.on('console', (message) => {
+    if (['error', 'warning'].includes(message.type())) said.push(message.text());
+  });
+  page.on('pageerror', (error) => said.push(String(error)));
+  page.on('request', (request) => {
+    if (!request.url().startsWith(home) && !/^(data|blob):/.test(request.url())) said.push(`request to ${request.url()}`);
+  });
+  await page.goto(address);
+  return { page, said, close: () => context.close() };
+}
+
+// Findings of axe that are serious or critical; axe is put in from outside, where the page's own policy does not reach.
+export async function seriousFindings(page) {
+  await page.evaluate(fs.readFileSync(axe, 'utf8'));
+  const { violations } = await page.evaluate(() => window.axe.run(document, { iframes: false, resultTypes: ['violations'] }));
+  return violations
+    .filter((violation) => ['serious', 'critical'].includes(violation.impact))
+    .map((violation) => `${violation.id}: ${violation.nodes.map((node) => node.target.join(' ')).slice(0, 3).join(', ')}`);
+}
+
+export const tooWide = (page) => page.evaluate(() => document.documentElement.scrollWidth > window.innerWidth);
+
+// How far things have moved by themselves since the page opened (Cumulative Layout Shift).
+export const layoutShift = (page) =>
+  page.evaluate(() => new Promise((done) => {
+    let sum = 0;
+    new PerformanceObserver((list) => {
+      for (const entry of list.getEntries()) if (!entry.hadRecentInput) sum += entry.value;
+    }).observe({ type: 'layout-shift', buffered: true });
+    setTimeout(() => done(sum), 100);
+  }));
+
+export function screenshots(folder) {
+  if (folder) fs.mkdirSync(folder, { recursive: true });
+  return async (page, name) => {
+    if (folder) await page.screenshot({ path: path.join(folder, `${name}.png`), fullPage: true });
+  };
+}
