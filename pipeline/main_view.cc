@@ -1,8 +1,5 @@
 // glint-view: opens the report page.
-#include <unistd.h>
-
-#include <array>
-#include <cstdlib>
+#include <filesystem>
 
 #include "base/errors/errors.h"
 #include "pipeline/contract/capture.h"
@@ -13,22 +10,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What opens a page on this desktop; empty: nothing does.
-fs::path Opener() {
-  if (const char* browser = std::getenv("BROWSER"); browser != nullptr && *browser != '\0') {
-    return browser;
-  }
-  constexpr std::array kOpeners = {"xdg-open",         "wslview", "open",
-                                   "sensible-browser", "firefox", "chromium"};
-  for (const char* name : kOpeners) {
-    try {
-      return glint::ProgramOnPath(name, "");
-    } catch (const glint::EnvironmentError&) {
-    }
-  }
-  return {};
-}
-
 glint::ProgramResult View(const fs::path& folder, bool print) {
   const glint::Capture capture = glint::ReadCapture(folder);
   const fs::path page = fs::absolute(capture.work() / "report" / "index.html").lexically_normal();
@@ -37,12 +18,7 @@ glint::ProgramResult View(const fs::path& folder, bool print) {
   }
   const glint::Json json = {{"page", page.string()}};
   if (print) return {page.string(), json};
-  const fs::path opener = Opener();
-  if (opener.empty()) {
-    throw glint::EnvironmentError("found nothing that opens a page (xdg-open, $BROWSER); open " +
-                                  page.string() + " in a browser");
-  }
-  glint::RunToLog({opener.string(), page.string()}, "/dev/null");
+  glint::OpenOnDesktop(page.string());
   return {"opened " + page.string(), json};
 }
 

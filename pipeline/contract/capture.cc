@@ -400,7 +400,7 @@ std::vector<fs::path> Capture::FilesBehind(const std::vector<std::string>& names
   return files;
 }
 
-Capture ReadCapture(const fs::path& folder) {
+Capture ReadCapture(const fs::path& folder, Photographs photographs) {
   Capture capture;
   capture.folder = folder.filename() == "capture.toml" ? folder.parent_path() : folder;
   if (capture.folder.empty()) capture.folder = ".";
@@ -416,7 +416,8 @@ Capture ReadCapture(const fs::path& folder) {
   RejectUnknownTables(capture.file, *document);
   ReadSample(capture.file, *document, &capture);
   TomlTable photos(capture.file, *document, "photos");
-  capture.photos = ReadPhotos(capture.folder, "files", &photos, capture.file);
+  capture.photos = ReadPhotos(capture.folder, "files", &photos, capture.file,
+                              &capture.left_out_photos);
   photos.RejectUnknown();
   ReadBoard(capture.file, *document, &capture);
   CheckUnits(capture.file, capture);
@@ -426,7 +427,8 @@ Capture ReadCapture(const fs::path& folder) {
   ReadLights(capture.file, *document, &capture);
   ReadRadiometry(capture.file, *document, &capture);
   ReadChart(capture.file, *document, &capture);
-  if (photos.present() && capture.photos.empty()) {
+  const bool required = photographs == Photographs::kRequired;
+  if (required && photos.present() && capture.photos.empty()) {
     throw UserError(capture.file, "photos.files", "no photograph that matches",
                     "put photographs into the folder, or correct the pattern");
   }

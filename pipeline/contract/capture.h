@@ -65,6 +65,8 @@ struct Capture {
   // [photos] files: patterns relative to the folder; found files, sorted, relative to the folder.
   // Then the frames of [photos] video, one in `every`: "clip.mp4#0030" (see photo_name.h).
   std::vector<std::string> photos;
+  // [photos] left_out: those among the files that are not used at all.
+  std::vector<std::string> left_out_photos;
   // [board] photos: more photographs of the board, for the intrinsics alone.
   std::vector<std::string> board_photos;
 
@@ -106,7 +108,10 @@ struct Capture {
 };
 
 // Reads and checks the file; the stage tables [calib] … [report] are left to OptionSet::LoadToml.
-// `folder` may also be the path of the capture.toml itself. Throws UserError.
-Capture ReadCapture(const std::filesystem::path& folder);
+// `folder` may also be the path of the capture.toml itself. Throws UserError, also where [photos]
+// matches no photograph, unless there may be none yet.
+enum class Photographs { kRequired, kMayBeMissing };
+Capture ReadCapture(const std::filesystem::path& folder,
+                    Photographs photographs = Photographs::kRequired);
 
 }  // namespace glint

@@ -85,7 +85,8 @@ void RequireUtf8(const fs::path& file, const std::string& field, const std::stri
 }
 
 std::vector<std::string> ReadPhotos(const fs::path& folder, const std::string& key,
-                                    TomlTable* table, const fs::path& file) {
+                                    TomlTable* table, const fs::path& file,
+                                    std::vector<std::string>* left_out) {
   const auto patterns = table->Texts(key, "give a list of patterns such as [\"photos/*.jpg\"]");
   const auto videos = table->Texts("video", "give a name such as \"clip.mp4\", or a list of them");
   const int every = static_cast<int>(
@@ -105,6 +106,16 @@ std::vector<std::string> ReadPhotos(const fs::path& folder, const std::string& k
     for (const std::string& video : MatchFiles(folder, pattern, file, table->name() + ".video")) {
       for (const std::string& name : FramesOf(folder, video, every)) add(name);
     }
+  }
+  if (left_out != nullptr) {
+    const auto names =
+        table->Texts("left_out", "give a list of files such as [\"photos/IMG_0007.jpg\"]");
+    const auto used = [&](const std::string& photo) {
+      return std::find(names.begin(), names.end(), photo) == names.end();
+    };
+    const auto rest = std::stable_partition(all.begin(), all.end(), used);
+    left_out->assign(rest, all.end());
+    all.erase(rest, all.end());
   }
   if (all.size() > kMaxPhotos) {
     throw UserError(file, table->name(), std::to_string(all.size()) + " photographs",

@@ -6,12 +6,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <thread>
@@ -54,7 +57,7 @@ std::vector<std::string> DyingWithParent(std::vector<std::string> argv) {
 }
 
 pid_t Spawn(const std::vector<std::string>& command, const fs::path& log,
-            const std::vector<std::string>& environment) {
+            const std::vector<std::string>& environment, bool own_group = false) {
   const std::vector<std::string> argv = DyingWithParent(command);
   std::vector<char*> variables;
   for (const std::string& variable : environment) {
@@ -72,14 +75,40 @@ pid_t Spawn(const std::vector<std::string>& command, const fs::path& log,
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0666);
   posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  // Signals that this process waits for are to reach the child all the same.
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes, static_cast<short>(POSIX_SPAWN_SETSIGMASK |
+                                                           (own_group ? POSIX_SPAWN_SETPGROUP : 0)));
   pid_t process = 0;
-  const int error =
-      posix_spawn(&process, argv[0].c_str(), &actions, nullptr, pointers.data(), variables.data());
+  const int error = posix_spawn(&process, argv[0].c_str(), &actions, &attributes, pointers.data(),
+                                variables.data());
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
     throw EnvironmentError(command[0] + ": cannot be started: " + std::strerror(error));
   }
   return process;
+}
+
+// What opens a page on this desktop; empty: nothing does.
+fs::path Opener() {
+  if (const char* browser = std::getenv("BROWSER"); browser != nullptr && *browser != '\0') {
+    return browser;
+  }
+  constexpr std::array kOpeners = {"xdg-open",         "wslview", "open",
+                                   "sensible-browser", "firefox", "chromium"};
+  for (const char* name : kOpeners) {
+    try {
+      return ProgramOnPath(name, "");
+    } catch (const EnvironmentError&) {
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -119,6 +148,40 @@ void RunToLog(const std::vector<std::string>& argv, const fs::path& log,
                                             : "signal " + std::to_string(WTERMSIG(status));
   throw ComputationError(argv[0] + " ended with " + how + "; see " + log.string() + ":\n" +
                          Tail(log));
+}
+
+int RunInGroup(const std::vector<std::string>& argv, const fs::path& log,
+               const RunInGroupOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  constexpr auto kPatience = std::chrono::seconds(10);
+  constexpr auto kPause = std::chrono::milliseconds(200);
+  const pid_t process = Spawn(argv, log, options.environment, true);
+  std::optional<Clock::time_point> interrupted;
+  int status = 0;
+  for (pid_t ended = 0; ended != process;) {
+    ended = waitpid(process, &status, WNOHANG);
+    if (ended < 0 && errno != EINTR) break;
+    if (ended != 0) continue;
+    if (options.cancelled && options.cancelled()) {
+      if (!interrupted) {
+        interrupted = Clock::now();
+        ::kill(-process, SIGINT);
+      } else if (Clock::now() - *interrupted > kPatience) {
+        ::kill(-process, SIGKILL);
+      }
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+void OpenOnDesktop(const std::string& target) {
+  const fs::path opener = Opener();
+  if (opener.empty()) {
+    throw EnvironmentError("found nothing that opens a page (xdg-open, $BROWSER); open " + target +
+                           " in a browser");
+  }
+  RunToLog({opener.string(), target}, "/dev/null");
 }
 
 }  // namespace glint

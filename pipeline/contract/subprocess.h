@@ -27,4 +27,21 @@ struct RunToLogOptions {
 void RunToLog(const std::vector<std::string>& argv, const std::filesystem::path& log,
               const RunToLogOptions& options = {});
 
+// As RunToLog, in a process group of its own, which one signal reaches as Ctrl-C in a terminal does.
+struct RunInGroupOptions {
+  std::vector<std::string> environment;
+  // Called about five times a second. True: the group is interrupted (SIGINT), and killed where it
+  // has not ended ten seconds later.
+  std::function<bool()> cancelled;
+};
+
+// Returns how it ended: its exit code, or 128 + the signal. Throws EnvironmentError when it cannot
+// start.
+int RunInGroup(const std::vector<std::string>& argv, const std::filesystem::path& log,
+               const RunInGroupOptions& options);
+
+// Opens a file, folder or address with the program that this desktop has for it ($BROWSER,
+// xdg-open …), and waits for that program. Throws EnvironmentError: there is none.
+void OpenOnDesktop(const std::string& target);
+
 }  // namespace glint

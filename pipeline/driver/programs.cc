@@ -23,6 +23,7 @@ struct KnownVerb {
 // In the order in which a person meets them; the stages stand where "stages" does.
 constexpr std::string_view kStagesHere = "stages";
 constexpr KnownVerb kKnownVerbs[] = {
+    {"studio", "take photographs, run and look at materials in the browser"},
     {"demo", "make a synthetic capture and run everything on it"},
     {"board", "make a calibration board to print"},
     {"init", "write a capture.toml for a folder of photographs"},

@@ -5,7 +5,7 @@ namespace {
 
 // With one byte more, so that it is never of no size.
 constexpr unsigned char kBytes[] = {
-#include "viewer_bundle.inc"
+#include "viewer.bundle.js.inc"
     0};
 
 }  // namespace

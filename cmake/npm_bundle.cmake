@@ -1,0 +1,50 @@
+# Bundles a page's sources with npm and writes the results into OUTPUT, each as the bytes of a C++
+# array (FILES' names with .inc): nothing where a file cannot be made. GlintNpmBundle.cmake calls it.
+#   NPM, SOURCE, COPY (of SOURCE, beside package.json and package-lock.json), WORK, OUTPUT, FILES (made
+#   in WORK), WITHOUT (what this build then lacks)
+string(REPLACE "|" ";" COPY "${COPY}")
+string(REPLACE "|" ";" FILES "${FILES}")
+
+function(finish file text)
+  get_filename_component(name ${file} NAME)
+  file(WRITE ${OUTPUT}/${name}.inc.new "${text}")
+  file(RENAME ${OUTPUT}/${name}.inc.new ${OUTPUT}/${name}.inc)
+endfunction()
+
+function(go_without reason)
+  message("${WITHOUT}: ${reason}. For it, install node and npm and have them reach "
+          "the npm registry once (or fill its cache: npm ci in ${SOURCE}), then build again.")
+  foreach(file ${FILES})
+    finish(${file} "")
+  endforeach()
+endfunction()
+
+if(NOT NPM)
+  go_without("npm was not found")
+  return()
+endif()
+file(MAKE_DIRECTORY ${WORK})
+foreach(item package.json package-lock.json ${COPY})
+  if(EXISTS ${SOURCE}/${item})
+    file(COPY ${SOURCE}/${item} DESTINATION ${WORK})
+  endif()
+endforeach()
+execute_process(COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline
+                WORKING_DIRECTORY ${WORK} RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE why)
+if(NOT failed)
+  execute_process(COMMAND ${NPM} run --silent build WORKING_DIRECTORY ${WORK}
+                  RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE why)
+endif()
+if(failed)
+  string(REGEX REPLACE "\n.*" "" why "${why}")
+  go_without("npm says: ${why}")
+  return()
+endif()
+foreach(file ${FILES})
+  set(bytes "")
+  if(EXISTS ${WORK}/${file})
+    file(READ ${WORK}/${file} bytes HEX)
+    string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
+  endif()
+  finish(${file} "${bytes}")
+endforeach()
