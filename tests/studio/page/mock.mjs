@@ -93,8 +93,8 @@ export class Mock {
     this.studio = { version: '0.1.0', folder: '/home/you/Glint', free_bytes: 120e9, read_only: false, lan: false };
     this.captures = new Map((empty ? [] : example(now)).map((c) => [c.id, c]));
     this.boards = empty ? [] : [
-      { id: 'b1', name: 'A4, September', paper: 'A4', squares: [13, 17], square_mm: 15, window_mm: [105, 105], ruler_mm: 150, ruler_measured_mm: 149.2 },
-      { id: 'b2', name: 'A3', paper: 'A3', squares: [19, 27], square_mm: 15, window_mm: [195, 225], ruler_mm: 200, ruler_measured_mm: null },
+      { id: 'b1', name: 'A4, September', paper: 'A4', squares: [13, 17], square_mm: 15, window_mm: [105, 105], ruler_mm: 149.2, print_scale: 149.2 / 150 },
+      { id: 'b2', name: 'A3', paper: 'A3', squares: [19, 27], square_mm: 15, window_mm: [195, 225], ruler_mm: 200, print_scale: 1 },
     ];
   }
 
@@ -219,7 +219,7 @@ export class Mock {
         { name: 'Roughness, 1σ', value: '0.03', meaning: 'Median standard deviation over the texels.' }],
       previous: c.done.previous ? { maps: list('/previous') } : null,
     };
-    return { ...this.row(c), folder: c.folder, photographs: this.shown(c, at), advice: advise(c.photographs), options: c.options, run: c.run, result };
+    return { ...this.row(c), folder: c.folder, board: c.board ?? null, problem: null, limits: { photograph_bytes: 200e6, photographs: 300 }, phone: null, photographs: this.shown(c, at), advice: advise(c.photographs), options: { ...c.options, sample: { resolution_px: 1024, ...c.options.sample }, tile: { enabled: false, ...c.options.tile } }, run: c.run, result };
   }
 
   picture(c, id, send) {
@@ -230,10 +230,10 @@ export class Mock {
     send(pictures.photograph(c.family, c.seed + index, { tilt_deg: p.tilt_deg ?? 0, azimuth_deg: p.azimuth_deg ?? 0 }), 'image/svg+xml');
   }
 
-  make({ name, kind, size_mm }) {
+  make({ name, kind, size_mm, board }) {
     if ([...this.captures.values()].some((c) => c.name === name)) throw new Refusal(409, `A capture “${name}” exists already.`, 'Choose another name.');
     const id = `new${this.next++}`;
-    this.captures.set(id, { id, name, kind, size_mm, family: pictures.families[this.next % 6], seed: this.next, photographs: [], status: 'empty', changed_s: Date.now() / 1000, options: {}, run: null, done: null, folder: `/home/you/Glint/${name}` });
+    this.captures.set(id, { id, name, kind, size_mm, board: board ?? null, family: pictures.families[this.next % 6], seed: this.next, photographs: [], status: 'empty', changed_s: Date.now() / 1000, options: {}, run: null, done: null, folder: `/home/you/Glint/${name}` });
     this.tell('library', id);
     return { id };
   }
@@ -244,13 +244,15 @@ export class Mock {
     if (method === 'POST') {
       const { paper } = json();
       const large = paper === 'A3' || paper === 'Tabloid';
-      const made = { id: `b${this.boards.length + 1}`, name: `${paper} board`, paper, squares: large ? [19, 27] : [13, 17], square_mm: 15, window_mm: large ? [195, 225] : [105, 105], ruler_mm: 150, ruler_measured_mm: null };
+      const made = { id: `b${this.boards.length + 1}`, name: `${paper} board`, paper, squares: large ? [19, 27] : [13, 17], square_mm: 15, window_mm: large ? [195, 225] : [105, 105], ruler_mm: 150, print_scale: 1 };
       this.boards.push(made);
       return send(made);
     }
     if (!board) throw new Refusal(404, 'No such board.');
     if (method === 'PUT') {
-      board.ruler_measured_mm = json().ruler_measured_mm;
+      const { ruler_measured_mm } = json();
+      board.print_scale *= ruler_measured_mm / board.ruler_mm;
+      board.ruler_mm = ruler_measured_mm;
       return send(board);
     }
     send('%PDF-1.4\n', 'application/pdf');

@@ -105,6 +105,9 @@ export type SavedOptions = Record<string, Record<string, OptionValue>>;
 export interface Capture extends Omit<CaptureRow, 'photographs'> {
   folder: string;
   board?: string | null;
+  problem?: { message: string; remedy: string } | null; // capture.toml cannot be read
+  limits?: { photograph_bytes: number; photographs: number };
+  phone?: PhoneLink | null; // a code that is valid still
   photographs: Photograph[];
   advice: Advice;
   options: SavedOptions;
@@ -117,6 +120,8 @@ export interface OptionDescription {
   type: 'number' | 'integer' | 'text' | 'flag' | 'choice';
   choices?: string[];
   default: OptionValue | null;
+  low?: number;
+  high?: number;
   help: string;
   important: boolean;
 }
@@ -133,9 +138,9 @@ export interface Board {
   paper: string;
   squares: Size;
   square_mm: number;
-  window_mm: Size;
-  ruler_mm: number | null;
-  ruler_measured_mm?: number | null;
+  window_mm: Size | null; // null: a whole board, without a window
+  ruler_mm: number | null; // as printed
+  print_scale?: number; // printed over designed size, from the ruler that was measured; 1: as its label says
 }
 
 export interface PhoneLink {

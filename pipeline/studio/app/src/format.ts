@@ -42,3 +42,8 @@ export const nearVertical_deg = 10;
 export function sideOf({ tilt_deg, azimuth_deg }: Direction): string | null {
   return tilt_deg < nearVertical_deg ? null : sideNames[sideIndex(azimuth_deg)];
 }
+
+// A map's name for people; names that are not known stand as they are.
+export function mapName(name: string): string {
+  return texts.result.mapNames[name] ?? name;
+}

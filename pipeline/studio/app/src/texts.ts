@@ -77,14 +77,12 @@ export const texts = {
     kindNames: {
       board: 'In a printed board',
       single: 'One photograph, no board',
-      rectified: 'Imported set',
     },
     kindTexts: {
       board: 'Several photographs from different sides. The most accurate maps.',
       single: 'One photograph from straight above. Plausible maps, with less to print and measure.',
-      rectified: 'Photographs of other software that are already rectified top views.',
     },
-    fixedCamera: 'A camera that stands still under moving lights is set up from the command line (glint init --lights). Such captures then appear in the library, where you can run them.',
+    otherKinds: 'Two more kinds begin on the command line and then appear in the library: sets that another program has rectified (glint import), and a camera that stands still under moving lights (glint init --lights).',
     sample: 'Sample',
     width: 'Width (mm)',
     height: 'Height (mm)',
@@ -167,6 +165,7 @@ export const texts = {
     clipped: (share: number) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} % clipped`,
     arrived: (name: string, verdict: string) => `${name}: ${verdict}`,
     tooLarge: (mb: number) => `The file is larger than ${mb} MB.`,
+    tooLargeRemedy: 'Send the photograph as JPEG or HEIC.',
     empty: 'The file is empty.',
     showBad: 'Only those with a problem',
   },
@@ -179,7 +178,7 @@ export const texts = {
         ? 'No direction is covered yet.'
         : `${photographs(n)} seen from above: ${above} near the vertical${covered.length ? `, tilted from the ${covered.join(', ')}` : ''}${open.length ? `. Nothing from the ${open.join(', ')}` : '. All sides are covered'}.`,
     target: (tilt: number, side: string | null) => `Next: ${Math.round(tilt)}° ${side ? `from the ${side}` : 'from straight above'}.`,
-    legend: { good: 'good', weak: 'weak', bad: 'left out or bad', target: 'next' },
+    legend: { good: 'good', weak: 'weak', bad: 'left out', target: 'next' },
   },
 
   pose: {
@@ -258,6 +257,20 @@ export const texts = {
     none: 'No result yet',
     noneText: 'Run the capture first. A quick look takes seconds.',
     goRun: 'Go to Maps',
+    mapNames: {
+      basecolor: 'Base colour',
+      metallic: 'Metalness',
+      roughness: 'Roughness',
+      normal_gl: 'Normal (OpenGL)',
+      normal_dx: 'Normal (DirectX)',
+      height: 'Height',
+      ao: 'Ambient occlusion',
+      orm: 'Occlusion, roughness, metalness',
+      diffuse: 'Diffuse',
+      specular: 'Specular',
+      diffuse_layered: 'Diffuse, layered',
+      opacity: 'Opacity',
+    } as Record<string, string>,
     quick: 'This is a quick look: maps estimated by a network, not fitted to the photographs.',
     page: 'Relight and compare',
     pageText: 'Drag to turn the material and move the light; compare it with every photograph.',

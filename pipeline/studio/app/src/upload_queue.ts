@@ -24,6 +24,7 @@ const silence_ms = 45_000; // without any progress for so long a connection coun
 const showsInBrowsers = /\.(jpe?g|png|webp|avif|gif)$/i;
 
 export class UploadQueue {
+  limit_bytes = Infinity; // of a photograph, as the server says
   private uploads: Upload[] = [];
   private next = 0;
   private busy = false;
@@ -56,16 +57,17 @@ export class UploadQueue {
     let added = 0;
     for (const file of files) {
       const empty = file.size === 0;
+      const large = file.size > this.limit_bytes;
       this.uploads.push({
         key: this.next++,
         file,
         name: file.name,
         preview: !empty && showsInBrowsers.test(file.name) ? URL.createObjectURL(file) : null,
-        state: empty ? 'refused' : 'queued',
+        state: empty || large ? 'refused' : 'queued',
         share: 0,
         again_s: 0,
-        message: empty ? texts.photographsPage.empty : null,
-        remedy: null,
+        message: empty ? texts.photographsPage.empty : large ? texts.photographsPage.tooLarge(Math.floor(this.limit_bytes / 1e6)) : null,
+        remedy: large ? texts.photographsPage.tooLargeRemedy : null,
         id: null,
       });
       ++added;

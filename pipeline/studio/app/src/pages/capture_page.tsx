@@ -5,7 +5,7 @@ import { useLive } from '../live';
 import { StatusBadge } from '../parts/badge';
 import { PageHeading } from '../parts/heading';
 import { BackIcon } from '../parts/icons';
-import { FailureNotice } from '../parts/notice';
+import { FailureNotice, Notice } from '../parts/notice';
 import { links, type Step } from '../router';
 import { texts } from '../texts';
 import { PhotographsStep } from './photographs_step';
@@ -65,6 +65,7 @@ export function CapturePage({ id, step }: { id: string; step: Step | null }) {
         ))}
       </nav>
       {failure && <FailureNotice failure={failure} retry={reload} />}
+      {capture.problem && <Notice tone="error" urgent title={capture.problem.message} remedy={capture.problem.remedy} />}
       <Page capture={capture} reload={reload} set={set} />
     </>
   );

@@ -11,7 +11,7 @@ import { go, links } from '../router';
 import { texts } from '../texts';
 
 const t = texts.create;
-const kinds = ['board', 'single', 'rectified'] as const satisfies readonly Kind[];
+const kinds = ['board', 'single'] as const satisfies readonly Kind[];
 
 function unusedName(taken: string[]): string {
   const names = new Set(taken.map((name) => name.toLocaleLowerCase('en')));
@@ -45,7 +45,8 @@ export function NewCapturePage() {
   const single = kind === 'single';
   const valid = title.trim() !== '' && (single ? !sizeError(pictureWidth) : !sizeError(width) && !sizeError(height));
   const drawn: [number, number] = [Math.min(Math.max(size[0], 1), 2000), Math.min(Math.max(size[1], 1), 2000)];
-  const tooLarge = board !== null && (size[0] > board.window_mm[0] || size[1] > board.window_mm[1]);
+  const opening = board?.window_mm ?? null;
+  const tooLarge = opening !== null && (size[0] > opening[0] || size[1] > opening[1]);
 
   const replaceBoard = (changed: Board) =>
     kept.set({ boards: boards.some((b) => b.id === changed.id) ? boards.map((b) => (b.id === changed.id ? changed : b)) : [...boards, changed] });
@@ -102,7 +103,7 @@ export function NewCapturePage() {
                 </label>
               ))}
             </div>
-            <p class="help">{t.fixedCamera}</p>
+            <p class="help">{t.otherKinds}</p>
           </fieldset>
           <fieldset class="panel">
             <legend>{t.sample}</legend>
@@ -114,7 +115,7 @@ export function NewCapturePage() {
                 <NumberField label={t.height} value={height} onInput={setHeight} error={sizeError(height)} min={1} max={2000} />
               </div>
             )}
-            {tooLarge && <p class="help error" role="status">{t.tooLarge(board.window_mm[0], board.window_mm[1])}</p>}
+            {tooLarge && <p class="help error" role="status">{t.tooLarge(opening[0], opening[1])}</p>}
             {kind === 'board' && (
               <fieldset class="plain">
                 <legend>{t.thickness}</legend>

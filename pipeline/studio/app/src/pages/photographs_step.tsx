@@ -36,6 +36,7 @@ export function PhotographsStep({ capture, reload, set }: StepProps) {
   const [selected, setSelected] = useState<string | null>(null);
   const [onlyProblems, setOnlyProblems] = useState(false);
   const [failure, setFailure] = useState<Failure | null>(null);
+  queue.limit_bytes = capture.limits?.photograph_bytes ?? Infinity;
   useVerdictsSpoken(capture.photographs);
 
   const leaveOut = async (photograph: Photograph, left_out: boolean) => {
@@ -89,7 +90,7 @@ export function PhotographsStep({ capture, reload, set }: StepProps) {
           <a class={capture.advice.enough ? 'button primary wide' : 'button wide'} href={links.step(capture.id, 'run')}>{t.goRun}</a>
         )}
       </div>
-      {phone && <PhonePanel id={capture.id} onClose={() => setPhone(false)} />}
+      {phone && <PhonePanel id={capture.id} kept={capture.phone ?? null} onClose={() => setPhone(false)} />}
     </div>
   );
 }

@@ -2,6 +2,7 @@
 import { useState } from 'preact/hooks';
 import { announce } from '../announce';
 import { api, type Failure, type Figure, type ResultMap } from '../api';
+import { mapName } from '../format';
 import { BeforeAfter } from '../parts/before_after';
 import { DownloadIcon, FolderIcon, OutIcon } from '../parts/icons';
 import { FailureNotice, Notice } from '../parts/notice';
@@ -19,9 +20,9 @@ function Figures({ figures }: { figures: Figure[] }) {
       <dl class="figures">
         {figures.map((figure) => (
           <div key={figure.name}>
-            <dt>{figure.name}</dt>
+            <dt class="sentence">{figure.name}</dt>
             <dd class="figure-value">{figure.value}</dd>
-            <dd class="quiet">{figure.meaning}</dd>
+            <dd class="quiet sentence">{figure.meaning}</dd>
           </div>
         ))}
       </dl>
@@ -38,10 +39,10 @@ function Maps({ maps }: { maps: ResultMap[] }) {
           <li key={map.name}>
             <img src={map.url} alt="" loading="lazy" decoding="async" />
             <div class="map-head">
-              <h3>{map.name}</h3>
-              <a class="icon-button" href={map.url} download aria-label={t.download(map.name)} title={t.download(map.name)}><DownloadIcon /></a>
+              <h3>{mapName(map.name)}</h3>
+              <a class="icon-button" href={map.url} download aria-label={t.download(mapName(map.name))} title={t.download(mapName(map.name))}><DownloadIcon /></a>
             </div>
-            <p class="quiet">{map.meaning}</p>
+            <p class="quiet sentence">{map.meaning}</p>
           </li>
         ))}
       </ul>

@@ -19,7 +19,7 @@ export function AdvicePanel({ advice, photographs, selected, compact }: AdvicePr
     <section class={compact ? 'panel advice compact' : 'panel advice'} aria-labelledby="advice-title">
       <header>
         <h2 id="advice-title">{advice.enough ? t.enough : t.next}</h2>
-        <VerdictBadge verdict={advice.verdict} />
+        {advice.verdict !== 'none' && <VerdictBadge verdict={advice.verdict} />}
       </header>
       <p class="advice-sentence" role="status">{advice.sentence}</p>
       <div class="advice-drawings">

@@ -1,6 +1,7 @@
 // The maps of the previous run against those of this one.
 import { useState } from 'preact/hooks';
 import type { ResultMap } from '../api';
+import { mapName } from '../format';
 import { texts } from '../texts';
 import { CompareSlider } from './compare_slider';
 
@@ -22,13 +23,13 @@ export function BeforeAfter({ before, after }: { before: ResultMap[]; after: Res
           {t.compareMap}
           <select value={pair.name} onChange={(event) => setName(event.currentTarget.value)}>
             {pairs.map((p) => (
-              <option value={p.name}>{p.name}</option>
+              <option value={p.name}>{mapName(p.name)}</option>
             ))}
           </select>
         </label>
       </header>
       <p class="quiet">{t.compareText}</p>
-      <CompareSlider name={pair.name} before={pair.before} after={pair.after} />
+      <CompareSlider name={mapName(pair.name)} before={pair.before} after={pair.after} />
     </section>
   );
 }

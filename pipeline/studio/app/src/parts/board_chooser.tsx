@@ -9,8 +9,22 @@ import { FailureNotice } from './notice';
 
 const t = texts.create;
 
+// What the sheet's ruler measured; null: it was not measured, or is as its label says.
+function measuredRuler({ ruler_mm, print_scale = 1 }: Board): number | null {
+  return ruler_mm === null || Math.abs(print_scale - 1) < 1e-6 ? null : Math.round(10 * ruler_mm) / 10;
+}
+
+function facts(board: Board): string {
+  const measured = measuredRuler(board);
+  return [
+    board.paper,
+    board.window_mm && t.window(board.window_mm[0], board.window_mm[1]),
+    measured !== null && t.rulerIs(measured),
+  ].filter(Boolean).join(' · ');
+}
+
 function Ruler({ board, onChange }: { board: Board; onChange: (board: Board) => void }) {
-  const measured = board.ruler_measured_mm ? String(board.ruler_measured_mm) : '';
+  const measured = String(measuredRuler(board) ?? '');
   const [value, setValue] = useState(measured);
   const [failure, setFailure] = useState<Failure | null>(null);
   if (board.ruler_mm === null) return null;
@@ -27,7 +41,7 @@ function Ruler({ board, onChange }: { board: Board; onChange: (board: Board) => 
   };
   return (
     <div class="ruler">
-      <NumberField label={t.ruler} value={value} onInput={setValue} help={t.rulerHelp(board.ruler_mm)} min={1} max={2000} />
+      <NumberField label={t.ruler} value={value} onInput={setValue} help={t.rulerHelp(Math.round((10 * board.ruler_mm) / (board.print_scale ?? 1)) / 10)} min={1} max={2000} />
       <button type="button" class="button" disabled={!(Number(value) > 0) || value === measured} onClick={save}>{t.rulerSave}</button>
       {failure && <FailureNotice failure={failure} />}
     </div>
@@ -73,9 +87,7 @@ export function BoardChooser({ boards, chosen, onChoose, onBoard, paper, onPaper
             <input type="radio" name={group} checked={b.id === chosen} onChange={() => onChoose(b.id)} />
             <span>
               <b>{b.name}</b>
-              <small>
-                {[b.paper, t.window(b.window_mm[0], b.window_mm[1]), b.ruler_measured_mm ? t.rulerIs(b.ruler_measured_mm) : null].filter(Boolean).join(' · ')}
-              </small>
+              <small>{facts(b)}</small>
             </span>
           </label>
         ))}

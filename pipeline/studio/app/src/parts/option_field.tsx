@@ -1,4 +1,5 @@
-// One option of a program as a field. What equals the default is not saved, so that capture.toml holds choices only.
+// One option of a program as a field. What equals the default is not saved, so that capture.toml holds choices only;
+// but for the few important ones, which stand there with their value.
 import { useEffect, useId, useState } from 'preact/hooks';
 import type { OptionDescription, OptionValue } from '../api';
 import { texts } from '../texts';
@@ -17,23 +18,25 @@ function shown(value: OptionValue | null): string {
   return typeof value === 'boolean' ? (value ? t.on : t.off) : value === null ? '' : String(value);
 }
 
-export function OptionField({ label, help, option, value, onSave }: OptionFieldProps) {
+export function OptionField({ label, help, option, value: given, onSave }: OptionFieldProps) {
+  const value = given === option.default ? undefined : given;
+  const back = () => onSave(option.important ? option.default : null);
   const id = useId();
   const saved = value === undefined ? '' : String(value);
   const [text, setText] = useState(saved);
   useEffect(() => setText(saved), [saved]);
-  const save = (next: OptionValue) => onSave(next === option.default ? null : next);
+  const save = (next: OptionValue) => (next === option.default ? back() : onSave(next));
   const isNumber = option.type === 'number' || option.type === 'integer';
   const saveText = () => {
     const trimmed = text.trim();
     if (trimmed === saved) return;
-    if (trimmed === '') return onSave(null);
+    if (trimmed === '') return back();
     // A number input answers '' for what is no number; the server judges ranges.
     save(isNumber ? Number(trimmed) : trimmed);
   };
   const common = { id, 'aria-describedby': help ? `${id}-help` : undefined };
   const reset = value !== undefined && (
-    <button type="button" class="link" aria-label={t.resetOf(label)} onClick={() => onSave(null)}>{t.reset}</button>
+    <button type="button" class="link" aria-label={t.resetOf(label)} onClick={back}>{t.reset}</button>
   );
   if (option.type === 'flag') {
     return (
@@ -60,6 +63,8 @@ export function OptionField({ label, help, option, value, onSave }: OptionFieldP
           {...common}
           type={isNumber ? 'number' : 'text'}
           step={option.type === 'integer' ? 1 : 'any'}
+          min={option.low}
+          max={option.high}
           inputMode={isNumber ? 'decimal' : undefined}
           autocomplete="off"
           spellcheck={false}

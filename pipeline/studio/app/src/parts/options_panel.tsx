@@ -47,7 +47,7 @@ export function OptionsPanel({ capture, set, disabled }: PanelProps) {
       options: stage.options.filter((o) => !o.important && (!wanted || o.name.toLowerCase().includes(wanted) || o.help.toLowerCase().includes(wanted))),
     }))
     .filter((stage) => stage.options.length > 0);
-  const changed = (stage: string, options: OptionDescription[]) => options.filter((o) => capture.options[stage]?.[o.name] !== undefined).length;
+  const changed = (stage: string, options: OptionDescription[]) => options.filter((o) => (capture.options[stage]?.[o.name] ?? o.default) !== o.default).length;
   return (
     <fieldset class="panel options" disabled={disabled}>
       <legend>{t.options}</legend>

@@ -39,14 +39,27 @@ function Code({ link, ends_ms, onRenew, onStop }: { link: PhoneLink; ends_ms: nu
   );
 }
 
-export function PhonePanel({ id, onClose }: { id: string; onClose: () => void }) {
-  const [link, setLink] = useState<{ link: PhoneLink; ends_ms: number } | null>(null);
+interface Valid {
+  link: PhoneLink;
+  ends_ms: number;
+}
+
+function fromNow(link: PhoneLink): Valid {
+  return { link, ends_ms: link.expires_s > 1e9 ? 1000 * link.expires_s : Date.now() + 1000 * link.expires_s };
+}
+
+interface PhonePanelProps {
+  id: string;
+  kept: PhoneLink | null; // a code that was made before and is valid still
+  onClose: () => void;
+}
+
+export function PhonePanel({ id, kept, onClose }: PhonePanelProps) {
+  const [link, setLink] = useState<Valid | null>(() => kept && fromNow(kept));
   const [failure, setFailure] = useState<Failure | null>(null);
   const open = async () => {
     try {
-      const answer = await api.openPhone(id);
-      const ends_ms = answer.expires_s > 1e9 ? 1000 * answer.expires_s : Date.now() + 1000 * answer.expires_s;
-      setLink({ link: answer, ends_ms });
+      setLink(fromNow(await api.openPhone(id)));
       setFailure(null);
     } catch (error) {
       setFailure(error as Failure);
@@ -61,7 +74,9 @@ export function PhonePanel({ id, onClose }: { id: string; onClose: () => void })
       setFailure(error as Failure);
     }
   };
-  useEffect(() => void open(), [id]);
+  useEffect(() => {
+    if (!link) void open();
+  }, [id]);
   return (
     <Dialog title={t.title} onClose={onClose}>
       <p>{t.text}</p>

@@ -88,7 +88,7 @@ export function PoseDrawing({ target }: { target: Direction }) {
             {Math.round(target.tilt_deg)}°
           </text>
         )}
-        <text class="polar-side" x={frontX - 4} y={frontY + 13} text-anchor="middle">{texts.polar.sides.bottom}</text>
+        <text class="polar-side" x={frontX - 4} y={frontY + 3} text-anchor="middle" dominant-baseline="hanging">{texts.polar.sides.bottom}</text>
       </svg>
     </figure>
   );

@@ -22,7 +22,7 @@ const sideHeight = 62;
 function Squares({ board }: { board: Board }) {
   const [columns, rows] = board.squares;
   const s = board.square_mm;
-  const [windowWidth, windowHeight] = board.window_mm;
+  const [windowWidth, windowHeight] = board.window_mm ?? [0, 0];
   const black: string[] = [];
   for (let row = 0; row < rows; ++row) {
     for (let column = 0; column < columns; ++column) {
@@ -53,7 +53,7 @@ function Arrow({ from, to, label, vertical }: { from: number; to: number; label:
 function SideView({ size, board, height_mm, scale }: { size: Size; board: Board | null; height_mm: number | null; scale: number }) {
   const half = (size[0] / 2) * scale;
   const thick = height_mm === null ? 8 : Math.max(-18, Math.min(26, height_mm * scale));
-  const window = board ? (board.window_mm[0] / 2) * scale : half + 8;
+  const window = board?.window_mm ? (board.window_mm[0] / 2) * scale : half + 8;
   return (
     <g transform={`translate(${width / 2} ${planHeight + 44})`}>
       <path class="draw-table" d={`M${-width / 2 + 16} 8H${width / 2 - 16}`} />
@@ -91,7 +91,7 @@ export function SampleDrawing({ size, board, paper, height_mm, pictureWidth_mm }
               <Squares board={board} />
             </g>
           )}
-          {board && <rect class="draw-window" x={(-board.window_mm[0] / 2) * scale} y={(-board.window_mm[1] / 2) * scale} width={board.window_mm[0] * scale} height={board.window_mm[1] * scale} />}
+          {board?.window_mm && <rect class="draw-window" x={(-board.window_mm[0] / 2) * scale} y={(-board.window_mm[1] / 2) * scale} width={board.window_mm[0] * scale} height={board.window_mm[1] * scale} />}
           {picture && <rect class="draw-frame" x={(-picture[0] / 2) * scale} y={(-picture[1] / 2) * scale} width={picture[0] * scale} height={picture[1] * scale} />}
           {!picture && <rect class="draw-sample" x={-w / 2} y={-h / 2} width={w} height={h} />}
           <g transform={`translate(0 ${(-extent[1] / 2) * scale - 8})`}>
