@@ -14,6 +14,9 @@ export const launch = () =>
     args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
   });
 
+// For trying changed pages with a server that was built before: the folder that `npm run build` has filled.
+const builtPages = process.env.GLINT_STUDIO_PAGES;
+
 let failures = 0;
 
 export function verdict(fine, text) {
@@ -29,6 +32,11 @@ export function finish() {
 // A page in a window of its own; `said` collects warnings and errors of the console and requests to elsewhere.
 export async function open(browser, { width, height, scheme }, address, options = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, ...options });
+  if (builtPages) {
+    for (const file of fs.readdirSync(builtPages).filter((name) => !name.endsWith('.html'))) {
+      await context.route(`**/${file}`, (route) => route.fulfill({ path: path.join(builtPages, file) }));
+    }
+  }
   const page = await context.newPage();
   const said = [];
   const home = new URL(address).origin;

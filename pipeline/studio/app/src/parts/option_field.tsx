@@ -45,7 +45,7 @@ export function OptionField({ label, help, option, value: given, onSave }: Optio
           <input {...common} type="checkbox" checked={Boolean(value ?? option.default ?? false)} onChange={(event) => save(event.currentTarget.checked)} />
           {label}
         </label>
-        {help && <p id={`${id}-help`} class="help">{help}</p>}
+        {help && <p id={`${id}-help`} class="help sentence">{help}</p>}
       </div>
     );
   }
@@ -76,7 +76,7 @@ export function OptionField({ label, help, option, value: given, onSave }: Optio
         />
       )}
       {(help || reset) && (
-        <p class="help">
+        <p class="help sentence">
           {help && <span id={`${id}-help`}>{help} </span>}
           {reset}
         </p>

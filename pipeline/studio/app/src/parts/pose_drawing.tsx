@@ -69,7 +69,8 @@ export function PoseDrawing({ target }: { target: Direction }) {
   const [lensX, lensY] = project(combine(centre, [-0.13, right], [0.33, up]));
   const [cx, cy] = project(centre).map((v) => v.toFixed(1));
   const leansRight = project(d)[0] >= 0;
-  const labelY = project([0, 0, arcRadius])[1] + 5;
+  // Beside the arc's upper end; above it where the phone leans toward the eye and would cover it.
+  const labelY = project([0, 0, d[1] < -0.2 ? 2 : arcRadius])[1] + 5;
   const [frontX, frontY] = project([0, -1.02, 0]);
   return (
     <figure class="pose">
