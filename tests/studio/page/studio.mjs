@@ -2,8 +2,8 @@
 import { spawn } from 'node:child_process';
 import path from 'node:path';
 
-export async function startStudio(programs, folder, more = []) {
-  const child = spawn(path.join(programs, 'glint-studio'), ['--no-browser', '--port', '0', ...more, folder], { stdio: ['ignore', 'pipe', 'pipe'] });
+export async function startStudio(programs, folder, port = 0) {
+  const child = spawn(path.join(programs, 'glint-studio'), ['--no-browser', '--port', String(port), folder], { stdio: ['ignore', 'pipe', 'pipe'] });
   process.on('exit', () => child.kill());
   let said = '';
   child.stderr.on('data', (bytes) => (said += bytes));
@@ -16,13 +16,15 @@ export async function startStudio(programs, folder, more = []) {
     });
     child.on('exit', (code) => fail(new Error(`glint-studio ended with ${code}: ${said}`)));
   });
+  const ended = (signal) => new Promise((done) => {
+    child.on('exit', done);
+    child.kill(signal);
+  });
   return {
     address,
     home: new URL(address).origin,
     said: () => said,
-    end: () => new Promise((done) => {
-      child.on('exit', done);
-      child.kill('SIGTERM');
-    }),
+    end: () => ended('SIGTERM'),
+    kill: () => ended('SIGKILL'),
   };
 }

@@ -21,6 +21,7 @@ export interface Upload {
 const firstPause_s = 1;
 const longestPause_s = 20;
 const silence_ms = 45_000; // without any progress for so long a connection counts as lost
+const progress_ms = 100; // between two reports of progress
 const showsInBrowsers = /\.(jpe?g|png|webp|avif|gif)$/i;
 
 export class UploadQueue {
@@ -153,6 +154,7 @@ export class UploadQueue {
     return new Promise((resolve, reject) => {
       const request = new XMLHttpRequest();
       let watchdog = 0;
+      let shown = 0;
       const alive = () => {
         clearTimeout(watchdog);
         watchdog = window.setTimeout(() => request.abort(), silence_ms);
@@ -165,7 +167,9 @@ export class UploadQueue {
       request.setRequestHeader(...requestHeader);
       request.upload.onprogress = (event) => {
         alive();
-        if (event.lengthComputable) this.update(upload.key, { share: event.loaded / event.total });
+        if (!event.lengthComputable || performance.now() - shown < progress_ms) return;
+        shown = performance.now();
+        this.update(upload.key, { share: event.loaded / event.total });
       };
       request.onerror = request.onabort = lost;
       request.onload = () => {

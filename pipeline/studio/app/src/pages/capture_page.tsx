@@ -64,9 +64,13 @@ export function CapturePage({ id, step }: { id: string; step: Step | null }) {
           <a href={links.step(id, s)} aria-current={s === shown ? 'page' : undefined}>{texts.steps[s]}</a>
         ))}
       </nav>
-      {failure && <FailureNotice failure={failure} retry={reload} />}
-      {capture.problem && <Notice tone="error" urgent title={capture.problem.message} remedy={capture.problem.remedy} />}
-      <Page capture={capture} reload={reload} set={set} />
+      {failure && failure.status !== 0 && <FailureNotice failure={failure} retry={reload} />}
+      {capture.problem && (
+        <Notice tone="error" urgent title={capture.problem.message} remedy={capture.problem.remedy}>
+          <button type="button" class="button small" onClick={reload}>{texts.retry}</button>
+        </Notice>
+      )}
+      {(!capture.problem || shown === 'result') && <Page capture={capture} reload={reload} set={set} />}
     </>
   );
 }

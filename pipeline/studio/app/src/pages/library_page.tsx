@@ -101,7 +101,7 @@ export function LibraryPage() {
     <>
       <div class="page-head">
         <PageHeading title={t.title} />
-        <a class="button primary" href={links.new}><PlusIcon />{t.new}</a>
+        {!empty && <a class="button primary" href={links.new}><PlusIcon />{t.new}</a>}
       </div>
       {failure && <FailureNotice failure={failure} retry={reload} />}
       {empty && <Empty />}

@@ -64,7 +64,7 @@ export function PhotographsStep({ capture, reload, set }: StepProps) {
         <UploadProgress uploads={uploads} />
         {failure && <FailureNotice failure={failure} />}
         <div class="list-head">
-          <h2>{photographs.length ? t.list(photographs.length, leftOut) : t.none}</h2>
+          <h2>{photographs.length ? t.list(photographs.length, leftOut) : uploads.length ? t.title : t.none}</h2>
           {problems > 0 && (
             <label class="tick">
               <input type="checkbox" checked={onlyProblems} onChange={(event) => setOnlyProblems(event.currentTarget.checked)} />

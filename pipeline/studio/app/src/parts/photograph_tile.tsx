@@ -1,5 +1,6 @@
 // One photograph with its verdict; a bad one with its reason and remedy. Out of a fit does not mean out of the folder.
 import type { ComponentChildren } from 'preact';
+import { useState } from 'preact/hooks';
 import type { Photograph, PhotographState } from '../api';
 import { sideOf } from '../format';
 import { texts } from '../texts';
@@ -30,9 +31,10 @@ interface TileProps {
 }
 
 export function Tile({ name, picture, dimmed, children, onHover }: TileProps) {
+  const [broken, setBroken] = useState<string | null>(null); // a picture that the browser cannot show
   return (
     <li class={dimmed ? 'tile dimmed' : 'tile'} onMouseEnter={() => onHover?.(true)} onMouseLeave={() => onHover?.(false)}>
-      <div class="tile-picture">{picture ? <img src={picture} alt="" loading="lazy" decoding="async" /> : <span class="tile-blank" aria-hidden="true" />}</div>
+      <div class="tile-picture">{picture && picture !== broken ? <img src={picture} alt="" loading="lazy" decoding="async" onError={() => setBroken(picture)} /> : <span class="tile-blank" aria-hidden="true" />}</div>
       <div class="tile-text">
         <h3 title={name}>{name}</h3>
         {children}
@@ -60,8 +62,8 @@ export function PhotographTile({ photograph, preview, nameOf, onLeaveOut, onHove
         {left_out && <span class="badge quiet">{t.leftOut}</span>}
       </p>
       {fact && <p class="tile-facts">{fact}</p>}
-      {why && <p class="tile-reason">{why}</p>}
-      {remedy && <p class="tile-remedy">{remedy}</p>}
+      {why && <p class="tile-reason sentence">{why}</p>}
+      {remedy && <p class="tile-remedy sentence">{remedy}</p>}
       {onLeaveOut && state !== 'waiting' && state !== 'checking' && (
         <button type="button" class="link" onClick={() => onLeaveOut(!left_out)} aria-label={left_out ? t.takeBackOf(name) : t.leaveOutOf(name)}>
           {left_out ? t.takeBack : t.leaveOut}

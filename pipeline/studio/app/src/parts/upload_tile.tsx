@@ -34,8 +34,8 @@ export function UploadTile({ upload, onRemove, onAgain }: UploadTileProps) {
         <span class={`badge ${refused ? 'bad' : upload.state === 'pausing' ? 'weak' : upload.state === 'queued' ? 'quiet' : 'busy'}`}>{stateText(upload)}</span>
       </p>
       {upload.state === 'sending' && <progress max={1} value={upload.share} aria-label={upload.name} />}
-      {upload.message && <p class="tile-reason">{upload.message}</p>}
-      {upload.remedy && <p class="tile-remedy">{upload.remedy}</p>}
+      {upload.message && <p class="tile-reason sentence">{upload.message}</p>}
+      {upload.remedy && <p class="tile-remedy sentence">{upload.remedy}</p>}
       {refused && (
         <p class="tile-actions">
           <button type="button" class="link" onClick={onAgain}>{t.sendAgain}</button>
