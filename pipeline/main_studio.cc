@@ -59,6 +59,7 @@ glint::ProgramResult Serve(const glint::StudioOptions& options, bool browser) {
 int main(int argc, char** argv) {
   glint::StudioOptions o;
   o.version = GLINT_VERSION;
+  o.prepare_options = true;
   bool no_browser = false;
   glint::OptionSet options;
   options.AddPositional("FOLDER", &o.folder, "folder of captures", false);

@@ -154,10 +154,12 @@ int RunInGroup(const std::vector<std::string>& argv, const fs::path& log,
                const RunInGroupOptions& options) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kPatience = std::chrono::seconds(10);
-  constexpr auto kPause = std::chrono::milliseconds(200);
+  constexpr auto kShortestPause = std::chrono::milliseconds(10);
+  constexpr auto kLongestPause = std::chrono::milliseconds(200);
   const pid_t process = Spawn(argv, log, options.environment, true);
   std::optional<Clock::time_point> interrupted;
   int status = 0;
+  auto pause = kShortestPause;
   for (pid_t ended = 0; ended != process;) {
     ended = waitpid(process, &status, WNOHANG);
     if (ended < 0 && errno != EINTR) break;
@@ -170,7 +172,8 @@ int RunInGroup(const std::vector<std::string>& argv, const fs::path& log,
         ::kill(-process, SIGKILL);
       }
     }
-    std::this_thread::sleep_for(kPause);
+    std::this_thread::sleep_for(pause);
+    pause = std::min(kLongestPause, 2 * pause);
   }
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }

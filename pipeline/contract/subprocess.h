@@ -30,7 +30,7 @@ void RunToLog(const std::vector<std::string>& argv, const std::filesystem::path&
 // As RunToLog, in a process group of its own, which one signal reaches as Ctrl-C in a terminal does.
 struct RunInGroupOptions {
   std::vector<std::string> environment;
-  // Called about five times a second. True: the group is interrupted (SIGINT), and killed where it
+  // Called at least five times a second. True: the group is interrupted (SIGINT), and killed where it
   // has not ended ten seconds later.
   std::function<bool()> cancelled;
 };

@@ -140,8 +140,10 @@ Direction NextTilted(const Verdict& verdict, const std::vector<GuidancePhoto>& p
           LargestGap(photos, verdict.limits.tilted_deg).middle_deg};
 }
 
+// Where it brings most highlights; where none is lacking, beside the others.
 Direction NextTop(const Verdict& verdict, const std::vector<GuidancePhoto>& photos) {
   if (verdict.top_views == 0) return {0, 0};
+  if (!verdict.suggestions.empty()) return verdict.suggestions[0].direction;
   constexpr double kOffCentre_deg = 3;
   std::vector<GuidancePhoto> tops;
   for (const GuidancePhoto& photo : photos) {
@@ -218,10 +220,13 @@ std::vector<PhotoVerdict> JudgePhotos(const std::vector<NamedCheck>& photos,
 Direction NextDirection(const Verdict& verdict, const std::vector<GuidancePhoto>& photos) {
   if (photos.empty() || verdict.top_views == 0) return {0, 0};
   if (verdict.tilted_views == 0) return NextTilted(verdict, photos);
-  if (Has(verdict, "sides") && verdict.views.size() >= 3) return NextTilted(verdict, photos);
-  if (Has(verdict, "highlight") && !verdict.suggestions.empty()) {
-    return verdict.suggestions[0].direction;
+  const bool dark = Has(verdict, "highlight") && !verdict.suggestions.empty();
+  const bool one_sided = Has(verdict, "sides");
+  // In turn, so that neither is left for the end.
+  if (one_sided && (!dark || verdict.tilted_views < verdict.top_views)) {
+    return NextTilted(verdict, photos);
   }
+  if (dark) return verdict.suggestions[0].direction;
   // One top view for each two tilted ones, as in README's twelve.
   if (verdict.top_views < kTopViews && 2 * verdict.top_views < verdict.tilted_views + 1) {
     return NextTop(verdict, photos);

@@ -5,16 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <optional>
 #include <sstream>
 
 #include "base/errors/errors.h"
 #include "pipeline/contract/program.h"
 #include "pipeline/contract/stages.h"
-#include "pipeline/driver/child_process.h"
+#include "pipeline/contract/subprocess.h"
 #include "pipeline/driver/programs.h"
 #include "pipeline/files/toml_file.h"
 #include "pipeline/studio/http/http_types.h"
+#include "pipeline/studio/token.h"
 #include "pipeline/studio/toml_edit.h"
 
 namespace glint {
@@ -22,17 +24,18 @@ namespace {
 
 constexpr int kLeastResolution_px = 8, kMostResolution_px = 16384;
 
-Json Described(const std::string& program) {
+Json Described(const std::string& program, const std::function<bool()>& cancelled) {
   const auto file = FindProgram(program);
-  if (file.empty()) return nullptr;
-  std::string out;
-  ChildProcess child;
-  child.arguments = {file.string(), kDescribeFlag};
-  child.on_line = [&](const std::string& line) { out += line + "\n"; };
-  child.quiet_stderr = true;
-  if (RunChild(child) != 0) return nullptr;
-  const Json answer = Json::parse(out, nullptr, false);
-  return answer.is_object() ? answer : Json();
+  if (file.empty()) return Json::object();
+  const auto out = std::filesystem::temp_directory_path() / ("glint-studio-" + RandomToken());
+  RunInGroupOptions options;
+  options.cancelled = cancelled;
+  const int code = RunInGroup({file.string(), kDescribeFlag}, out, options);
+  std::ifstream stream(out);
+  const Json answer = Json::parse(stream, nullptr, false);
+  std::error_code error;
+  std::filesystem::remove(out, error);
+  return code == 0 && answer.is_object() ? answer : Json::object();
 }
 
 // Which views a stage uses, and where it writes, is the whole run's to say.
@@ -163,7 +166,7 @@ std::string Joined(const Json& list) {
 
 }  // namespace
 
-Json OptionForm() {
+Json OptionForm(const std::function<bool()>& cancelled) {
   Json resolution = OwnOption("resolution_px", "integer", 1024, "width of the maps in texels");
   resolution["low"] = kLeastResolution_px;
   resolution["high"] = kMostResolution_px;
@@ -178,7 +181,7 @@ Json OptionForm() {
                                           "photographs held out from fitting, to judge the maps "
                                           "by; separated by commas")})}});
   for (const StageKind& stage : Stages()) {
-    const Json answer = Described("glint-" + std::string(stage.name));
+    const Json answer = Described("glint-" + std::string(stage.name), cancelled);
     Json options = Json::array();
     if (stage.name == "tile") {
       options.push_back(OwnOption("enabled", "flag", false, "make the maps repeat without seams"));

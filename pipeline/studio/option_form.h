@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "pipeline/contract/capture.h"
@@ -11,8 +12,9 @@
 namespace glint {
 
 // {stages: [{name, summary, options: […]}]}, with "sample", "run" and "tile" for what is no stage's
-// option. Starts each stage's program once; keep the result.
-Json OptionForm();
+// option. Starts each stage's program once; keep the result. `cancelled` ends it early, with options
+// missing.
+Json OptionForm(const std::function<bool()>& cancelled = {});
 
 // What capture.toml holds, by stage: {"fit": {"metals": "possible"}, "sample": {…}, …}.
 Json SavedOptions(const Capture& capture);

@@ -87,9 +87,8 @@ std::string PlainStem(const std::string& client_name) {
   const size_t slash = client_name.find_last_of("/\\");
   std::string name = slash == std::string::npos ? client_name : client_name.substr(slash + 1);
   name = name.substr(0, name.find_last_of('.') == 0 ? name.size() : name.find_last_of('.'));
-  std::string stem = FileNameOf(name).substr(0, kMost);
-  if (stem.find_first_not_of("._-") == std::string::npos) stem = "photograph";
-  return stem;
+  if (name.find_first_not_of("._-") == std::string::npos) return "photograph";
+  return FileNameOf(name).substr(0, kMost);
 }
 
 ReceivedPhoto::ReceivedPhoto(fs::path folder, std::string client_name)

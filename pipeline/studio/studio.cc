@@ -126,6 +126,7 @@ class Studio::Impl {
         });
     local_.port = local_server_->port();
     if (options.lan) OpenLan();
+    if (options.prepare_options) workspace_.PrepareOptions();
   }
 
   ~Impl() {

@@ -15,6 +15,7 @@ struct StudioOptions {
   int port = 8417;      // 0: any free one
   bool lan = false;     // other machines of the network may open Studio as well
   int check_threads = 0;  // 0: one for each core
+  bool prepare_options = false;  // ask the programs for their options before a page does
   std::string version;
   std::vector<std::string> lan_addresses;  // of this machine; empty: as its interfaces say
   double phone_idle_s = 1800, phone_longest_s = 4 * 3600;  // see phone_links.h

@@ -194,6 +194,12 @@ Workspace::Workspace(const fs::path& root, int check_threads)
 
 Workspace::~Workspace() {
   events_.Close();
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    ending_ = true;
+    end_.notify_all();
+  }
+  if (preparing_.joinable()) preparing_.join();
   checks_.reset();
   runs_.reset();
 }
@@ -418,8 +424,22 @@ Json Workspace::PhoneJson(const LibraryEntry& entry, const std::string& thumbnai
   return json;
 }
 
+void Workspace::PrepareOptions() {
+  // The first page comes first.
+  constexpr auto kLater = std::chrono::seconds(2);
+  preparing_ = std::thread([this] {
+    {
+      std::unique_lock<std::mutex> guard(mutex_);
+      if (end_.wait_for(guard, kLater, [&] { return ending_.load(); })) return;
+    }
+    Options();
+  });
+}
+
 const Json& Workspace::Options() {
-  std::call_once(options_made_, [this] { options_ = OptionForm(); });
+  std::call_once(options_made_, [this] {
+    options_ = OptionForm([this] { return ending_.load(); });
+  });
   return options_;
 }
 
@@ -480,6 +500,9 @@ Json Workspace::KeepReceived(const LibraryEntry& entry, const std::string& name,
   const auto mutex = MutexOf(entry.id);
   const std::lock_guard<std::mutex> guard(*mutex);
   const State state = Read(entry);
+  if (!state.problem.message.empty()) {
+    throw HttpError{409, state.problem.message, state.problem.remedy};
+  }
   const auto photos = PhotosOf(state);
   for (const StudioPhoto& one : photos) {
     std::error_code error;
@@ -503,7 +526,12 @@ Json Workspace::KeepReceived(const LibraryEntry& entry, const std::string& name,
   std::set<std::string> undecided = Undecided(entry.folder);
   undecided.insert(place);
   KeepIfPossible(UndecidedFile(entry.folder), Json(undecided));
-  ListNewPhoto(entry, file);
+  try {
+    ListNewPhoto(entry, file);
+  } catch (...) {  // whoever sent it is told, and still has it
+    ::unlink(file.c_str());
+    throw;
+  }
   const CheckTask task = Read(entry).task;
   checks_->Look(entry.id, file, task, StudioFolderOf(entry.folder) / "checks");
   return {{"name", name}, {"id", IdOf(place)}, {"error", nullptr}};

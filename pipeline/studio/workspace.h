@@ -2,12 +2,16 @@
 // as JSON, and what they change.
 #pragma once
 
+#include <atomic>
+#include <condition_variable>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "pipeline/files/files.h"
@@ -53,7 +57,8 @@ class Workspace {
   Json CaptureJson(const LibraryEntry& entry, const std::string& files,
                    const std::string& thumbnails);
   Json PhoneJson(const LibraryEntry& entry, const std::string& thumbnails);
-  const Json& Options();  // the form; takes a second the first time
+  const Json& Options();  // the form; takes seconds the first time
+  void PrepareOptions();  // makes it meanwhile; once
 
   std::string Make(const NewCapture& wanted);  // its id
   void Trash(const LibraryEntry& entry);
@@ -91,6 +96,9 @@ class Workspace {
   std::map<std::string, std::shared_ptr<std::mutex>> captures_;
   std::once_flag options_made_;
   Json options_;
+  std::thread preparing_;
+  std::atomic<bool> ending_ = false;
+  std::condition_variable end_;
   std::unique_ptr<RunManager> runs_;
   std::unique_ptr<CheckQueue> checks_;  // ends first: it calls back
 };

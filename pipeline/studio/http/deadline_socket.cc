@@ -74,6 +74,7 @@ void DeadlineSocket::HeadIsRead() {
 }
 
 void DeadlineSocket::Linger() {
+  if (!in_body_) return;  // whoever could not send a head has no claim to more
   ::shutdown(descriptor_, SHUT_WR);
   const auto end = Clock::now() + std::chrono::duration<double>(kLinger_s);
   std::string unread(kBuffer_bytes, '\0');

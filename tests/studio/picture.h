@@ -1,0 +1,20 @@
+// Small JPEG pictures, one for each seed.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+namespace glint::test {
+
+inline std::string JpegBytes(int seed, int width = 320, int height = 240) {
+  cv::Mat picture(height, width, CV_8UC3);
+  cv::RNG random(static_cast<std::uint64_t>(seed) + 1);
+  random.fill(picture, cv::RNG::UNIFORM, 40, 200);
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", picture, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace glint::test
