@@ -49,11 +49,13 @@ function example(now) {
     capture('slate', 'slate tile', 'slate', { status: 'running', changed_s: now - 20, run: { state: 'running', quick: false, share: 0.42, remaining_s: 34, message: null, remedy: null, stages: [['calib', 'up to date', 1], ['rectify', 'done', 1], ['fit', 'running', 0.63], ['refine', 'waiting', null], ['export', 'waiting', null], ['report', 'waiting', null]].map(([name, state, share]) => ({ name, state, share })) } }),
     capture('leather', 'saddle leather', 'leather', { status: 'failed', changed_s: now - 90000, photographs: all(5), run: { state: 'failed', quick: false, share: 0.2, remaining_s: null, message: 'calib: the focal length cannot be determined: all five photographs were taken from straight above.', remedy: 'Add two photographs tilted by 20 to 40°, then run again.', stages: stageNames.map((name, i) => ({ name, state: i ? 'waiting' : 'failed', share: null })) } }),
     capture('brass', 'brass, hammered', 'brass', { status: 'out of date', done: { quick: true }, changed_s: now - 200000, kind: 'single', size_mm: [60, 60], photographs: all(1), run: finishedRun(true) }),
-    capture('icon', 'icon of Saint George', 'linen', { kind: 'fixed camera', changed_s: now - 3e6, size_mm: [310, 420], done: { quick: false }, run: finishedRun(false), photographs: all(12).map((p) => ({ ...p, tilt_deg: null, azimuth_deg: null })) }),
+    capture('icon', 'icon of Saint George, tempera and gilding on panel, second half of the sixteenth century', 'linen', { kind: 'fixed camera', changed_s: now - 3e6, size_mm: [310, 420], done: { quick: false }, run: finishedRun(false), photographs: all(12).map((p) => ({ ...p, tilt_deg: null, azimuth_deg: null })) }),
+    capture('linen', 'linen, from another program', 'linen', { kind: 'rectified', changed_s: now - 4e6, photographs: [], status: 'ready' }),
   ];
 }
 
-function advise(photographs) {
+function advise(photographs, kind = 'board') {
+  if (kind !== 'board') return { verdict: 'none', sentence: '', target: null, enough: photographs.length > 0, list: [] };
   const used = photographs.filter((p) => !p.left_out && p.state !== 'bad' && p.tilt_deg !== null);
   const next = ring.find(([tilt, azimuth]) => !used.some((p) => Math.hypot(p.tilt_deg - tilt, tilt < 10 ? 0 : (p.azimuth_deg - azimuth) / 3) < 6));
   const side = ['right', 'top right', 'top', 'top left', 'left', 'bottom left', 'bottom', 'bottom right'];
@@ -219,7 +221,7 @@ export class Mock {
         { name: 'Roughness, 1σ', value: '0.03', meaning: 'Median standard deviation over the texels.' }],
       previous: c.done.previous ? { maps: list('/previous') } : null,
     };
-    return { ...this.row(c), folder: c.folder, board: c.board ?? null, problem: null, limits: { photograph_bytes: 200e6, photographs: 300 }, phone: null, photographs: this.shown(c, at), advice: advise(c.photographs), options: { ...c.options, sample: { resolution_px: 1024, ...c.options.sample }, tile: { enabled: false, ...c.options.tile } }, run: c.run, result };
+    return { ...this.row(c), folder: c.folder, board: c.board ?? null, problem: null, limits: { photograph_bytes: 200e6, photographs: 300 }, phone: null, photographs: this.shown(c, at), advice: advise(c.photographs, c.kind), options: { ...c.options, sample: { resolution_px: 1024, ...c.options.sample }, tile: { enabled: false, ...c.options.tile } }, run: c.run, result };
   }
 
   picture(c, id, send) {
@@ -351,7 +353,7 @@ export class Mock {
     const c = this.phones.get(parts[1]);
     if (parts.length === 2) return this.file(['phone.html'], send);
     if (!c) throw new Refusal(410, 'This link has expired.', 'Make a new code in Studio.');
-    if (parts[2] === 'state') return send({ name: c.name, advice: advise(c.photographs), photographs: this.shown(c, `/p/${parts[1]}`) });
+    if (parts[2] === 'state') return send({ name: c.name, kind: c.kind, advice: advise(c.photographs, c.kind), photographs: this.shown(c, `/p/${parts[1]}`) });
     if (parts[2] === 'events') return this.events(response);
     if (parts[2] === 'thumbnail') return this.picture(c, parts[3], send);
     if (parts[2] === 'photographs' && method === 'POST') return send({ photographs: this.receive(c, request, body) });

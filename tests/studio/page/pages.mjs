@@ -32,6 +32,8 @@ const pages = {
   result: [`${home}/#/capture/oak`, '.maps img'],
   'quick look': [`${home}/#/capture/brass/result`, '.figures'],
   'no result': [`${home}/#/capture/felt/result`, '.empty'],
+  'fixed camera': [`${home}/#/capture/icon/photographs`, '.tile'],
+  'imported set': [`${home}/#/capture/linen/photographs`, '.notice'],
   'unknown page': [`${home}/#/nowhere`, 'h1'],
   phone: [phone, '.tile'],
   'first photograph': [freshPhone, '.take'],

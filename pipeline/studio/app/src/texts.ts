@@ -119,7 +119,7 @@ export const texts = {
     drawingOnBoard: (paper: string) => ` It lies in the window of a board on ${paper}.`,
     drawingSingle: (w: number) => `Drawing: a phone straight above the sample; the picture shows ${w} mm.`,
     sideView: 'from the side',
-    topView: 'from above',
+    becomesMaps: 'becomes maps',
   },
 
   photographsPage: {
@@ -137,6 +137,7 @@ export const texts = {
     list: (n: number, left: number) => `${photographs(n)}${left ? `, ${left} left out` : ''}`,
     none: 'No photographs yet',
     noneText: 'Flash on, room dark, the whole board in the picture. Start with one from straight above; the drawing then says where to hold the phone next.',
+    imported: 'Another program has rectified these photographs; they were imported from the command line (glint import). Go on to Maps.',
     noneTextNoBoard: 'Flash on, room dark, the sample filling the picture.',
     more: 'Everything the capture lacks',
     states: { waiting: 'Waiting', checking: 'Checking', good: 'Good', weak: 'Weak', bad: 'Bad' },

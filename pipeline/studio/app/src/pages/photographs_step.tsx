@@ -52,18 +52,21 @@ export function PhotographsStep({ capture, reload, set }: StepProps) {
   };
 
   const { photographs } = capture;
+  const imported = capture.kind === 'rectified';
+  const advised = capture.kind === 'board' || capture.advice.target !== null || (!imported && capture.advice.sentence !== '');
   const leftOut = photographs.filter((p) => p.left_out).length;
   const problems = photographs.filter(hasProblem).length;
   const shown = onlyProblems && problems > 0 ? photographs.filter(hasProblem) : photographs;
   return (
     <div class="columns photographs">
       <div class="stack">
-        <DropArea onFiles={(files) => queue.add(files)}>
+        {imported && <Notice title={t.imported} />}
+        {!imported && <DropArea onFiles={(files) => queue.add(files)}>
           <button type="button" class="button primary" onClick={() => setPhone(true)}><PhoneIcon />{t.phone}</button>
-        </DropArea>
+        </DropArea>}
         <UploadProgress uploads={uploads} />
         {failure && <FailureNotice failure={failure} />}
-        <div class="list-head">
+        {(!imported || photographs.length > 0) && <div class="list-head">
           <h2>{photographs.length ? t.list(photographs.length, leftOut) : uploads.length ? t.title : t.none}</h2>
           {problems > 0 && (
             <label class="tick">
@@ -71,8 +74,8 @@ export function PhotographsStep({ capture, reload, set }: StepProps) {
               {t.showBad}
             </label>
           )}
-        </div>
-        {photographs.length === 0 && uploads.length === 0 && (
+        </div>}
+        {photographs.length === 0 && uploads.length === 0 && !imported && (
           <div class="stack start">
             {capture.board && (
               <Notice title={t.printFirst}>
@@ -85,8 +88,8 @@ export function PhotographsStep({ capture, reload, set }: StepProps) {
         <PhotographList photographs={shown} queue={queue} uploads={uploads} onLeaveOut={leaveOut} onSelect={setSelected} />
       </div>
       <div class="stack sticky first-on-phone">
-        <AdvicePanel advice={capture.advice} photographs={photographs} selected={selected} />
-        {photographs.length > 0 && (
+        {advised && <AdvicePanel advice={capture.advice} photographs={photographs} selected={selected} directions={capture.kind === 'board'} />}
+        {(photographs.length > 0 || imported) && (
           <a class={capture.advice.enough ? 'button primary wide' : 'button wide'} href={links.step(capture.id, 'run')}>{t.goRun}</a>
         )}
       </div>

@@ -30,7 +30,7 @@ export function RunStep({ capture, reload, set }: StepProps) {
   const { run, result } = capture;
   useRunSpoken(run);
   const running = run?.state === 'running';
-  const none = !capture.photographs.some((p) => !p.left_out);
+  const none = capture.kind !== 'rectified' && !capture.photographs.some((p) => !p.left_out);
   const act = async (action: () => Promise<unknown>) => {
     setBusy(true);
     try {
@@ -44,7 +44,7 @@ export function RunStep({ capture, reload, set }: StepProps) {
   };
   return (
     <div class="columns">
-      <div class="stack">
+      <div class="stack sticky">
         {none && !result && (
           <Notice title={t.noPhotographs}>
             <a class="button small" href={links.step(capture.id, 'photographs')}>{t.toPhotographs}</a>

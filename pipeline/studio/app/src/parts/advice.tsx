@@ -9,10 +9,11 @@ interface AdviceProps {
   advice: Advice;
   photographs: Photograph[];
   selected?: string | null;
+  directions?: boolean; // whether photographs have directions: not without a board
   compact?: boolean;
 }
 
-export function AdvicePanel({ advice, photographs, selected, compact }: AdviceProps) {
+export function AdvicePanel({ advice, photographs, selected, directions = true, compact }: AdviceProps) {
   const t = texts.photographsPage;
   const rest = advice.list.filter((line) => line !== advice.sentence);
   return (
@@ -22,10 +23,12 @@ export function AdvicePanel({ advice, photographs, selected, compact }: AdvicePr
         {advice.verdict !== 'none' && <VerdictBadge verdict={advice.verdict} />}
       </header>
       <p class="advice-sentence" role="status">{advice.sentence}</p>
-      <div class="advice-drawings">
-        {advice.target && <PoseDrawing target={advice.target} />}
-        <Polar photographs={photographs} target={advice.target} selected={selected} />
-      </div>
+      {(directions || advice.target) && (
+        <div class="advice-drawings">
+          {advice.target && <PoseDrawing target={advice.target} board={directions} />}
+          {directions && <Polar photographs={photographs} target={advice.target} selected={selected} />}
+        </div>
+      )}
       {rest.length > 0 && (
         <details>
           <summary>{t.more}</summary>

@@ -60,7 +60,7 @@ export function poseSentence(target: Direction): string {
   return side === null ? texts.pose.above : texts.pose.tilted(target.tilt_deg, side);
 }
 
-export function PoseDrawing({ target }: { target: Direction }) {
+export function PoseDrawing({ target, board }: { target: Direction; board: boolean }) {
   const tilted = sideOf(target) !== null;
   const d = toward(target);
   const { right, up } = axes(d);
@@ -75,9 +75,9 @@ export function PoseDrawing({ target }: { target: Direction }) {
   return (
     <figure class="pose">
       <svg viewBox="-128 -142 256 196" role="img" aria-label={texts.pose.label(poseSentence(target))}>
-        <path class="pose-board" d={path(square(1))} />
-        <path class="pose-board-line" d={path(square(0.8))} />
-        <path class="pose-sample" d={path(square(0.56))} />
+        {board && <path class="pose-board" d={path(square(1))} />}
+        {board && <path class="pose-board-line" d={path(square(0.8))} />}
+        <path class="pose-sample" d={path(square(board ? 0.56 : 1))} />
         <path class="pose-light" d={square(0.56).map((corner) => `M${cx} ${cy}L${project(corner).map((v) => v.toFixed(1)).join(' ')}`).join('')} />
         {tilted && <path class="pose-vertical" d={`M0 0L${project([0, 0, 2.05]).join(' ')}`} />}
         <path class="pose-axis" d={`M0 0L${cx} ${cy}`} />

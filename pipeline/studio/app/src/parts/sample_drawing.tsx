@@ -50,6 +50,16 @@ function Arrow({ from, to, label, vertical }: { from: number; to: number; label:
   );
 }
 
+// What becomes maps of one photograph: the largest square that stays clear of its borders.
+function SquareIn({ side }: { side: number }) {
+  return (
+    <>
+      <rect class="draw-sample" x={-side / 2} y={-side / 2} width={side} height={side} />
+      <text class="draw-on-sample" y={4} text-anchor="middle">{t.becomesMaps}</text>
+    </>
+  );
+}
+
 function SideView({ size, board, height_mm, scale }: { size: Size; board: Board | null; height_mm: number | null; scale: number }) {
   const half = (size[0] / 2) * scale;
   const thick = height_mm === null ? 8 : Math.max(-18, Math.min(26, height_mm * scale));
@@ -83,7 +93,7 @@ export function SampleDrawing({ size, board, paper, height_mm, pictureWidth_mm }
     : t.drawing(size[0], size[1], height_mm) + (board || paper ? t.drawingOnBoard(board?.paper ?? paper!) : '');
   return (
     <figure class="sample-drawing">
-      <svg viewBox={`0 0 ${width} ${planHeight + sideHeight + 16}`} role="img" aria-label={label}>
+      <svg viewBox={`0 0 ${width} ${planHeight + (picture ? 0 : sideHeight + 16)}`} role="img" aria-label={label}>
         <g transform={`translate(${width / 2} ${planHeight / 2 + 6})`}>
           {sheet && <rect class="draw-sheet" x={(-sheet[0] / 2) * scale} y={(-sheet[1] / 2) * scale} width={sheet[0] * scale} height={sheet[1] * scale} />}
           {board && (
@@ -93,6 +103,7 @@ export function SampleDrawing({ size, board, paper, height_mm, pictureWidth_mm }
           )}
           {board?.window_mm && <rect class="draw-window" x={(-board.window_mm[0] / 2) * scale} y={(-board.window_mm[1] / 2) * scale} width={board.window_mm[0] * scale} height={board.window_mm[1] * scale} />}
           {picture && <rect class="draw-frame" x={(-picture[0] / 2) * scale} y={(-picture[1] / 2) * scale} width={picture[0] * scale} height={picture[1] * scale} />}
+          {picture && <SquareIn side={0.9 * picture[1] * scale} />}
           {!picture && <rect class="draw-sample" x={-w / 2} y={-h / 2} width={w} height={h} />}
           <g transform={`translate(0 ${(-extent[1] / 2) * scale - 8})`}>
             {picture ? <Arrow from={(-picture[0] / 2) * scale} to={(picture[0] / 2) * scale} label={texts.mm(pictureWidth_mm!)} /> : <Arrow from={-w / 2} to={w / 2} label={texts.mm(size[0])} />}

@@ -39,14 +39,15 @@ function Photographs({ base }: { base: string }) {
       </main>
     );
   }
+  const board = !data?.kind || data.kind === 'board';
   const open = uploads.filter((u) => u.state === 'queued' || u.state === 'sending' || u.state === 'pausing').length;
   const offline = failure?.status === 0 || uploads.some((u) => u.state === 'pausing');
   return (
     <main id="content" class="phone">
       <h1>{data?.name ?? t.title}</h1>
-      <Reminder board={!data || !data.kind || data.kind === 'board'} />
+      <Reminder board={board} />
       {offline ? <Notice tone="warning" title={t.offline} /> : failure && <FailureNotice failure={failure} retry={reload} />}
-      {data && <AdvicePanel advice={data.advice} photographs={data.photographs} compact />}
+      {data && <AdvicePanel advice={data.advice} photographs={data.photographs} directions={board} compact />}
       <section class="phone-list" aria-labelledby="sent-title">
         <h2 id="sent-title">{t.sent}</h2>
         {data && data.photographs.length === 0 && uploads.length === 0 && <p class="quiet">{t.none}</p>}
