@@ -4,6 +4,7 @@
 #   bin/glint, bin/glint-*        programs (GlintTargets.cmake)
 #   share/glint/models            trained weights; programs look here (fitting/weights/find_model.cc)
 #   share/glint/schemas           of manifests
+#   share/applications, share/icons  Glint Studio in a desktop's menu
 #   share/man, share/*completion  from what the programs say of themselves (target package_texts)
 #
 #   lib/python3/dist-packages/glint   component `python`, the package python3-glint (python/CMakeLists.txt)
@@ -19,6 +20,9 @@ file(GLOB glint_models CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fitting/models/*.
 install(FILES ${glint_models} DESTINATION share/glint/models)
 install(FILES pipeline/contract/manifest.schema.json DESTINATION share/glint/schemas)
 install(DIRECTORY workflow DESTINATION share/glint)
+install(FILES pipeline/studio/desktop/glint-studio.desktop DESTINATION share/applications)
+install(FILES pipeline/studio/app/src/icon.svg DESTINATION share/icons/hicolor/scalable/apps
+  RENAME glint-studio.svg)
 install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs FILES_MATCHING PATTERN "*.md")
 
@@ -86,7 +90,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # libtorch alone is content with the reference BLAS, the slowest.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
   "ninja-build, libopenblas0-serial | libopenblas0-pthread | libopenblas0-openmp")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "colmap")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "colmap, xdg-utils")
 if(GLINT_PYTHON)
   # Packages are of the interpreter that the module was compiled for.
   math(EXPR next_minor "${Python_VERSION_MINOR} + 1")

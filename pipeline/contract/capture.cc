@@ -416,8 +416,8 @@ Capture ReadCapture(const fs::path& folder, Photographs photographs) {
   RejectUnknownTables(capture.file, *document);
   ReadSample(capture.file, *document, &capture);
   TomlTable photos(capture.file, *document, "photos");
-  capture.photos = ReadPhotos(capture.folder, "files", &photos, capture.file,
-                              &capture.left_out_photos);
+  capture.photos =
+      ReadPhotos(capture.folder, "files", &photos, capture.file, &capture.left_out_photos);
   photos.RejectUnknown();
   ReadBoard(capture.file, *document, &capture);
   CheckUnits(capture.file, capture);

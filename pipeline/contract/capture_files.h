@@ -20,8 +20,8 @@ void RequireUtf8(const std::filesystem::path& file, const std::string& field,
                  const std::string& name);
 
 // Photographs of the table's `key` (patterns) and `video` (patterns too; one frame in `every`),
-// each once, but for those that `left_out` lists by their paths, which `left_out` returns where it is
-// not null. Throws UserError: as MatchFiles(), a name that is not UTF-8, too many.
+// each once, but for those that `left_out` lists by their paths, which `left_out` returns where it
+// is not null. Throws UserError: as MatchFiles(), a name that is not UTF-8, too many.
 std::vector<std::string> ReadPhotos(const std::filesystem::path& folder, const std::string& key,
                                     TomlTable* table, const std::filesystem::path& file,
                                     std::vector<std::string>* left_out = nullptr);

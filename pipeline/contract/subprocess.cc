@@ -81,9 +81,15 @@ pid_t Spawn(const std::vector<std::string>& command, const fs::path& log,
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
+  // Of a group of its own, though a shell that started this process in the background had it
+  // ignored.
+  sigset_t interrupts;
+  sigemptyset(&interrupts);
+  sigaddset(&interrupts, SIGINT);
+  posix_spawnattr_setsigdefault(&attributes, &interrupts);
   posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, static_cast<short>(POSIX_SPAWN_SETSIGMASK |
-                                                           (own_group ? POSIX_SPAWN_SETPGROUP : 0)));
+  const int group_flags = own_group ? POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF : 0;
+  posix_spawnattr_setflags(&attributes, static_cast<short>(POSIX_SPAWN_SETSIGMASK | group_flags));
   pid_t process = 0;
   const int error = posix_spawn(&process, argv[0].c_str(), &actions, &attributes, pointers.data(),
                                 variables.data());

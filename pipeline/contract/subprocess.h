@@ -27,11 +27,12 @@ struct RunToLogOptions {
 void RunToLog(const std::vector<std::string>& argv, const std::filesystem::path& log,
               const RunToLogOptions& options = {});
 
-// As RunToLog, in a process group of its own, which one signal reaches as Ctrl-C in a terminal does.
+// As RunToLog, in a process group of its own, which one signal reaches as Ctrl-C in a terminal
+// does.
 struct RunInGroupOptions {
   std::vector<std::string> environment;
-  // Called at least five times a second. True: the group is interrupted (SIGINT), and killed where it
-  // has not ended ten seconds later.
+  // Called at least five times a second. True: the group is interrupted (SIGINT), and killed where
+  // it has not ended ten seconds later.
   std::function<bool()> cancelled;
 };
 

@@ -66,9 +66,9 @@ std::optional<HttpReply> OpenSession(const Door& door, const HttpRequest& reques
   HttpReply reply;
   reply.status = 303;
   reply.type = "text/plain";
-  reply.headers = {{"Location", "/"},
-                   {"Set-Cookie", door.cookie() + "=" + door.session +
-                                      "; Path=/; HttpOnly; SameSite=Strict"}};
+  reply.headers = {
+      {"Location", "/"},
+      {"Set-Cookie", door.cookie() + "=" + door.session + "; Path=/; HttpOnly; SameSite=Strict"}};
   return reply;
 }
 

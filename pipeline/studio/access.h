@@ -2,7 +2,8 @@
 //
 //   Host     an address that is served, by number or "localhost": a page of elsewhere whose name is
 //            made to lead here (DNS rebinding) names itself there
-//   Origin   that of the page itself, where a browser tells it, and always for writes; a write needs
+//   Origin   that of the page itself, where a browser tells it, and always for writes; a write
+//   needs
 //            the header X-Glint besides, which no form of another site can send
 //   cookie   the session's secret, which the address that Studio opens sets
 #pragma once
@@ -19,8 +20,8 @@ namespace glint {
 struct Door {
   std::vector<std::string> hosts;  // "127.0.0.1", "localhost"; without the port
   int port = 0;
-  std::string session;    // the secret of its cookie; empty: only phones come in here
-  bool local = false;     // other machines do not reach it
+  std::string session;  // the secret of its cookie; empty: only phones come in here
+  bool local = false;   // other machines do not reach it
   std::string cookie() const { return "glint_studio_" + std::to_string(port); }
 };
 

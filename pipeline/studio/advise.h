@@ -31,7 +31,7 @@ struct StudioAdvice {
   std::string sentence;             // what to do now
   std::optional<Direction> target;  // where the next photograph is to be taken from; none: anywhere
   bool enough = false;
-  std::vector<std::string> list;    // everything that can be said, most important first
+  std::vector<std::string> list;  // everything that can be said, most important first
 };
 
 // Of the photographs that are used. A capture without a board has no directions to go by.

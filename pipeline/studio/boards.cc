@@ -42,9 +42,9 @@ std::string PaperOf(const BoardFile& file) {
     const char* name;
     double width_mm, height_mm;
   };
-  constexpr Paper kPapers[] = {{"A5", 148, 210},     {"A4", 210, 297},       {"A3", 297, 420},
-                               {"A2", 420, 594},     {"Letter", 215.9, 279.4}, {"Legal", 215.9, 355.6},
-                               {"Tabloid", 279.4, 431.8}};
+  constexpr Paper kPapers[] = {
+      {"A5", 148, 210},         {"A4", 210, 297},        {"A3", 297, 420},         {"A2", 420, 594},
+      {"Letter", 215.9, 279.4}, {"Legal", 215.9, 355.6}, {"Tabloid", 279.4, 431.8}};
   for (const Paper& paper : kPapers) {
     const double narrow = std::min(width, height), wide = std::max(width, height);
     if (std::abs(narrow - paper.width_mm) < 1 && std::abs(wide - paper.height_mm) < 1) {

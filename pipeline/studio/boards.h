@@ -23,8 +23,9 @@ class BoardShelf {
 
   std::vector<KeptBoard> List() const;  // by name; folders that hold no board are passed over
   std::optional<KeptBoard> Find(const std::string& id) const;
-  // Runs `glint board`: `paper` is "A4", "Letter" …; `window_mm` what the window must hold, or none.
-  // A board of the same making is not made twice. Throws HttpError with what the program says.
+  // Runs `glint board`: `paper` is "A4", "Letter" …; `window_mm` what the window must hold, or
+  // none. A board of the same making is not made twice. Throws HttpError with what the program
+  // says.
   KeptBoard Print(const std::string& paper, const std::optional<std::array<double, 2>>& window_mm);
   // The printed ruler's length: `glint board --measured`.
   KeptBoard Measure(const std::string& id, double ruler_mm);

@@ -28,8 +28,8 @@ struct CheckedPhoto {
 
 class CheckQueue {
  public:
-  // `on_change` is called, by any thread, with the id of a capture of which a photograph's state has
-  // changed.
+  // `on_change` is called, by any thread, with the id of a capture of which a photograph's state
+  // has changed.
   CheckQueue(int threads, std::function<void(const std::string& capture)> on_change);
   ~CheckQueue();  // photographs that wait are not checked any more
   CheckQueue(const CheckQueue&) = delete;

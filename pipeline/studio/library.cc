@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMostDeep = 5;
 constexpr size_t kMostCaptures = 5000;
+constexpr size_t kMostFolders = 20000;  // a second's work; somebody's whole home has more
 
 bool IsCapture(const fs::path& folder) {
   std::error_code error;
@@ -25,9 +26,9 @@ bool IsCapture(const fs::path& folder) {
          fs::is_regular_file(folder / kDraftFile, error);
 }
 
-void Look(const fs::path& root, const fs::path& folder, int deep,
+void Look(const fs::path& root, const fs::path& folder, int deep, size_t* looked_at,
           std::vector<LibraryEntry>* found) {
-  if (found->size() >= kMostCaptures) return;
+  if (found->size() >= kMostCaptures || ++*looked_at > kMostFolders) return;
   if (IsCapture(folder)) {
     const std::string place = folder.lexically_relative(root).generic_string();
     found->push_back({IdOf(place), folder.filename().string(), folder});
@@ -38,7 +39,7 @@ void Look(const fs::path& root, const fs::path& folder, int deep,
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename();
     if (name[0] == '.' || entry.is_symlink(error) || !entry.is_directory(error)) continue;
-    Look(root, entry.path(), deep - 1, found);
+    Look(root, entry.path(), deep - 1, looked_at, found);
   }
 }
 
@@ -63,7 +64,8 @@ fs::path StudioFolderOf(const fs::path& capture) { return capture / "glint" / ".
 
 std::vector<LibraryEntry> FindCaptures(const fs::path& root) {
   std::vector<LibraryEntry> found;
-  Look(root, root, kMostDeep, &found);
+  size_t looked_at = 0;
+  Look(root, root, kMostDeep, &looked_at, &found);
   std::sort(found.begin(), found.end(),
             [](const LibraryEntry& a, const LibraryEntry& b) { return a.folder < b.folder; });
   return found;

@@ -24,7 +24,8 @@ struct LibraryEntry {
 };
 
 // Every folder at or beneath `root`, five deep, that holds a capture.toml or a draft; sorted by
-// place. What lies in a capture is not looked into, nor are hidden folders and links.
+// place; of the first 20 000 folders that are met. What lies in a capture is not looked into, nor
+// are hidden folders and links.
 std::vector<LibraryEntry> FindCaptures(const std::filesystem::path& root);
 
 // The opaque id of a name: nothing of a client's ever becomes a path but by being found in a list.

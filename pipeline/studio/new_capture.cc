@@ -80,8 +80,7 @@ void Fill(const NewCapture& wanted, const std::string& name, const fs::path& fol
     WriteFileAtomically(folder / kDraftFile, DraftJson(wanted).dump(1) + "\n");
     return;
   }
-  WriteFileAtomically(folder / "board.json",
-                      ReadTextFile(wanted.board->folder / "board.json"));
+  WriteFileAtomically(folder / "board.json", ReadTextFile(wanted.board->folder / "board.json"));
   const fs::path file = WriteCapture(InitOptionsOf(wanted, folder)).file;
   std::string text = ReadTextFile(file);
   // The folder's name is not yet the one that glint init would see.
@@ -95,7 +94,8 @@ void Fill(const NewCapture& wanted, const std::string& name, const fs::path& fol
 
 fs::path MakeCapture(const fs::path& root, const NewCapture& wanted) {
   if (wanted.kind == "rectified") {
-    throw HttpError{422, "photographs that another program has rectified need their cameras as well",
+    throw HttpError{422,
+                    "photographs that another program has rectified need their cameras as well",
                     "import them with glint import; the capture then appears here"};
   }
   if (wanted.kind != "board" && wanted.kind != "single") {

@@ -15,14 +15,15 @@ struct NewCapture {
   std::string name;
   std::string kind = "board";  // "board" or "single"
   std::optional<std::array<double, 2>> size_mm;
-  std::optional<double> height_mm;   // of the sample above the board; none: "auto"
-  std::optional<KeptBoard> board;    // "board"
+  std::optional<double> height_mm;               // of the sample above the board; none: "auto"
+  std::optional<KeptBoard> board;                // "board"
   double picture_width_mm = 0, distance_mm = 0;  // "single": one of them
 };
 
 // Makes `root`/NAME with photos/ and, for a board, board.json and capture.toml; for one photograph
 // a draft, since `glint init --single` reads the photograph. Whole or not at all. Returns the
-// folder. Throws HttpError: no name, a folder that is there, a sample that the window does not hold.
+// folder. Throws HttpError: no name, a folder that is there, a sample that the window does not
+// hold.
 std::filesystem::path MakeCapture(const std::filesystem::path& root, const NewCapture& wanted);
 
 // Of a capture without capture.toml.

@@ -80,7 +80,8 @@ Json FormOption(const Json& option, const std::string& stage) {
 
 Json OwnOption(const std::string& name, const std::string& type, const Json& fallback,
                const std::string& help) {
-  return {{"name", name}, {"type", type}, {"default", fallback}, {"help", help}, {"important", true}};
+  return {
+      {"name", name}, {"type", type}, {"default", fallback}, {"help", help}, {"important", true}};
 }
 
 // Of OptionForm's stages; null: there is none.
@@ -218,7 +219,8 @@ Json SavedOptions(const Capture& capture) {
 
 std::string WithOptions(const Capture& capture, const std::string& text, const Json& changes,
                         const Json& form) {
-  if (!changes.is_object()) throw HttpError{422, "found no options", "send {stage: {option: value}}"};
+  if (!changes.is_object())
+    throw HttpError{422, "found no options", "send {stage: {option: value}}"};
   std::string changed = text;
   for (const auto& [stage, options] : changes.items()) {
     if (!options.is_object()) ThrowValue(stage, "", options, "send {option: value}");

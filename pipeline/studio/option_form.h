@@ -12,8 +12,8 @@
 namespace glint {
 
 // {stages: [{name, summary, options: […]}]}, with "sample", "run" and "tile" for what is no stage's
-// option. Starts each stage's program once; keep the result. `cancelled` ends it early, with options
-// missing.
+// option. Starts each stage's program once; keep the result. `cancelled` ends it early, with
+// options missing.
 Json OptionForm(const std::function<bool()>& cancelled = {});
 
 // What capture.toml holds, by stage: {"fit": {"metals": "possible"}, "sample": {…}, …}.

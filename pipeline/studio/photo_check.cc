@@ -29,7 +29,9 @@ constexpr double kUsualFocal_mm = 26;  // 35 mm equivalent, see capture/assumed_
 Camera PinholeOf(const Photo& photo, int width_px, int height_px) {
   const double focal_mm = photo.focal_length_35mm > 0 ? photo.focal_length_35mm : kUsualFocal_mm;
   const double focal_px = focal_mm / kFilmDiagonal_mm * std::hypot(width_px, height_px);
-  return {CameraModel::kSimplePinhole, width_px, height_px,
+  return {CameraModel::kSimplePinhole,
+          width_px,
+          height_px,
           {focal_px, 0.5 * width_px, 0.5 * height_px}};
 }
 
@@ -79,8 +81,8 @@ std::optional<GuidancePhoto> PoseOf(const Photo& photo, const CheckTask& task,
   GuidancePhoto pose;
   pose.camera_in_sample_mm = sample_from_camera.translation;
   pose.light_in_sample_mm =
-      sample_from_camera * Eigen::Vector3d(task.light_offset_mm[0], task.light_offset_mm[1],
-                                           task.light_offset_mm[2]);
+      sample_from_camera *
+      Eigen::Vector3d(task.light_offset_mm[0], task.light_offset_mm[1], task.light_offset_mm[2]);
   pose.posed = PosedCamera{camera, *camera_from_sample};
   return pose;
 }
@@ -217,8 +219,7 @@ PhotoCheck CheckPhoto(const std::filesystem::path& file, const CheckTask& task,
       check.board_found = !detection.corners.empty();
       check.board_problem = detection.problem;
       check.mismatch = detection.mismatch;
-      check.clipped_share =
-          ClippedShareOfSample(photo, detection.corners, task.sample_size_mm);
+      check.clipped_share = ClippedShareOfSample(photo, detection.corners, task.sample_size_mm);
       check.pose = PoseOf(photo, task, detection);
       if (check.pose) check.pose->clipped_share = check.clipped_share;
     }

@@ -20,17 +20,17 @@ struct CheckTask {
   std::optional<Board> board;  // none: the capture has no board
   std::array<double, 2> sample_size_mm{0, 0};
   std::array<double, 3> light_offset_mm{0, 0, 0};  // of the flash, in the camera frame
-  std::string Key() const;  // the same for tasks that find the same
+  std::string Key() const;                         // the same for tasks that find the same
 };
 CheckTask CheckTaskOf(const Capture& capture);
 
 struct PhotoCheck {
-  std::string unreadable;      // why the file cannot be read; empty: it can
-  PhotoMeasures measures;      // in pixels of the whole photograph; without name
+  std::string unreadable;  // why the file cannot be read; empty: it can
+  PhotoMeasures measures;  // in pixels of the whole photograph; without name
   bool board_found = false;
-  std::string board_problem;   // why it was not found
-  bool mismatch = false;       // another board than the described one is seen
-  double clipped_share = 0;    // of the sample, see guidance/clipping.h
+  std::string board_problem;          // why it was not found
+  bool mismatch = false;              // another board than the described one is seen
+  double clipped_share = 0;           // of the sample, see guidance/clipping.h
   std::optional<GuidancePhoto> pose;  // where camera and flash were; without name
 };
 

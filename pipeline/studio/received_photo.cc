@@ -67,7 +67,8 @@ HttpError NoPhotograph(const std::string& what) {
 std::string PhotoEnding(Bytes first, const std::string& name) {
   if (first.starts_with("\xff\xd8\xff"sv)) return ".jpg";
   if (first.starts_with("\x89PNG\r\n\x1a\n"sv)) return ".png";
-  if (first.size() >= 12 && first.starts_with("RIFF"sv) && first.substr(8, 4) == "WEBP") return ".webp";
+  if (first.size() >= 12 && first.starts_with("RIFF"sv) && first.substr(8, 4) == "WEBP")
+    return ".webp";
   if (first.starts_with("\x76\x2f\x31\x01"sv)) return ".exr";
   if (first.size() >= 12 && first.substr(4, 4) == "ftyp") return EndingOfBrand(first.substr(8, 4));
   if (first.starts_with("FUJIFILMCCD-RAW"sv)) return ".raf";
@@ -75,8 +76,8 @@ std::string PhotoEnding(Bytes first, const std::string& name) {
   if (first.starts_with("IIRO"sv) || first.starts_with("IIRS"sv)) return ".orf";
   if (first.starts_with("II*\0"sv) || first.starts_with("MM\0*"sv)) {
     const std::string given = LowerEnding(name);
-    const bool raw = IsOneOf(given, {".dng", ".nef", ".nrw", ".cr2", ".arw", ".sr2", ".pef",
-                                     ".3fr", ".iiq", ".erf", ".srw"});
+    const bool raw = IsOneOf(given, {".dng", ".nef", ".nrw", ".cr2", ".arw", ".sr2", ".pef", ".3fr",
+                                     ".iiq", ".erf", ".srw"});
     return raw ? given : ".tif";
   }
   return "";
@@ -109,8 +110,8 @@ void ReceivedPhoto::Identify() {
     throw NoPhotograph(video ? "a video" : "a file that is no photograph by its content");
   }
   temporary_ = folder_ / (kTemporaryPrefix + RandomToken() + ending_);
-  descriptor_ = ::open(temporary_.c_str(),
-                       O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+  descriptor_ =
+      ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (descriptor_ < 0) {
     temporary_.clear();
     ThrowDisk(errno);

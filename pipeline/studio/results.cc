@@ -126,8 +126,11 @@ Json FiguresJson(const fs::path& work) {
   AddFigure(report, "/metrics/fitted/ssim", "structure", 1, "{:.3f}",
             "similarity of structure (SSIM) between rendering and photograph; 1 is the same",
             &figures);
-  AddFigure(calib, "/metrics/rms_px", "cameras", 1, "{:.2f} px",
-            "distance between the board's corners and where the calibration puts them", &figures);
+  const Json::json_pointer corners("/metrics/corners");
+  if (calib.contains(corners) && calib[corners] != 0) {  // without a board there are none
+    AddFigure(calib, "/metrics/rms_px", "cameras", 1, "{:.2f} px",
+              "distance between the board's corners and where the calibration puts them", &figures);
+  }
   AddFigure(calib, "/metrics/guidance/highlight_share", "highlights", 100, "{:.0f} %",
             "of the sample that shows a highlight in some photograph", &figures);
   return figures;
@@ -173,11 +176,15 @@ std::shared_ptr<FileToSend> OpenToSend(const fs::path& file) {
 }
 
 std::string TypeOfFile(const std::string& name) {
-  static const std::map<std::string, std::string> types = {
-      {".html", "text/html; charset=utf-8"}, {".png", "image/png"}, {".jpg", "image/jpeg"},
-      {".svg", "image/svg+xml"},             {".glb", "model/gltf-binary"},
-      {".json", "application/json"},         {".pdf", "application/pdf"},
-      {".zip", "application/zip"},           {".txt", "text/plain; charset=utf-8"}};
+  static const std::map<std::string, std::string> types = {{".html", "text/html; charset=utf-8"},
+                                                           {".png", "image/png"},
+                                                           {".jpg", "image/jpeg"},
+                                                           {".svg", "image/svg+xml"},
+                                                           {".glb", "model/gltf-binary"},
+                                                           {".json", "application/json"},
+                                                           {".pdf", "application/pdf"},
+                                                           {".zip", "application/zip"},
+                                                           {".txt", "text/plain; charset=utf-8"}};
   const auto found = types.find(fs::path(name).extension().string());
   return found == types.end() ? "application/octet-stream" : found->second;
 }

@@ -85,8 +85,8 @@ struct RunManager::Run {
 };
 
 Json ToJson(const RunView& view) {
-  Json json = {{"state", view.state},     {"quick", view.quick},     {"stages", Json::array()},
-               {"share", view.share},     {"remaining_s", nullptr},  {"message", nullptr},
+  Json json = {{"state", view.state}, {"quick", view.quick},    {"stages", Json::array()},
+               {"share", view.share}, {"remaining_s", nullptr}, {"message", nullptr},
                {"remedy", nullptr}};
   for (const RunStage& stage : view.stages) {
     json["stages"].push_back({{"name", stage.name}, {"state", stage.state}, {"share", nullptr}});
@@ -219,8 +219,7 @@ void RunManager::Watch(Run* run) {
       }
     }
     if (view.state == "failed") {
-      const ProgramMessage said =
-          failure.empty() ? MessageIn(TextIn(log)) : SplitMessage(failure);
+      const ProgramMessage said = failure.empty() ? MessageIn(TextIn(log)) : SplitMessage(failure);
       view.message = said.message;
       view.remedy = said.remedy;
     }

@@ -120,8 +120,8 @@ class Studio::Impl {
     server.deadlines = options.deadlines;
     // The handler waits for its door's port.
     const std::lock_guard<std::mutex> guard(doors_);
-    local_server_ = std::make_unique<HttpServer>(
-        server, [this](const HttpRequest& request, HttpBody* body) {
+    local_server_ =
+        std::make_unique<HttpServer>(server, [this](const HttpRequest& request, HttpBody* body) {
           return Answer(DoorOf(&local_), request, body);
         });
     local_.port = local_server_->port();
@@ -168,8 +168,8 @@ class Studio::Impl {
     server.address = "0.0.0.0";
     server.most_per_client = kMostPerLanClient;
     server.deadlines = options_.deadlines;
-    lan_server_ = std::make_unique<HttpServer>(
-        server, [this](const HttpRequest& request, HttpBody* body) {
+    lan_server_ =
+        std::make_unique<HttpServer>(server, [this](const HttpRequest& request, HttpBody* body) {
           return Answer(DoorOf(&lan_), request, body);
         });
     lan_.port = lan_server_->port();
@@ -268,8 +268,7 @@ class Studio::Impl {
     }
     if (at.size() == 1 && method == "POST") {
       const Json json = JsonBody(body);
-      return JsonReply(
-          ToJson(shelf.Print(TextIn(json, "paper", "A4"), PairIn(json, "window_mm"))));
+      return JsonReply(ToJson(shelf.Print(TextIn(json, "paper", "A4"), PairIn(json, "window_mm"))));
     }
     if (at.size() == 2 && method == "PUT") {
       const double ruler_mm = NumberIn(JsonBody(body), "ruler_measured_mm", 0);
@@ -362,8 +361,8 @@ class Studio::Impl {
   }
 
   Json CaptureFacts(const Door&, const LibraryEntry& entry) {
-    Json json = workspace_.CaptureJson(entry, FilesOf(entry),
-                                       "/api/captures/" + entry.id + "/thumbnail/");
+    Json json =
+        workspace_.CaptureJson(entry, FilesOf(entry), "/api/captures/" + entry.id + "/thumbnail/");
     const auto link = phones_.Of(entry.id);
     json["phone"] = link ? PhoneFacts(*link) : Json();
     return json;

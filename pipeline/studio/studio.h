@@ -12,9 +12,9 @@ namespace glint {
 
 struct StudioOptions {
   std::filesystem::path folder = ".";
-  int port = 8417;      // 0: any free one
-  bool lan = false;     // other machines of the network may open Studio as well
-  int check_threads = 0;  // 0: one for each core
+  int port = 8417;               // 0: any free one
+  bool lan = false;              // other machines of the network may open Studio as well
+  int check_threads = 0;         // 0: one for each core
   bool prepare_options = false;  // ask the programs for their options before a page does
   std::string version;
   std::vector<std::string> lan_addresses;  // of this machine; empty: as its interfaces say

@@ -39,8 +39,9 @@ std::string Quoted(const std::string& text) {
 }
 
 bool IsBareKey(const std::string& key) {
-  return !key.empty() && key.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                               "0123456789_-") == std::string::npos;
+  return !key.empty() && key.find_first_not_of(
+                             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                             "0123456789_-") == std::string::npos;
 }
 
 struct Lines {
@@ -144,8 +145,8 @@ std::string WithTomlValue(const std::filesystem::path& file, const std::string& 
         end_line.substr(std::min<size_t>(end_line.size(), old->source().end.column - 1));
     const auto at = lines.all.begin() + static_cast<std::ptrdiff_t>(first) - 1;
     lines.all.erase(at, at + static_cast<std::ptrdiff_t>(last - first + 1));
-    if (value) lines.all.insert(lines.all.begin() + static_cast<std::ptrdiff_t>(first) - 1,
-                                line + behind);
+    if (value)
+      lines.all.insert(lines.all.begin() + static_cast<std::ptrdiff_t>(first) - 1, line + behind);
   } else {
     size_t header = 0;
     while (header < lines.all.size() && !IsHeader(lines.all[header], table)) ++header;

@@ -18,8 +18,8 @@ std::string WithTomlValue(const std::filesystem::path& file, const std::string& 
                           const std::string& table, const std::string& key,
                           const std::optional<Json>& value);
 
-// `text` with one more text in the list [table] key, which is made where it is missing; a single text
-// becomes a list.
+// `text` with one more text in the list [table] key, which is made where it is missing; a single
+// text becomes a list.
 std::string WithTomlListItem(const std::filesystem::path& file, const std::string& text,
                              const std::string& table, const std::string& key,
                              const std::string& item);

@@ -87,6 +87,13 @@ std::set<std::string> Undecided(const fs::path& capture) {
   return names;
 }
 
+// What a judgement depends on beside the photographs.
+std::string KeyOfJudgement(const std::optional<Capture>& capture, const CheckTask& task) {
+  if (!capture) return "draft\n";
+  return task.Key() + std::to_string(capture->resolution_px[0]) + " " +
+         std::to_string(static_cast<int>(capture->kind)) + "\n";
+}
+
 std::string KindOf(const Capture& capture) {
   if (capture.fixed_camera()) return "fixed camera";
   if (capture.has_board) return "board";
@@ -143,8 +150,8 @@ Json PhotoJson(const StudioPhoto& photo, const std::string& thumbnails) {
 void AddCheck(const CheckedPhoto& checked, Json* json) {
   const PhotoCheck& check = *checked.check;
   if (!checked.thumbnail.empty()) {
-    (*json)["thumbnail"] = (*json)["url_of_thumbnail"].get<std::string>() +
-                           "?v=" + checked.content.substr(0, 8);
+    (*json)["thumbnail"] =
+        (*json)["url_of_thumbnail"].get<std::string>() + "?v=" + checked.content.substr(0, 8);
   }
   (*json)["board_found"] = check.board_found;
   if (!check.unreadable.empty()) return;
@@ -168,9 +175,9 @@ void AddVerdict(const PhotoVerdict& verdict, const std::map<std::string, std::st
 }  // namespace
 
 struct Workspace::State {
-  std::optional<Capture> capture;   // none: a draft, or broken
+  std::optional<Capture> capture;  // none: a draft, or broken
   std::optional<NewCapture> draft;
-  ProgramMessage problem;           // of a capture.toml that cannot be read
+  ProgramMessage problem;  // of a capture.toml that cannot be read
   fs::path folder;
   CheckTask task;
 };
@@ -183,9 +190,8 @@ Workspace::Workspace(const fs::path& root, int check_threads)
   for (const LibraryEntry& entry : FindCaptures(root_)) {
     ReceivedPhoto::RemoveLeftovers(entry.folder / "photos");
   }
-  runs_ = std::make_unique<RunManager>([this](const std::string& capture) {
-    events_.Publish("run", capture);
-  });
+  runs_ = std::make_unique<RunManager>(
+      [this](const std::string& capture) { events_.Publish("run", capture); });
   checks_ = std::make_unique<CheckQueue>(check_threads, [this](const std::string& capture) {
     LeaveOutBad(capture);
     events_.Publish("photograph", capture);
@@ -204,9 +210,23 @@ Workspace::~Workspace() {
   runs_.reset();
 }
 
-LibraryEntry Workspace::Find(const std::string& capture) const {
-  for (const LibraryEntry& entry : FindCaptures(root_)) {
-    if (entry.id == capture) return entry;
+std::vector<LibraryEntry> Workspace::Captures(bool again) {
+  using Clock = std::chrono::steady_clock;
+  constexpr auto kFresh = std::chrono::seconds(1);  // others make captures too
+  const std::lock_guard<std::mutex> guard(mutex_);
+  if (again || Clock::now() - listed_at_ > kFresh) {
+    listed_ = FindCaptures(root_);
+    listed_at_ = Clock::now();
+  }
+  return listed_;
+}
+
+LibraryEntry Workspace::Find(const std::string& capture) {
+  for (const bool again : {false, true}) {
+    for (const LibraryEntry& entry : Captures(again)) {
+      std::error_code error;
+      if (entry.id == capture && fs::is_directory(entry.folder, error)) return entry;
+    }
   }
   throw HttpError{404, "there is no such capture (any more)", "reload the page"};
 }
@@ -229,7 +249,10 @@ Workspace::State Workspace::Read(const LibraryEntry& entry) const {
       state.task = CheckTaskOf(*state.capture);
     }
   } catch (const Error& error) {
-    state.problem = SplitMessage(error.what());
+    std::string text = error.what();
+    const std::string folder = entry.folder.string() + "/";
+    if (text.starts_with(folder)) text = text.substr(folder.size());
+    state.problem = SplitMessage(text);
   }
   return state;
 }
@@ -238,12 +261,14 @@ std::vector<StudioPhoto> Workspace::PhotosOf(const State& state) const {
   std::vector<std::pair<std::string, bool>> places;
   if (state.capture) {
     for (const std::string& place : state.capture->photos) places.emplace_back(place, false);
-    for (const std::string& place : state.capture->left_out_photos) places.emplace_back(place, true);
+    for (const std::string& place : state.capture->left_out_photos)
+      places.emplace_back(place, true);
   } else if (state.draft) {
     std::error_code error;
     for (const auto& file : fs::directory_iterator(state.folder / "photos", error)) {
       const std::string name = file.path().filename();
-      if (name[0] != '.' && file.is_regular_file(error)) places.emplace_back("photos/" + name, false);
+      if (name[0] != '.' && file.is_regular_file(error))
+        places.emplace_back("photos/" + name, false);
     }
   }
   std::vector<StudioPhoto> photos;
@@ -289,7 +314,7 @@ Json Workspace::RowJson(const LibraryEntry& entry, const State& state,
                         const std::vector<StudioPhoto>& photos) {
   Json row = {{"id", entry.id},
               {"name", entry.name},
-              {"kind", state.draft ? state.draft->kind
+              {"kind", state.draft     ? state.draft->kind
                        : state.capture ? KindOf(*state.capture)
                                        : "board"},
               {"size_mm", nullptr},
@@ -310,7 +335,7 @@ Json Workspace::RowJson(const LibraryEntry& entry, const State& state,
 
 Json Workspace::LibraryJson() {
   Json list = Json::array();
-  for (const LibraryEntry& entry : FindCaptures(root_)) {
+  for (const LibraryEntry& entry : Captures()) {
     const State state = Read(entry);
     const auto photos = PhotosOf(state);
     Json row = RowJson(entry, state, photos);
@@ -328,6 +353,32 @@ Json Workspace::LibraryJson() {
   return {{"captures", list}};
 }
 
+// What is said of the photographs together; it takes a while for hundreds of them.
+std::shared_ptr<const Workspace::Judgement> Workspace::Judged(
+    const State& state, const std::vector<StudioPhoto>& photos,
+    const std::vector<NamedCheck>& checked, const std::vector<size_t>& index,
+    const std::string& key) {
+  auto judgement = std::make_shared<Judgement>();
+  judgement->key = key;
+  judgement->verdicts = JudgePhotos(checked, state.task);
+  std::vector<NamedCheck> used;
+  std::vector<LeftOutPhoto> left_out;
+  for (size_t i = 0; i < checked.size(); ++i) {
+    const PhotoVerdict& verdict = judgement->verdicts[i];
+    const bool bad = verdict.state == PhotoVerdict::State::kBad;
+    if (!bad && !photos[index[i]].left_out) used.push_back(checked[i]);
+    if (bad) left_out.push_back({checked[i].name, verdict.reason});
+  }
+  if (state.capture) {
+    judgement->advice = AdviseFor(*state.capture, used, left_out);
+  } else if (state.draft) {
+    Capture nothing_known;
+    nothing_known.photos = {"photographs"};  // not an imported set
+    judgement->advice = AdviseFor(nothing_known, used, left_out);
+  }
+  return judgement;
+}
+
 void Workspace::AddPhotographs(const LibraryEntry& entry, const State& state,
                                const std::vector<StudioPhoto>& photos,
                                const std::string& thumbnails, Json* json) {
@@ -335,6 +386,7 @@ void Workspace::AddPhotographs(const LibraryEntry& entry, const State& state,
   std::vector<NamedCheck> checked;
   std::vector<size_t> index;
   std::map<std::string, std::string> ids;
+  std::string key = KeyOfJudgement(state.capture, state.task);
   for (const StudioPhoto& photo : photos) {
     list.push_back(PhotoJson(photo, thumbnails));
     ids[photo.name] = photo.id;
@@ -351,29 +403,24 @@ void Workspace::AddPhotographs(const LibraryEntry& entry, const State& state,
     AddCheck(one, &list.back());
     checked.push_back({photo.name, *one.check});
     index.push_back(list.size() - 1);
+    key += photo.place + "\n" + one.content + (photo.left_out ? "-\n" : "+\n");
   }
-  const std::vector<PhotoVerdict> verdicts = JudgePhotos(checked, state.task);
-  std::vector<NamedCheck> used;
-  std::vector<LeftOutPhoto> left_out;
-  for (size_t i = 0; i < checked.size(); ++i) {
-    AddVerdict(verdicts[i], ids, &list[index[i]]);
-    const bool bad = verdicts[i].state == PhotoVerdict::State::kBad;
-    if (!bad && !photos[index[i]].left_out) used.push_back(checked[i]);
-    if (bad) left_out.push_back({checked[i].name, verdicts[i].reason});
+  const auto judgement = [&] {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    const auto& kept = judgements_[entry.id];
+    return kept && kept->key == key ? kept : nullptr;
+  }();
+  const auto judged = judgement ? judgement : Judged(state, photos, checked, index, key);
+  for (size_t i = 0; i < checked.size(); ++i) AddVerdict(judged->verdicts[i], ids, &list[index[i]]);
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    judgements_[entry.id] = judged;
   }
   for (Json& photo : list) photo.erase("url_of_thumbnail");
   (*json)["photographs"] = list;
-  StudioAdvice advice;
-  if (state.capture) {
-    advice = AdviseFor(*state.capture, used, left_out);
-  } else if (state.draft) {
-    Capture nothing_known;
-    nothing_known.photos = {"photographs"};  // not an imported set
-    advice = AdviseFor(nothing_known, used, left_out);
-  }
-  (*json)["advice"] = AdviceJson(advice);
+  (*json)["advice"] = AdviceJson(judged->advice);
   if (!photos.empty() && lock_) {
-    KeepIfPossible(AdviceFile(entry.folder), {{"verdict", advice.verdict}});
+    KeepIfPossible(AdviceFile(entry.folder), {{"verdict", judged->advice.verdict}});
   }
 }
 
@@ -414,20 +461,20 @@ Json Workspace::CaptureJson(const LibraryEntry& entry, const std::string& files,
 
 Json Workspace::PhoneJson(const LibraryEntry& entry, const std::string& thumbnails) {
   const State state = Read(entry);
-  Json json = {{"name", entry.name},
-               {"kind", state.draft     ? state.draft->kind
-                        : state.capture ? KindOf(*state.capture)
-                                        : "board"},
-               {"limits",
-                {{"photograph_bytes", kMostPhoto_bytes}, {"photographs", kMostPhotographs}}}};
+  Json json = {
+      {"name", entry.name},
+      {"kind", state.draft     ? state.draft->kind
+               : state.capture ? KindOf(*state.capture)
+                               : "board"},
+      {"limits", {{"photograph_bytes", kMostPhoto_bytes}, {"photographs", kMostPhotographs}}}};
   AddPhotographs(entry, state, PhotosOf(state), thumbnails, &json);
   return json;
 }
 
 void Workspace::PrepareOptions() {
   // The first page comes first.
-  constexpr auto kLater = std::chrono::seconds(2);
   preparing_ = std::thread([this] {
+    constexpr auto kLater = std::chrono::seconds(2);
     {
       std::unique_lock<std::mutex> guard(mutex_);
       if (end_.wait_for(guard, kLater, [&] { return ending_.load(); })) return;
@@ -437,15 +484,15 @@ void Workspace::PrepareOptions() {
 }
 
 const Json& Workspace::Options() {
-  std::call_once(options_made_, [this] {
-    options_ = OptionForm([this] { return ending_.load(); });
-  });
+  std::call_once(options_made_,
+                 [this] { options_ = OptionForm([this] { return ending_.load(); }); });
   return options_;
 }
 
 std::string Workspace::Make(const NewCapture& wanted) {
   const fs::path folder = MakeCapture(root_, wanted);
   const std::string id = IdOf(folder.lexically_relative(root_).generic_string());
+  Captures(true);
   events_.Publish("library", id);
   return id;
 }
@@ -460,6 +507,7 @@ void Workspace::Trash(const LibraryEntry& entry) {
   const auto mutex = MutexOf(entry.id);
   const std::lock_guard<std::mutex> guard(*mutex);
   MoveToTrash(root_, entry);
+  Captures(true);
   events_.Publish("library", entry.id);
 }
 
@@ -591,7 +639,8 @@ Json Workspace::Receive(const LibraryEntry& entry, HttpBody* body) {
                     "send them in the field photographs"};
   }
   // Of one photograph alone, what is not its own fault is the request's.
-  const bool not_its_own = last_failure && (last_failure->status >= 500 || last_failure->status == 413);
+  const bool not_its_own =
+      last_failure && (last_failure->status >= 500 || last_failure->status == 413);
   if (list.size() == 1 && not_its_own) throw *last_failure;
   return {{"photographs", list}};
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <filesystem>
 #include <functional>
@@ -29,11 +30,11 @@ namespace glint {
 class ReceivedPhoto;
 
 struct StudioPhoto {
-  std::string id, name;        // the file's
-  std::string place;           // relative to the capture, as capture.toml lists it
+  std::string id, name;  // the file's
+  std::string place;     // relative to the capture, as capture.toml lists it
   std::filesystem::path file;
   bool left_out = false;
-  double added_s = 0;          // since 1970
+  double added_s = 0;  // since 1970
 };
 
 class Workspace {
@@ -48,12 +49,12 @@ class Workspace {
   RunManager& runs() { return *runs_; }
 
   // Throws HttpError 404.
-  LibraryEntry Find(const std::string& capture) const;
+  LibraryEntry Find(const std::string& capture);
 
-  Json StudioJson() const;                           // free_bytes, read_only …
+  Json StudioJson() const;  // free_bytes, read_only …
   Json LibraryJson();
-  // `files`: what stands before the names of its files in addresses; `thumbnails`: before the ids of
-  // its photographs.
+  // `files`: what stands before the names of its files in addresses; `thumbnails`: before the ids
+  // of its photographs.
   Json CaptureJson(const LibraryEntry& entry, const std::string& files,
                    const std::string& thumbnails);
   Json PhoneJson(const LibraryEntry& entry, const std::string& thumbnails);
@@ -72,9 +73,21 @@ class Workspace {
 
  private:
   struct State;  // of a capture, as it is now
+  struct Judgement {
+    std::string key;  // of everything it depends on
+    std::vector<PhotoVerdict> verdicts;
+    StudioAdvice advice;
+  };
+  std::vector<LibraryEntry> Captures(bool again = false);
+  static std::shared_ptr<const Judgement> Judged(const State& state,
+                                                 const std::vector<StudioPhoto>& photos,
+                                                 const std::vector<NamedCheck>& checked,
+                                                 const std::vector<size_t>& index,
+                                                 const std::string& key);
   State Read(const LibraryEntry& entry) const;
   std::vector<StudioPhoto> PhotosOf(const State& state) const;
-  Json RowJson(const LibraryEntry& entry, const State& state, const std::vector<StudioPhoto>& photos);
+  Json RowJson(const LibraryEntry& entry, const State& state,
+               const std::vector<StudioPhoto>& photos);
   std::string StatusOf(const LibraryEntry& entry, const State& state,
                        const std::vector<StudioPhoto>& photos);
   void AddPhotographs(const LibraryEntry& entry, const State& state,
@@ -94,6 +107,9 @@ class Workspace {
   BoardShelf boards_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<std::mutex>> captures_;
+  std::map<std::string, std::shared_ptr<const Judgement>> judgements_;  // by capture
+  std::vector<LibraryEntry> listed_;
+  std::chrono::steady_clock::time_point listed_at_;
   std::once_flag options_made_;
   Json options_;
   std::thread preparing_;

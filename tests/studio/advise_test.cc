@@ -39,8 +39,7 @@ PhotoCheck CheckFrom(double tilt_deg, double azimuth_deg, double distance_mm, in
   posed.camera_from_sample.rotation.row(0) = x;
   posed.camera_from_sample.rotation.row(1) = z.cross(x);
   posed.camera_from_sample.rotation.row(2) = z;
-  posed.camera_from_sample.translation =
-      -(posed.camera_from_sample.rotation * (distance_mm * out));
+  posed.camera_from_sample.translation = -(posed.camera_from_sample.rotation * (distance_mm * out));
   PhotoCheck check;
   check.board_found = true;
   GuidancePhoto pose;

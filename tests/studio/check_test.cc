@@ -26,8 +26,9 @@ TEST(PhotoCheck, FindsWhereThePhotographsWereTaken) {
     const Json& translation = photo["camera_from_sample"]["translation_mm"];
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) {
-        camera_from_sample.rotation(r, c) =
-            rotation[0].is_array() ? rotation[r][c].get<double>() : rotation[3 * r + c].get<double>();
+        camera_from_sample.rotation(r, c) = rotation[0].is_array()
+                                                ? rotation[r][c].get<double>()
+                                                : rotation[3 * r + c].get<double>();
       }
       camera_from_sample.translation[r] = translation[r];
     }

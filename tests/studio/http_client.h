@@ -102,10 +102,8 @@ class PageClient {
   std::string cookie() const { return "glint_studio_" + std::to_string(port_) + "=" + token_; }
 
   Headers OwnHeaders() const {
-    return {{"Host", host()},
-            {"Cookie", cookie()},
-            {"Origin", "http://" + host()},
-            {"X-Glint", "1"}};
+    return {
+        {"Host", host()}, {"Cookie", cookie()}, {"Origin", "http://" + host()}, {"X-Glint", "1"}};
   }
   Answer Get(const std::string& path) const {
     return Ask(port_, RequestText("GET", path, {{"Host", host()}, {"Cookie", cookie()}}));
@@ -131,8 +129,9 @@ class PageClient {
   static std::string Multipart(const Headers& photographs) {
     std::string body;
     for (const auto& [name, bytes] : photographs) {
-      body += "--between-parts\r\nContent-Disposition: form-data; name=\"photographs\"; filename=\"" +
-              name + "\"\r\nContent-Type: image/jpeg\r\n\r\n" + bytes + "\r\n";
+      body +=
+          "--between-parts\r\nContent-Disposition: form-data; name=\"photographs\"; filename=\"" +
+          name + "\"\r\nContent-Type: image/jpeg\r\n\r\n" + bytes + "\r\n";
     }
     return body + "--between-parts--\r\n";
   }

@@ -38,11 +38,11 @@ TEST(OptionForm, ChangesGoWhereTheProgramsReadThem) {
 }
 
 TEST(OptionForm, WrongChangesAreRefusedByName) {
-  for (const char* changes :
-       {R"({"fit": {"nothing": 1}})", R"({"poses": {"photo": "x"}})", R"({"fit": {"metals": "no"}})",
-        R"({"fit": {"iterations": 101}})", R"({"fit": {"iterations": 1.5}})",
-        R"({"fit": {"iterations": "1"}})", R"({"fit": {"flag": 1}})", R"({"fit": 3})", R"([1])",
-        R"({"sample": {"resolution_px": 1}})"}) {
+  for (const char* changes : {R"({"fit": {"nothing": 1}})", R"({"poses": {"photo": "x"}})",
+                              R"({"fit": {"metals": "no"}})", R"({"fit": {"iterations": 101}})",
+                              R"({"fit": {"iterations": 1.5}})", R"({"fit": {"iterations": "1"}})",
+                              R"({"fit": {"flag": 1}})", R"({"fit": 3})", R"([1])",
+                              R"({"sample": {"resolution_px": 1}})"}) {
     EXPECT_THROW(With(changes), HttpError) << changes;
   }
 }

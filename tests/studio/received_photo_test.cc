@@ -44,8 +44,16 @@ TEST(ReceivedPhoto, NamesOfClientsNeverBecomePaths) {
 TEST(ReceivedPhoto, TheContentSaysWhatItIs) {
   EXPECT_EQ(PhotoEnding(JpegBytes(1), "x.png"), ".jpg");
   EXPECT_EQ(PhotoEnding("\x89PNG\r\n\x1a\n____", "x.jpg"), ".png");
-  EXPECT_EQ(PhotoEnding(std::string("\0\0\0\x18" "ftypheic\0\0\0\0", 16), "x"), ".heic");
-  EXPECT_EQ(PhotoEnding(std::string("\0\0\0\x18" "ftypmp42\0\0\0\0", 16), "x.jpg"), "");
+  EXPECT_EQ(PhotoEnding(std::string("\0\0\0\x18"
+                                    "ftypheic\0\0\0\0",
+                                    16),
+                        "x"),
+            ".heic");
+  EXPECT_EQ(PhotoEnding(std::string("\0\0\0\x18"
+                                    "ftypmp42\0\0\0\0",
+                                    16),
+                        "x.jpg"),
+            "");
   EXPECT_EQ(PhotoEnding(std::string("II*\0aaaa", 8), "x.DNG"), ".dng");
   EXPECT_EQ(PhotoEnding(std::string("II*\0aaaa", 8), "x.exe"), ".tif");
   for (const char* text : {"", "R", "RIFF", "<html>", "#!/bin/sh", "%PDF-1.4", "PK\x03\x04"}) {

@@ -40,8 +40,9 @@ TEST(StudioRun, ThePhotographsBecomeAMaterialAndTheCommandLineGoesOnFromThere) {
     EXPECT_NE(photo["state"], "bad") << photo;
     EXPECT_FALSE(photo["tilt_deg"].is_null());
   }
-  ASSERT_EQ(running.page->Send("PUT", path + "/options", {{"sample", {{"resolution_px", 64}}}}).status,
-            200);
+  ASSERT_EQ(
+      running.page->Send("PUT", path + "/options", {{"sample", {{"resolution_px", 64}}}}).status,
+      200);
 
   // A run that is cancelled.
   ASSERT_EQ(running.page->Post(path + "/run", {{"quick", true}}).status, 200);
@@ -62,9 +63,9 @@ TEST(StudioRun, ThePhotographsBecomeAMaterialAndTheCommandLineGoesOnFromThere) {
   EXPECT_GT(running.page->Get(capture["result"]["page"]).body.size(), 1000u);
 
   const test::TemporaryFolder scratch;
-  const pid_t again = test::Start({std::string(GLINT_BIN_DIR) + "/glint-run",
-                                   (running.folder / "wood").string(), "--quick"},
-                                  scratch / "out", scratch / "err");
+  const pid_t again = test::Start(
+      {std::string(GLINT_BIN_DIR) + "/glint-run", (running.folder / "wood").string(), "--quick"},
+      scratch / "out", scratch / "err");
   EXPECT_EQ(test::WaitFor(again), 0);
   EXPECT_NE(test::ReadAll(scratch / "out").find("up to date: calib, rectify, fit, export, report"),
             std::string::npos)
@@ -83,7 +84,8 @@ TEST(StudioRun, AFailureIsToldAsTheProgramTellsIt) {
             std::string::npos)
       << capture["run"];
   EXPECT_FALSE(capture["run"]["remedy"].is_null());
-  EXPECT_EQ(running.page->Post("/api/captures/" + running.MakeCapture("empty") + "/run").status, 422);
+  EXPECT_EQ(running.page->Post("/api/captures/" + running.MakeCapture("empty") + "/run").status,
+            422);
 }
 
 }  // namespace

@@ -21,8 +21,9 @@ TEST(Server, NothingIsToldWithoutTheSecret) {
     EXPECT_EQ(Ask(port, RequestText("GET", path, {{"Host", host}})).status, 401) << path;
   }
   const std::string wrong = running.page->cookie().substr(0, 20) + "0000";
-  EXPECT_EQ(Ask(port, RequestText("GET", "/api/library", {{"Host", host}, {"Cookie", wrong}})).status,
-            401);
+  EXPECT_EQ(
+      Ask(port, RequestText("GET", "/api/library", {{"Host", host}, {"Cookie", wrong}})).status,
+      401);
   EXPECT_EQ(Ask(port, RequestText("GET", "/?t=0000", {{"Host", host}})).status, 401);
   const std::string right = "/?t=" + running.page->token();
   EXPECT_EQ(Ask(port, RequestText("GET", right, {{"Host", host}})).status, 303);
@@ -75,10 +76,9 @@ TEST(Server, NoPathOfAClientReachesTheFileSystem) {
        {base + "../secret.txt", base + "export/../../../secret.txt",
         base + "%2e%2e/%2e%2e/secret.txt", base + "export%2f..%2f..%2f..%2fsecret.txt",
         base + "export/link.png", base + "export/all/secret.txt",
-        base + "/" + (running.folder / "secret.txt").string(),
-        base + "report/index.html%00.png", base + "..\\..\\secret.txt",
-        std::string("/../../../../etc/passwd"), std::string("//etc/passwd"),
-        std::string("/api/captures/..%2f..%2fetc/thumbnail"),
+        base + "/" + (running.folder / "secret.txt").string(), base + "report/index.html%00.png",
+        base + "..\\..\\secret.txt", std::string("/../../../../etc/passwd"),
+        std::string("//etc/passwd"), std::string("/api/captures/..%2f..%2fetc/thumbnail"),
         std::string("/files/0123456789abcdef0123456789abcdef/") + id + "/report/index.html"}) {
     const Answer answer = running.page->Get(path);
     EXPECT_GE(answer.status, 400) << path;
@@ -102,7 +102,8 @@ TEST(Server, MalformedRequestsAreAnsweredOrDroppedAndStudioGoesOn) {
   for (const std::string& bytes :
        {std::string("\r\n\r\n"), std::string("GET\r\n\r\n"), std::string("\0\0\0\0\r\n\r\n", 8),
         "GET / HTTP/9.9\r\n" + host + "\r\n", "PATCH /api/boards HTTP/1.1\r\n" + host + "\r\n",
-        "OPTIONS * HTTP/1.1\r\n" + host + "\r\n", "GET /" + std::string(5000, 'a') + " HTTP/1.1\r\n" + host + "\r\n",
+        "OPTIONS * HTTP/1.1\r\n" + host + "\r\n",
+        "GET /" + std::string(5000, 'a') + " HTTP/1.1\r\n" + host + "\r\n",
         "GET / HTTP/1.1\r\nX: " + std::string(100000, 'a') + "\r\n\r\n",
         "POST /api/boards HTTP/1.1\r\n" + host + "Content-Length: -1\r\n\r\n",
         "POST /api/boards HTTP/1.1\r\n" + host + "Transfer-Encoding: chunked\r\n\r\nZZZ\r\n"}) {
@@ -175,10 +176,10 @@ TEST(Server, ACaptureTomlThatAPersonBrokeIsShownAndNotTouched) {
   EXPECT_EQ(capture["status"], "failed");
   EXPECT_NE(capture["problem"]["message"].get<std::string>().find("capture.toml"),
             std::string::npos);
-  EXPECT_GE(running.page->Upload("/api/captures/" + id + "/photographs",
-                                 {{"a.jpg", test::JpegBytes(1)}})
-                .status,
-            200);
+  EXPECT_GE(
+      running.page->Upload("/api/captures/" + id + "/photographs", {{"a.jpg", test::JpegBytes(1)}})
+          .status,
+      200);
   EXPECT_FALSE(fs::exists(running.folder / "wood/photos/a.jpg"));
   EXPECT_EQ(test::ReadAll(running.folder / "wood/capture.toml"), "[sample\nsize_mm = 3\n");
 }
@@ -226,11 +227,10 @@ TEST(Phone, ALinkReachesItsCaptureAndNothingElse) {
     return Ask(phone.port, RequestText("GET", path, {{"Host", phone.host}})).status;
   };
   EXPECT_EQ(get(phone.path + "/state"), 200);
-  for (const std::string& path : {std::string("/"), std::string("/?t=" + running.page->token()),
-                                  std::string("/api/library"), "/api/captures/" + id,
-                                  phone.path + "/../api/library", phone.path + "/photographs",
-                                  std::string("/p/0123456789abcdef0123456789abcdef/state"),
-                                  std::string("/p//state")}) {
+  for (const std::string& path :
+       {std::string("/"), std::string("/?t=" + running.page->token()), std::string("/api/library"),
+        "/api/captures/" + id, phone.path + "/../api/library", phone.path + "/photographs",
+        std::string("/p/0123456789abcdef0123456789abcdef/state"), std::string("/p//state")}) {
     EXPECT_GE(get(path), 400) << path;
   }
   // Nor does the browser's cookie open this door.
@@ -264,8 +264,9 @@ TEST(Phone, AnExpiredLinkIsRefused) {
   const RunningStudio running(options);
   const Phone phone = OpenPhone(running, running.MakeCapture());
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  EXPECT_EQ(Ask(phone.port, RequestText("GET", phone.path + "/state", {{"Host", phone.host}})).status,
-            410);
+  EXPECT_EQ(
+      Ask(phone.port, RequestText("GET", phone.path + "/state", {{"Host", phone.host}})).status,
+      410);
 }
 
 }  // namespace

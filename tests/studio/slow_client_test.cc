@@ -66,10 +66,9 @@ TEST(SlowClients, ManyEventStreamsLeaveRoomForRequests) {
   std::vector<int> streams;
   for (int i = 0; i < 50; ++i) {
     streams.push_back(test::Connect(running.studio->port()));
-    test::SendAll(streams.back(),
-                  test::RequestText("GET", "/api/events",
-                                    {{"Host", running.page->host()},
-                                     {"Cookie", running.page->cookie()}}));
+    test::SendAll(streams.back(), test::RequestText("GET", "/api/events",
+                                                    {{"Host", running.page->host()},
+                                                     {"Cookie", running.page->cookie()}}));
   }
   const auto begin = Clock::now();
   const std::string id = running.MakeCapture();

@@ -28,7 +28,8 @@ struct RunningStudio {
 
   // A capture with the board that Studio prints; its id.
   std::string MakeCapture(const std::string& name = "wood") const {
-    const Json board = page->Post("/api/boards", {{"paper", "A4"}, {"window_mm", {100, 100}}}).json();
+    const Json board =
+        page->Post("/api/boards", {{"paper", "A4"}, {"window_mm", {100, 100}}}).json();
     const Json made = page->Post("/api/captures", {{"name", name},
                                                    {"kind", "board"},
                                                    {"size_mm", {100, 100}},

@@ -9,10 +9,10 @@
 namespace glint {
 
 struct DeadlineOptions {
-  double head_s = 10;            // for request line and headers together
-  double body_s = 30;            // for a body, and one second more for each `bytes_per_s` received
-  double bytes_per_s = 4096;     // a phone at the edge of its network sends ten times that
-  double silence_s = 15;         // without a byte in either direction
+  double head_s = 10;         // for request line and headers together
+  double body_s = 30;         // for a body, and one second more for each `bytes_per_s` received
+  double bytes_per_s = 4096;  // a phone at the edge of its network sends ten times that
+  double silence_s = 15;      // without a byte in either direction
   std::size_t most_head_bytes = 64 << 10;
 };
 

@@ -13,9 +13,9 @@
 namespace glint {
 
 struct HttpRequest {
-  std::string method;                        // "GET" …
-  std::string path;                          // percent-decoded, without the query
-  std::map<std::string, std::string> query;  // decoded
+  std::string method;                          // "GET" …
+  std::string path;                            // percent-decoded, without the query
+  std::map<std::string, std::string> query;    // decoded
   std::map<std::string, std::string> headers;  // names in lower case; the first of a name
   std::string remote_ip;
   int local_port = 0;

@@ -110,8 +110,12 @@ class ReadBody final : public HttpBody {
       throw HttpError{415, "found a request without files", "send them as multipart/form-data"};
     }
     return reader_(
-        [&](const httplib::MultipartFormData& part) { return begin({part.name, part.filename}); },
-        [&](const char* bytes, size_t count) { return data({bytes, count}); });
+        [&](const httplib::MultipartFormData& part) {
+          return begin({part.name, part.filename});
+        },
+        [&](const char* bytes, size_t count) {
+          return data({bytes, count});
+        });
   }
 
  private:
@@ -121,12 +125,12 @@ class ReadBody final : public HttpBody {
 
 void SendFile(const std::shared_ptr<FileToSend>& file, const std::string& type,
               httplib::Response* to) {
-  to->set_content_provider(
-      static_cast<size_t>(file->bytes()), type,
-      [file](size_t offset, size_t length, httplib::DataSink& sink) {
-        const std::string piece = file->Read(offset, std::min(length, kPiece_bytes));
-        return !piece.empty() && sink.write(piece.data(), piece.size());
-      });
+  to->set_content_provider(static_cast<size_t>(file->bytes()), type,
+                           [file](size_t offset, size_t length, httplib::DataSink& sink) {
+                             const std::string piece =
+                                 file->Read(offset, std::min(length, kPiece_bytes));
+                             return !piece.empty() && sink.write(piece.data(), piece.size());
+                           });
 }
 
 void SendStream(const std::function<bool(std::string*)>& next, const std::string& type,
@@ -314,7 +318,9 @@ class HttpServer::Impl : private httplib::Server {
   template <class Self>
   static bool Process(Self* self, httplib::Stream* stream, const std::string& ip, int port,
                       bool* closed, const std::function<void(httplib::Request&)>& on_head) {
-    if constexpr (requires { self->process_request(*stream, ip, port, ip, port, true, *closed, on_head); }) {
+    if constexpr (requires {
+                    self->process_request(*stream, ip, port, ip, port, true, *closed, on_head);
+                  }) {
       return self->process_request(*stream, ip, port, ip, self->port_, true, *closed, on_head);
     } else {
       return self->process_request(*stream, true, *closed, on_head);

@@ -13,7 +13,7 @@ namespace glint {
 
 struct ServerOptions {
   std::string address = "127.0.0.1";
-  int port = 0;              // 0: any free one
+  int port = 0;                 // 0: any free one
   int most_connections = 1000;  // beyond these a new one is closed at once
   int most_per_client = 1000;   // of one address
   DeadlineOptions deadlines;

@@ -104,6 +104,20 @@ TEST_F(CaptureTest, NoPhotographsIsAnError) {
 }
 
 // A pattern's matches that cannot be read are named rather than passed over.
+TEST_F(CaptureTest, PhotographsThatAreLeftOutAreNotUsed) {
+  const std::string files = "files = [\"photos/*.jpg\"]\n";
+  const Capture capture =
+      Read(Replaced(files, files + "left_out = [\"photos/a.jpg\", \"photos/gone.jpg\"]\n"));
+  EXPECT_THAT(capture.photos, ElementsAre("photos/b.JPG"));
+  EXPECT_THAT(capture.left_out_photos, ElementsAre("photos/a.jpg"));
+}
+
+TEST_F(CaptureTest, ThereMayBeNoPhotographsYet) {
+  folder_.Write("capture.toml", Replaced("*.jpg", "*.tif"));
+  EXPECT_TRUE(ReadCapture(folder_.path(), Photographs::kMayBeMissing).photos.empty());
+  EXPECT_THROW(ReadCapture(folder_.path()), UserError);
+}
+
 TEST_F(CaptureTest, WhatMatchesAndIsNoFileIsLeftOutWithAWarning) {
   std::filesystem::create_symlink("nowhere", folder_.path() / "photos/c.jpg");
   std::filesystem::create_directory(folder_.path() / "photos/d.jpg");

@@ -83,5 +83,31 @@ TEST(ProgramOnPath, FindsOrSaysHowToInstall) {
   }
 }
 
+TEST(RunInGroup, TellsHowTheProgramEnded) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(RunInGroup({"/bin/sh", "-c", "exit 7"}, folder.path() / "log", {}), 7);
+  EXPECT_EQ(RunInGroup({"/bin/sh", "-c", "kill -TERM $$"}, folder.path() / "log", {}),
+            128 + SIGTERM);
+}
+
+// As Ctrl-C does: what the program has started ends too, though its parent waits for signals
+// itself.
+TEST(RunInGroup, ACancelledProgramIsInterruptedWithItsChildren) {
+  const test::TemporaryFolder folder;
+  sigset_t signals, before;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, &before);
+  RunInGroupOptions options;
+  options.cancelled = [&] { return std::filesystem::exists(folder.path() / "begun"); };
+  const auto begin = std::chrono::steady_clock::now();
+  const int code = RunInGroup(
+      {"/bin/sh", "-c", "sleep 30 & touch " + (folder.path() / "begun").string() + "; sleep 30"},
+      folder.path() / "log", options);
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  EXPECT_EQ(code, 128 + SIGINT);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
+
 }  // namespace
 }  // namespace glint
