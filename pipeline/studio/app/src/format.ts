@@ -1,5 +1,5 @@
 // Times, sizes and directions as people read them.
-import type { Direction } from './api';
+import type { CaptureRow, Direction } from './api';
 import { texts } from './texts';
 
 export function ago(unix_s: number, now_s = Date.now() / 1000): string {
@@ -46,4 +46,13 @@ export function sideOf({ tilt_deg, azimuth_deg }: Direction): string | null {
 // A map's name for people; names that are not known stand as they are.
 export function mapName(name: string): string {
   return texts.result.mapNames[name] ?? name;
+}
+
+// Kind, size and number of photographs, in a line.
+export function captureFacts({ kind, size_mm }: Pick<CaptureRow, 'kind' | 'size_mm'>, photographs: number): string {
+  return [
+    texts.kinds[kind] ?? kind,
+    size_mm && texts.size(size_mm[0], size_mm[1]),
+    (photographs > 0 || kind === 'board') && texts.photographs(photographs),
+  ].filter(Boolean).join(' · ');
 }

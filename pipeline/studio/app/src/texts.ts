@@ -29,7 +29,7 @@ export const texts = {
 
   kinds: {
     board: 'Board',
-    single: 'One photograph',
+    single: 'No board',
     rectified: 'Imported set',
     'fixed camera': 'Fixed camera',
   },
@@ -45,7 +45,6 @@ export const texts = {
 
   library: {
     title: 'Library',
-    folder: (folder: string) => `Captures in ${folder}`,
     new: 'New capture',
     search: 'Search captures',
     sort: 'Sort by',
@@ -112,7 +111,6 @@ export const texts = {
     tooLarge: (w: number, h: number) =>
       `The sample is larger than this board’s window (${Math.round(w)} × ${Math.round(h)} mm). Choose a larger paper or a smaller part of the sample.`,
     create: 'Create capture',
-    missing: 'Enter a name.',
     badSize: 'Enter a size between 1 and 2000 mm.',
     drawing: (w: number, h: number, thick: number | null) =>
       `Drawing: a sample of ${w} by ${h} mm${thick === null ? '' : `, its surface ${thick} mm above the board`}.`,
@@ -148,7 +146,6 @@ export const texts = {
     dismiss: 'Dismiss',
     sendAgain: 'Send again',
     progress: (done: number, all: number) => `${done} of ${all} sent`,
-    allSent: (n: number) => `${photographs(n)} sent`,
     printFirst: 'Print the board at 100 % on stiff, matt paper, cut out its window, and lay the sample in it.',
     leftOut: 'Left out',
     leaveOut: 'Leave out',
@@ -158,11 +155,9 @@ export const texts = {
     sameAs: (name: string) => `The same picture as ${name}`,
     isLeftOut: (name: string) => `${name} is left out`,
     isTakenBack: (name: string) => `${name} is taken back in`,
-    noBoard: 'Board not found',
     tilt: (deg: number) => `${Math.round(deg)}° tilt`,
     from: (side: string) => `from the ${side}`,
     above: 'from above',
-    sharpness: (value: number) => `sharpness ${value.toFixed(2)}`,
     clipped: (share: number) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} % clipped`,
     arrived: (name: string, verdict: string) => `${name}: ${verdict}`,
     tooLarge: (mb: number) => `The file is larger than ${mb} MB.`,
@@ -235,7 +230,6 @@ export const texts = {
     allText: 'They are saved in the capture’s capture.toml. What is empty keeps its default.',
     find: 'Find an option',
     noneFound: 'No option matches.',
-    byDefault: (value: string) => `default: ${value}`,
     reset: 'Back to the default',
     resetOf: (name: string) => `Back to the default: ${name}`,
     changed: (n: number) => `${n} changed`,

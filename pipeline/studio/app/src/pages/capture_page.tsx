@@ -1,6 +1,7 @@
 // One capture: its name, the three steps, and the step that is shown.
 import { useState } from 'preact/hooks';
 import { api, type Capture } from '../api';
+import { captureFacts } from '../format';
 import { useLive } from '../live';
 import { StatusBadge } from '../parts/badge';
 import { PageHeading } from '../parts/heading';
@@ -43,11 +44,6 @@ export function CapturePage({ id, step }: { id: string; step: Step | null }) {
   }
   if (step === null && opened === null) setOpened(usualStep(capture)); // stays there while the status changes
   const shown = step ?? opened ?? usualStep(capture);
-  const facts = [
-    texts.kinds[capture.kind] ?? capture.kind,
-    capture.size_mm && texts.size(capture.size_mm[0], capture.size_mm[1]),
-    texts.photographs(capture.photographs.length),
-  ].filter(Boolean);
   const Page = shown === 'run' ? RunStep : shown === 'result' ? ResultStep : PhotographsStep;
   return (
     <>
@@ -55,7 +51,7 @@ export function CapturePage({ id, step }: { id: string; step: Step | null }) {
       <div class="page-head">
         <div>
           <PageHeading title={capture.name} />
-          <p class="quiet">{facts.join(' · ')}</p>
+          <p class="quiet">{captureFacts(capture, capture.photographs.length)}</p>
         </div>
         <StatusBadge status={capture.status} />
       </div>

@@ -2,7 +2,7 @@
 import { useMemo, useState } from 'preact/hooks';
 import { announce } from '../announce';
 import { api, type CaptureRow, type Failure, type Verdict } from '../api';
-import { ago } from '../format';
+import { ago, captureFacts } from '../format';
 import { useLive } from '../live';
 import { StatusBadge, VerdictBadge } from '../parts/badge';
 import { Dialog } from '../parts/dialog';
@@ -26,18 +26,13 @@ const orders: Record<Sort, (a: CaptureRow, b: CaptureRow) => number> = {
 };
 
 function Card({ row, onTrash }: { row: CaptureRow; onTrash: () => void }) {
-  const facts = [
-    texts.kinds[row.kind] ?? row.kind,
-    row.size_mm && texts.size(row.size_mm[0], row.size_mm[1]),
-    texts.photographs(row.photographs),
-  ].filter(Boolean);
   return (
     <li class="card">
       <a href={links.capture(row.id)} class="card-link">
         <span class="card-picture">{row.thumbnail ? <img src={row.thumbnail} alt="" loading="lazy" decoding="async" /> : <span class="tile-blank" />}</span>
         <span class="card-name">{row.name}</span>
       </a>
-      <p class="card-facts">{facts.join(' · ')}</p>
+      <p class="card-facts">{captureFacts(row, row.photographs)}</p>
       <p class="card-state">
         <StatusBadge status={row.status} />
         {row.verdict !== 'none' && <VerdictBadge verdict={row.verdict} />}
