@@ -115,6 +115,14 @@ await page.waitForSelector('.stage.running', { timeout: 20000 });
 await page.getByRole('button', { name: 'Cancel the run' }).click();
 await page.getByText('The run was cancelled').waitFor({ timeout: 20000 });
 verdict(true, 'a run is cancelled');
+await page.getByRole('button', { name: 'Make the maps' }).click();
+await page.waitForSelector('.stage.running', { timeout: 20000 });
+const ofStudio = fs.readdirSync('/proc').filter((pid) => /^\d+$/.test(pid) && fs.existsSync(`/proc/${pid}/stat`)
+  && fs.readFileSync(`/proc/${pid}/stat`, 'utf8').split(') ')[1].split(' ')[1] === String(studio.pid));
+for (const pid of ofStudio) process.kill(Number(pid), 'SIGKILL');
+await page.locator('.notice.error').waitFor({ timeout: 30000 });
+verdict(ofStudio.length > 0, `a run that something kills: ${(await page.locator('.notice.error').innerText()).replace(/\s+/g, ' ')}`);
+await shot(page, 'bad-run');
 
 // Three hundred at once, each a little different.
 const many = path.join(work, 'many');

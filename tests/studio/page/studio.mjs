@@ -23,6 +23,7 @@ export async function startStudio(programs, folder, port = 0) {
   return {
     address,
     home: new URL(address).origin,
+    pid: child.pid,
     said: () => said,
     end: () => ended('SIGTERM'),
     kill: () => ended('SIGKILL'),

@@ -25,6 +25,9 @@ const orders: Record<Sort, (a: CaptureRow, b: CaptureRow) => number> = {
   verdict: (a, b) => verdictRank[a.verdict] - verdictRank[b.verdict],
 };
 
+// Search and order stay while captures are looked at.
+let kept: { query: string; sort: Sort } = { query: '', sort: 'changed' };
+
 function Card({ row, onTrash }: { row: CaptureRow; onTrash: () => void }) {
   return (
     <li class="card">
@@ -84,8 +87,9 @@ function Empty() {
 
 export function LibraryPage() {
   const { data, failure, reload } = useLive(api.library, () => true, 'library');
-  const [query, setQuery] = useState('');
-  const [sort, setSort] = useState<Sort>('changed');
+  const [query, setQuery] = useState(kept.query);
+  const [sort, setSort] = useState(kept.sort);
+  kept = { query, sort };
   const [trashing, setTrashing] = useState<CaptureRow | null>(null);
   const rows = useMemo(() => {
     const wanted = query.trim().toLocaleLowerCase('en');

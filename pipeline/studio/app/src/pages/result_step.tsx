@@ -76,7 +76,7 @@ export function ResultStep({ capture }: StepProps) {
       {capture.status === 'out of date' && <Notice tone="warning" title={texts.run.outOfDate} />}
       {result.quick && (
         <Notice title={t.quick}>
-          <a class="button small primary" href={links.step(capture.id, 'run')}>{texts.run.full}</a>
+          <a class="button small primary" href={links.step(capture.id, 'run')}>{t.goRun}</a>
         </Notice>
       )}
       <section class="panel" aria-labelledby="page-title">

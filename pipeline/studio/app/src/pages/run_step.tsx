@@ -51,7 +51,7 @@ export function RunStep({ capture, reload, set }: StepProps) {
           </Notice>
         )}
         {capture.status === 'out of date' && !running && <Notice tone="warning" title={t.outOfDate} />}
-        {run?.state === 'failed' && <Notice tone="error" urgent title={<><b>{t.failed}.</b> {run.message}</>} remedy={run.remedy} />}
+        {run?.state === 'failed' && <Notice tone="error" urgent title={<><b>{t.failed}.</b> {run.message || t.noMessage}</>} remedy={run.message ? run.remedy : t.noMessageRemedy} />}
         {run?.state === 'cancelled' && <Notice title={t.cancelled} />}
         {run?.state === 'done' && result && (
           <Notice tone="good" title={t.finished(run.quick)}>

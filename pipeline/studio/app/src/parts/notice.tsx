@@ -17,7 +17,7 @@ export function Notice({ tone = 'plain', title, remedy, urgent, children }: Noti
     <div class={`notice ${tone}`} role={urgent ? 'alert' : undefined}>
       {tone === 'good' ? <CheckIcon /> : tone === 'plain' ? null : <WarningIcon />}
       <div>
-        <p class="notice-title sentence">{title}</p>
+        <p class="notice-title">{title}</p>
         {remedy && (
           <p>
             <b>{texts.errors.remedy}</b> {remedy}
