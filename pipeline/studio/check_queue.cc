@@ -58,13 +58,16 @@ CheckQueue::CheckQueue(int threads, std::function<void(const std::string&)> on_c
   for (int i = 0; i < std::max(threads, 1); ++i) threads_.emplace_back([this] { Work(); });
 }
 
-CheckQueue::~CheckQueue() {
+CheckQueue::~CheckQueue() { Stop(); }
+
+void CheckQueue::Stop() {
   {
     const std::lock_guard<std::mutex> guard(mutex_);
     ending_ = true;
     arrived_.notify_all();
   }
   for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
 }
 
 CheckedPhoto CheckQueue::Peek(const fs::path& file, const CheckTask& task) {

@@ -31,9 +31,12 @@ class CheckQueue {
   // `on_change` is called, by any thread, with the id of a capture of which a photograph's state
   // has changed.
   CheckQueue(int threads, std::function<void(const std::string& capture)> on_change);
-  ~CheckQueue();  // photographs that wait are not checked any more
+  ~CheckQueue();
   CheckQueue(const CheckQueue&) = delete;
   CheckQueue& operator=(const CheckQueue&) = delete;
+
+  // Photographs that wait are not checked any more; after this nothing is called back.
+  void Stop();
 
   // What is known of the photograph, which is queued where nothing is. `cache` is the folder for
   // what is found; a file that changes is checked again.

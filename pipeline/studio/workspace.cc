@@ -206,7 +206,7 @@ Workspace::~Workspace() {
     end_.notify_all();
   }
   if (preparing_.joinable()) preparing_.join();
-  checks_.reset();
+  checks_->Stop();  // before it is gone: what it calls back asks it
   runs_.reset();
 }
 
