@@ -18,7 +18,8 @@ interface PanelProps {
 }
 
 export function OptionsPanel({ capture, set, disabled }: PanelProps) {
-  const stages = useLive(api.options, () => false, 'options').data?.stages ?? [];
+  const described = useLive(api.options, () => false, 'options');
+  const stages = described.data?.stages ?? [];
   const [query, setQuery] = useState('');
   const [failure, setFailure] = useState<Failure | null>(null);
   const save = async (stage: string, name: string, value: OptionValue | null) => {
@@ -53,8 +54,9 @@ export function OptionsPanel({ capture, set, disabled }: PanelProps) {
       <legend>{t.options}</legend>
       <p class="quiet">{t.optionsText}</p>
       {failure && <FailureNotice failure={failure} />}
+      {!described.data && (described.failure ? <FailureNotice failure={described.failure} retry={described.reload} /> : <p class="quiet" role="status">{texts.loading}</p>)}
       {important.map(({ stage, option }) => field(stage, option))}
-      <details class="all-options">
+      {stages.length > 0 && <details class="all-options">
         <summary>{t.all}</summary>
         <p class="help">{t.allText}</p>
         <label class="field">
@@ -73,7 +75,7 @@ export function OptionsPanel({ capture, set, disabled }: PanelProps) {
             </details>
           );
         })}
-      </details>
+      </details>}
     </fieldset>
   );
 }
