@@ -267,7 +267,7 @@ export class Mock {
       const name = Buffer.from(/filename="([^"]*)"/.exec(part)[1], 'latin1').toString();
       const bytes = Buffer.from(part.slice(part.indexOf('\r\n\r\n') + 4, -2), 'latin1');
       const word = Object.keys(bad).find((w) => name.startsWith(w));
-      if (word === 'text') return { name, id: null, error: `${name} is no photograph: it begins with plain text.` };
+      if (word === 'text') return { name, id: null, error: `${name} is no photograph: it begins with plain text; send a JPEG` };
       const used = c.photographs.length;
       const jpeg = bytes[0] === 0xff && bytes[1] === 0xd8;
       const p = good(`u${this.next++}`, name, ring[used % ring.length], { uploaded: jpeg ? bytes : null, state: 'waiting', tilt_deg: null, azimuth_deg: null, sharpness: null, clipped_share: null });

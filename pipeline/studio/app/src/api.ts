@@ -48,6 +48,7 @@ export interface Photograph {
   tilt_deg: number | null;
   azimuth_deg: number | null;
   same_as: string | null;
+  added_s?: number; // since 1970
 }
 
 export interface Advice {
@@ -161,7 +162,7 @@ export interface NewCapture {
 export interface SentPhotograph {
   name: string;
   id: string | null;
-  error: string | null;
+  error: string | null; // "what is wrong; what to do"
 }
 
 export interface PhoneState {

@@ -119,7 +119,8 @@ export class UploadQueue {
       try {
         const { id, error } = await this.send(upload);
         if (error !== null || id === null) {
-          this.update(key, { state: 'refused', message: error ?? texts.photographsPage.refused });
+          const [message, ...remedy] = (error ?? texts.photographsPage.refused).split('; ');
+          this.update(key, { state: 'refused', message, remedy: remedy.join('; ') || null });
         } else {
           this.update(key, { state: 'sent', share: 1, id });
         }

@@ -23,12 +23,13 @@ export function PhotographList({ photographs, queue, uploads, onLeaveOut, onSele
   const nameOf = (id: string) => there.get(id)?.name ?? '';
   const previews = new Map(uploads.filter(arrived).map((u) => [u.id!, u.preview]));
   const waiting = uploads.filter((u) => !arrived(u));
+  const latestFirst = [...photographs].reverse().sort((a, b) => (b.added_s ?? 0) - (a.added_s ?? 0));
   return (
     <ul class="tiles">
       {waiting.map((upload) => (
         <UploadTile key={`upload-${upload.key}`} upload={upload} onRemove={() => queue.remove(upload.key)} onAgain={() => queue.again(upload.key)} />
       ))}
-      {[...photographs].reverse().map((photograph) => (
+      {latestFirst.map((photograph) => (
         <PhotographTile
           key={photograph.id}
           photograph={photograph}
