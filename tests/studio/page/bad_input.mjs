@@ -82,9 +82,11 @@ await page.getByRole('link', { name: 'Photographs' }).click();
 await page.waitForSelector('.tile');
 await input.setInputFiles(photographs);
 await page.waitForFunction(() => document.querySelectorAll('.badge.good').length >= 4, null, { timeout: 60000 });
+await page.waitForFunction(() => !document.querySelector('.upload-progress'), null, { timeout: 60000 });
 const bytes = photographs.map((file) => fs.readFileSync(file).toString('base64'));
 const there = fs.readdirSync(path.join(capture, 'photos')).map((name) => fs.readFileSync(path.join(capture, 'photos', name)).toString('base64'));
-verdict(bytes.every((one) => there.filter((other) => other === one).length === 1), 'after a kill every photograph is there whole, and once');
+const times = bytes.map((one) => there.filter((other) => other === one).length);
+verdict(times.every((n) => n === 1), `after a kill every photograph is there whole, and once (${times.join(', ')} times)`);
 
 // Two browsers.
 const second = await open(browser, wide, studio.address);
