@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 void AddFolder(const fs::path& folder, const std::string& prefix, int deep,
                std::map<std::string, fs::path>* files) {
   std::error_code error;
+  if (fs::is_symlink(folder, error)) return;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename();
     if (entry.is_symlink(error) || name[0] == '.') continue;

@@ -303,7 +303,7 @@ class Studio::Impl {
   HttpReply RouteCapture(const Door& door, const LibraryEntry& entry, const Segments& at,
                          const std::string& method, HttpBody* body) {
     const std::string what = at.empty() ? "" : at[0];
-    if (at.empty() && method == "GET") return JsonReply(CaptureFacts(door, entry));
+    if (at.empty() && method == "GET") return JsonReply(CaptureFacts(entry));
     if (what == "thumbnail" && at.size() <= 2 && method == "GET") {
       return SendThumbnail(entry, at.size() == 2 ? at[1] : "");
     }
@@ -321,7 +321,7 @@ class Studio::Impl {
     }
     if (what == "options" && method == "PUT") {
       workspace_.SetOptions(entry, JsonBody(body));
-      return JsonReply(CaptureFacts(door, entry));
+      return JsonReply(CaptureFacts(entry));
     }
     if (method != "POST") ThrowNotFound();
     return Act(door, entry, what, body);
@@ -360,7 +360,7 @@ class Studio::Impl {
     return "/files/" + files_secret_ + "/" + entry.id + "/";
   }
 
-  Json CaptureFacts(const Door&, const LibraryEntry& entry) {
+  Json CaptureFacts(const LibraryEntry& entry) {
     Json json =
         workspace_.CaptureJson(entry, FilesOf(entry), "/api/captures/" + entry.id + "/thumbnail/");
     const auto link = phones_.Of(entry.id);

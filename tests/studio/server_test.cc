@@ -69,13 +69,14 @@ TEST(Server, NoPathOfAClientReachesTheFileSystem) {
   running.folder.Write("secret.txt", "secret");
   fs::create_symlink(running.folder / "secret.txt", running.folder / "wood/glint/export/link.png");
   fs::create_directory_symlink(running.folder.path(), running.folder / "wood/glint/export/all");
+  fs::create_directory_symlink(running.folder.path(), running.folder / "wood/glint/tile");
   const std::string page = running.Capture(id)["result"]["page"];
   EXPECT_EQ(running.page->Get(page).body, "<p>report");
   const std::string base = page.substr(0, page.find("report/"));
   for (const std::string& path :
        {base + "../secret.txt", base + "export/../../../secret.txt",
         base + "%2e%2e/%2e%2e/secret.txt", base + "export%2f..%2f..%2f..%2fsecret.txt",
-        base + "export/link.png", base + "export/all/secret.txt",
+        base + "export/link.png", base + "export/all/secret.txt", base + "tile/secret.txt",
         base + "/" + (running.folder / "secret.txt").string(), base + "report/index.html%00.png",
         base + "..\\..\\secret.txt", std::string("/../../../../etc/passwd"),
         std::string("//etc/passwd"), std::string("/api/captures/..%2f..%2fetc/thumbnail"),
@@ -267,6 +268,26 @@ TEST(Phone, AnExpiredLinkIsRefused) {
   EXPECT_EQ(
       Ask(phone.port, RequestText("GET", phone.path + "/state", {{"Host", phone.host}})).status,
       410);
+}
+
+TEST(Lan, BrowsersOfTheNetworkComeInByASecretOfTheirOwn) {
+  StudioOptions options;
+  options.lan = true;
+  const RunningStudio running(options);
+  const test::PageClient far(running.studio->lan_address());
+  EXPECT_NE(far.port(), running.page->port());
+  EXPECT_NE(far.token(), running.page->token());
+  EXPECT_EQ(far.Get("/api/library").status, 200);
+  const test::Headers near_cookie = {{"Host", far.host()}, {"Cookie", running.page->cookie()}};
+  EXPECT_EQ(Ask(far.port(), RequestText("GET", "/api/library", near_cookie)).status, 401);
+  // Nor do they open windows on the machine that Studio runs on.
+  const std::string id = running.MakeCapture();
+  EXPECT_EQ(far.Post("/api/captures/" + id + "/open-folder").status, 403);
+}
+
+TEST(Lan, WithoutItNoSecondAddressIsOpen) {
+  const RunningStudio running;
+  EXPECT_EQ(running.studio->lan_address(), "");
 }
 
 }  // namespace
