@@ -38,7 +38,7 @@ const std::vector<ImageFormat>& ImageFormats() {
        }},
       {"openexr", {".exr"}, [](Head head) { return head.starts_with("\x76\x2f\x31\x01"sv); }},
       {"heif",
-       {".heic", ".heif", ".avif"},
+       {".heic", ".heif", ".hif", ".avif"},
        [](Head head) {
          return BeginsIsoMedia(head, {"heic", "heix", "heim", "heis", "hevc", "hevx", "hevm",
                                       "hevs", "mif1", "msf1", "avif", "avis"});

@@ -1,5 +1,6 @@
 #include "pipeline/photos/colour_profile.h"
 
+#include <fmt/format.h>
 #include <lcms2.h>
 
 #include <Eigen/Core>
@@ -105,6 +106,33 @@ Primaries FromChromaticities(const std::array<std::array<double, 2>, 4>& xy) {
 
 constexpr std::array<double, 2> kD65 = {0.3127, 0.3290};
 
+template <class Linear>
+void SetCurve(const Linear& linear, ColourProfile* profile) {
+  for (std::vector<float>& channel : profile->curve) {
+    channel.clear();
+    for (int i = 0; i < kCodes; ++i) {
+      channel.push_back(static_cast<float>(linear(static_cast<double>(i) / (kCodes - 1))));
+    }
+  }
+}
+
+// SMPTE ST 2084, 4.1; 1 is 203 cd/m².
+double LinearFromPq(double stored) {
+  constexpr double kM1 = 2610.0 / 16384, kM2 = 78.84375, kC1 = 0.8359375, kC2 = 18.8515625,
+                   kC3 = 18.6875, kPeak = 10000.0 / 203;
+  const double power = std::pow(stored, 1 / kM2);
+  return kPeak * std::pow(std::max(power - kC1, 0.0) / (kC2 - kC3 * power), 1 / kM1);
+}
+
+// Light of the scene by Rec. ITU-R BT.2100, table 5; 1 is what is stored as 0.75.
+double LinearFromHlg(double stored) {
+  constexpr double kA = 0.17883277, kB = 0.28466892, kC = 0.55991073;
+  const auto scene = [](double e) {
+    return e <= 0.5 ? e * e / 3 : (std::exp((e - kC) / kA) + kB) / 12;
+  };
+  return scene(stored) / scene(0.75);
+}
+
 }  // namespace
 
 std::string ColourProfile::Description() const {
@@ -145,17 +173,52 @@ ColourProfile ReadColourProfile(std::string_view icc) {
   return result;
 }
 
-ColourProfile ProfileOfPrimaries(int h273) {
-  constexpr int kRec2020 = 9, kDisplayP3 = 12;
+ColourProfile ProfileOfCodePoints(int primaries, int transfer) {
+  constexpr int kRec2020 = 9, kDisplayP3 = 12, kLinear = 8, kPq = 16, kHlg = 18;
   ColourProfile profile;
-  if (h273 == kDisplayP3) {
+  if (primaries == kDisplayP3) {
     profile.name = "Display P3";
     SetPrimaries(FromChromaticities({{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, kD65}}),
                  &profile);
-  } else if (h273 == kRec2020) {
+  } else if (primaries == kRec2020) {
     profile.name = "Rec. 2020";
     SetPrimaries(FromChromaticities({{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, kD65}}),
                  &profile);
+  }
+  const auto add = [&profile](const char* curve, double (*linear)(double)) {
+    profile.name += (profile.name.empty() ? "Rec. 709, " : ", ") + std::string(curve);
+    SetCurve(linear, &profile);
+  };
+  if (transfer == kLinear) add("linear", [](double stored) { return stored; });
+  if (transfer == kPq) add("PQ", LinearFromPq);
+  if (transfer == kHlg) add("HLG", LinearFromHlg);
+  return profile;
+}
+
+ColourProfile ProfileOfGamma(double gamma) {
+  constexpr double kUsual = 1 / 2.2, kSame = 0.02, kLeast = 0.2, kMost = 1.5;
+  ColourProfile profile;
+  if (!(gamma >= kLeast && gamma <= kMost) || std::abs(gamma / kUsual - 1) < kSame) return profile;
+  profile.name = fmt::format("gamma {:.3g}", 1 / gamma);
+  SetCurve([gamma](double stored) { return std::pow(stored, 1 / gamma); }, &profile);
+  return profile;
+}
+
+ColourProfile ProfileOfChromaticities(const std::array<float, 8>& xy) {
+  ColourProfile profile;
+  std::array<std::array<double, 2>, 4> points{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double x = xy[2 * i], y = xy[2 * i + 1];
+    // ACES AP0's blue has y below 0.
+    if (!(std::abs(x) < 2 && std::abs(y) < 2 && y != 0)) return profile;
+    points[i] = {x, y};
+  }
+  const Primaries xyz_from_rgb = FromChromaticities(points);
+  if (!xyz_from_rgb.allFinite() || std::abs(xyz_from_rgb.determinant()) < 1e-3) return profile;
+  SetPrimaries(xyz_from_rgb, &profile);
+  if (profile.converts()) {
+    profile.name = fmt::format("primaries {:.3g} {:.3g}, {:.3g} {:.3g}, {:.3g} {:.3g}", xy[0],
+                               xy[1], xy[2], xy[3], xy[4], xy[5]);
   }
   return profile;
 }
@@ -166,12 +229,7 @@ ColourProfile AdobeRgbProfile() {
   SetPrimaries(FromChromaticities({{{0.640, 0.330}, {0.210, 0.710}, {0.150, 0.060}, kD65}}),
                &profile);
   constexpr double kGamma = 563.0 / 256;
-  for (std::vector<float>& channel : profile.curve) {
-    for (int i = 0; i < kCodes; ++i) {
-      channel.push_back(
-          static_cast<float>(std::pow(static_cast<double>(i) / (kCodes - 1), kGamma)));
-    }
-  }
+  SetCurve([](double stored) { return std::pow(stored, kGamma); }, &profile);
   return profile;
 }
 

@@ -31,8 +31,8 @@ struct ColourProfile {
   Matrix rec709_from_rgb;
   bool converts() const { return rec709_from_rgb != Matrix(); }
 
-  // Linear values of the stored ones 0, 1/255 … 1, of R, G, B; empty: sRGB's curve, or none is
-  // told.
+  // Linear values of the stored ones 0, 1/255 … 1, of R, G, B, where 1 is white; those of HDR
+  // pictures go beyond. Empty: sRGB's curve, or none is told.
   std::array<std::vector<float>, 3> curve;
   bool has_curve() const { return !curve[0].empty(); }
 
@@ -46,9 +46,16 @@ struct ColourProfile {
 // `icc`: the profile's bytes, however damaged.
 ColourProfile ReadColourProfile(std::string_view icc);
 
-// Of primaries by their number in ITU-T H.273: 9 (Rec.2020) and 12 (Display P3), which HEIC files
-// name without a profile. Others: none.
-ColourProfile ProfileOfPrimaries(int h273);
+// What HEIC and AVIF files name without a profile, by its numbers in ITU-T H.273. Primaries: 9
+// (Rec.2020) and 12 (Display P3); others are taken for Rec.709's. Transfer: 8 (linear), 16 (PQ) and
+// 18 (HLG), of which 1 is the reference white of Rec. ITU-R BT.2408; others are taken for sRGB's.
+ColourProfile ProfileOfCodePoints(int primaries, int transfer);
+
+// A PNG's gAMA: stored = linear^gamma. Close to 1/2.2: none, since that is what is assumed anyway.
+ColourProfile ProfileOfGamma(double gamma);
+
+// An EXR's chromaticities: CIE x and y of R, G, B and white. Rec.709's, or nonsense: none.
+ColourProfile ProfileOfChromaticities(const std::array<float, 8>& xy);
 
 // Adobe RGB (1998), which cameras name by EXIF's ColorSpace without a profile.
 ColourProfile AdobeRgbProfile();

@@ -31,7 +31,8 @@ ColourProfile ColourOf(const heif_image_handle* handle) {
   heif_color_profile_nclx* named = nullptr;
   if (Failed(heif_image_handle_get_nclx_color_profile(handle, &named))) return {};
   const Owned<heif_color_profile_nclx> nclx(named);
-  return nclx ? ProfileOfPrimaries(nclx->color_primaries) : ColourProfile();
+  if (!nclx) return {};
+  return ProfileOfCodePoints(nclx->color_primaries, nclx->transfer_characteristics);
 }
 
 // The block begins with the offset of the TIFF header from what follows it: 6 where "Exif\0\0"

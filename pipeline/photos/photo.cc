@@ -2,6 +2,7 @@
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/tiffutils.h>
 
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -74,6 +75,15 @@ std::string_view IccOf(const OIIO::ImageSpec& spec) {
   return {static_cast<const char*>(icc->data()), icc->type().size()};
 }
 
+// What PNG and EXR say of their colours in fields of their own.
+ColourProfile ToldWithoutProfile(const OIIO::ImageSpec& spec, std::string_view format) {
+  if (format == "png") return ProfileOfGamma(spec.get_float_attribute("oiio:Gamma", 0));
+  std::array<float, 8> xy{};
+  const OIIO::TypeDesc type(OIIO::TypeDesc::FLOAT, static_cast<int>(xy.size()));
+  if (format != "openexr" || !spec.getattribute("chromaticities", type, xy.data())) return {};
+  return ProfileOfChromaticities(xy);
+}
+
 std::string BytesOfJpeg(const std::filesystem::path& file, const OIIO::ImageInput& input) {
   if (std::string_view(input.format_name()) != "jpeg") return {};
   return ReadTextFile(file, kMaxJpegBytes);
@@ -96,6 +106,7 @@ void ReadFacts(const std::filesystem::path& file, const OIIO::ImageInput& input,
     photo->colour = ReadColourProfile(facts.icc);
   } else if (format != "raw") {
     photo->colour = ReadColourProfile(IccOf(spec));
+    if (photo->colour.name.empty()) photo->colour = ToldWithoutProfile(spec, format);
   }
   ReadExif(spec, format, photo);
   photo->grey = spec.nchannels < 3;

@@ -31,6 +31,13 @@ TEST(ImageFormat, TheFirstBytesChooseTheReaderWhateverTheFileIsCalled) {
   EXPECT_EQ(ReaderOfBytes("a.pic", "P6 2 2 255 ------"), "pnm");
 }
 
+TEST(ImageFormat, PhotographsAreKnownByTheirNames) {
+  for (const char* name : {"a.JPG", "a.heic", "IMG_0001.HIF", "a.tiff", "a.dng", "a.webp"}) {
+    EXPECT_TRUE(IsPhotoFileName(name)) << name;
+  }
+  EXPECT_FALSE(IsPhotoFileName("a.txt"));
+}
+
 TEST(ImageFormat, RawFilesThatBeginAsTiffFilesDoAreToldByTheirNames) {
   for (const char* name :
        {"a.NEF", "a.sr2", "a.rwl", "a.mef", "a.fff", "a.dcr", "a.mos", "a.ptx"}) {

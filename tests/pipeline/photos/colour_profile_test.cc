@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -59,7 +60,8 @@ TEST(ColourProfile, SrgbNeedsNothing) {
 
 // Published matrices (CSS Color 4): Display P3 to sRGB.
 TEST(ColourProfile, DisplayP3IsWiderThanRec709) {
-  for (const ColourProfile& p3 : {ReadColourProfile(Profile(kP3, 0)), ProfileOfPrimaries(12)}) {
+  for (const ColourProfile& p3 :
+       {ReadColourProfile(Profile(kP3, 0)), ProfileOfCodePoints(12, 13)}) {
     EXPECT_FALSE(p3.has_curve());
     const auto red = p3.rec709_from_rgb({1, 0, 0}), white = p3.rec709_from_rgb({1, 1, 1});
     EXPECT_NEAR(red[0], 1.2249, 2e-3);
@@ -76,6 +78,46 @@ TEST(ColourProfile, CurvesThatAreNotSrgbsAreRead) {
   const auto white = pro_photo.rec709_from_rgb({1, 1, 1});
   for (const float channel : white) EXPECT_NEAR(channel, 1, 1e-6);
   EXPECT_NEAR(AdobeRgbProfile().curve[0][128], std::pow(128 / 255.0, 563.0 / 256), 1e-4);
+}
+
+// SMPTE ST 2084: 100 cd/m² is stored as 0.508, 1,000 as 0.752; Rec. ITU-R BT.2100 HLG: a twelfth
+// of its peak as 0.5.
+TEST(ColourProfile, HdrsTransferFunctionsAreKnownByTheirNumbers) {
+  const ColourProfile pq = ProfileOfCodePoints(9, 16), hlg = ProfileOfCodePoints(9, 18);
+  EXPECT_EQ(pq.name, "Rec. 2020, PQ");
+  ASSERT_TRUE(pq.has_curve() && hlg.has_curve());
+  EXPECT_EQ(pq.curve[0][0], 0);
+  EXPECT_NEAR(pq.curve[1][130], 100 / 203.0, 0.02);  // 130/255 is 0.510
+  EXPECT_NEAR(pq.curve[2][192], 1000 / 203.0, 0.1);  // 192/255 is 0.753
+  EXPECT_NEAR(pq.curve[0][255], 10000 / 203.0, 1e-3);
+  EXPECT_NEAR(hlg.curve[0][128] / hlg.curve[0][255], 1 / 12.0, 1e-3);
+  EXPECT_TRUE(pq.converts());
+  const ColourProfile linear = ProfileOfCodePoints(1, 8);
+  EXPECT_FALSE(linear.converts());
+  EXPECT_FLOAT_EQ(linear.curve[0][100], 100 / 255.0f);
+  EXPECT_FALSE(ProfileOfCodePoints(1, 13).has_curve());
+  EXPECT_EQ(ProfileOfCodePoints(2, 2).name, "");
+}
+
+TEST(ColourProfile, AGammaOtherThanTheUsualIsACurve) {
+  EXPECT_FALSE(ProfileOfGamma(0.45455).has_curve());
+  for (const double nonsense : {0.0, -1.0, 1e9, std::nan("")}) {
+    EXPECT_FALSE(ProfileOfGamma(nonsense).has_curve());
+  }
+  EXPECT_FLOAT_EQ(ProfileOfGamma(1).curve[2][51], 0.2f);
+}
+
+// ACEScg's published matrix to sRGB.
+TEST(ColourProfile, ChromaticitiesAreOnesOwnPrimaries) {
+  const ColourProfile aces =
+      ProfileOfChromaticities({.713f, .293f, .165f, .830f, .128f, .044f, .32168f, .33767f});
+  const auto red = aces.rec709_from_rgb({1, 0, 0});
+  EXPECT_NEAR(red[0], 1.705, 5e-3);
+  EXPECT_NEAR(red[1], -0.130, 5e-3);
+  EXPECT_NEAR(red[2], -0.024, 5e-3);
+  EXPECT_EQ(ProfileOfChromaticities({.64f, .33f, .30f, .60f, .15f, .06f, .3127f, .3290f}).name, "");
+  EXPECT_EQ(ProfileOfChromaticities({}).name, "");
+  EXPECT_EQ(ProfileOfChromaticities({.3f, .3f, .3f, .3f, .3f, .3f, .3f, .3f}).name, "");
 }
 
 TEST(ColourProfile, WhatIsNotThreePrimariesIsNamed) {
@@ -145,6 +187,33 @@ TEST_F(PhotoColours, AreReadFromEachFormat) {
     const Photo photo = ReadPhoto(Write(name, type, icc));
     EXPECT_EQ(photo.colour.rec709_from_rgb, wanted.rec709_from_rgb) << name;
   }
+}
+
+// Fields that PNG and EXR have for it.
+TEST_F(PhotoColours, AreReadWhereThereIsNoProfile) {
+  const auto write = [&](const std::string& name, const OIIO::TypeDesc& type,
+                         const std::function<void(OIIO::ImageSpec*)>& say) {
+    const fs::path file = folder_ / name;
+    OIIO::ImageSpec spec(32, 32, 3, type);
+    say(&spec);
+    const auto output = OIIO::ImageOutput::create(file.string());
+    const std::vector<float> samples(32 * 32 * 3, 0.5f);
+    EXPECT_TRUE(output->open(file.string(), spec));
+    EXPECT_TRUE(output->write_image(OIIO::TypeFloat, samples.data()));
+    output->close();
+    return ReadPhoto(file).colour;
+  };
+  const ColourProfile linear = write("linear.png", OIIO::TypeUInt16, [](OIIO::ImageSpec* spec) {
+    spec->attribute("oiio:ColorSpace", "linear");  // gAMA of 1
+  });
+  ASSERT_TRUE(linear.has_curve());
+  EXPECT_FLOAT_EQ(linear.curve[0][51], 0.2f);
+  const float aces[] = {.713f, .293f, .165f, .830f, .128f, .044f, .32168f, .33767f};
+  const auto say = [&](OIIO::ImageSpec* spec) {
+    spec->attribute("chromaticities", OIIO::TypeDesc("float[8]"), aces);
+  };
+  EXPECT_TRUE(write("aces.exr", OIIO::TypeHalf, say).converts());
+  EXPECT_FALSE(write("usual.exr", OIIO::TypeHalf, [](OIIO::ImageSpec*) {}).converts());
 }
 
 TEST_F(PhotoColours, AndExifAreReadFromWebp) {

@@ -98,7 +98,7 @@ TEST(LinearPhoto, IsInRec709WhateverTheProfile) {
     photo.bits = bits;
     photo.image = Image(1, 1, {"R", "G", "B"});
     photo.image.samples = {0.8f, 0.2f, 0.0f};
-    photo.colour = ProfileOfPrimaries(12);
+    photo.colour = ProfileOfCodePoints(12, 13);
     const LinearPhoto linear(photo, Encoding::kLinear);
     const auto rgb = linear.Visit([](const auto& reader) { return reader.At(0).rgb; });
     EXPECT_NEAR(rgb[0], 1.2249 * 0.8 - 0.2247 * 0.2, 3e-3) << bits;
