@@ -3,6 +3,7 @@
 
 #include "base/errors/errors.h"
 #include "pipeline/contract/program.h"
+#include "pipeline/driver/kept_options.h"
 #include "pipeline/driver/run.h"
 #include "pipeline/driver/status.h"
 
@@ -38,8 +39,9 @@ void AddOptions(glint::OptionSet* options, RunArguments* o) {
 
 glint::ProgramResult DryRun(const RunArguments& o) {
   const glint::Capture capture = glint::ReadCapture(o.run.capture);
-  const auto steps =
+  auto steps =
       glint::SelectSteps(glint::StageSteps(capture, o.run.choices), o.run.from, o.run.until);
+  glint::KeepOptions(capture, &steps);
   const glint::CaptureStatus status = glint::LookAtCapture(capture, steps);
   return {status.Plan(), status.ToJson()};
 }

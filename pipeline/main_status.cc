@@ -1,5 +1,6 @@
 // glint-status: which results are up to date.
 #include "pipeline/contract/program.h"
+#include "pipeline/driver/kept_options.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/status.h"
 
@@ -16,7 +17,9 @@ int main(int argc, char** argv) {
       &options, [&](const glint::CommonOptions&) -> glint::ProgramResult {
         const glint::Capture capture = glint::ReadCapture(folder);
         const auto choices = glint::ReadChoices(capture.work() / "build.ninja");
-        const auto status = glint::LookAtCapture(capture, glint::StageSteps(capture, choices));
+        auto steps = glint::StageSteps(capture, choices);
+        glint::KeepOptions(capture, &steps);
+        const auto status = glint::LookAtCapture(capture, steps);
         return {status.BriefReport(), status.ToJson()};
       });
 }

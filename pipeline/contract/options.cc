@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cstdlib>
 #include <limits>
 #include <locale>
 #include <memory>
@@ -147,6 +148,20 @@ std::string Limits(const Option& option) {
   if (!value.empty() && !option.positional) parts.push_back("default: " + value);
   if (parts.empty()) return "";
   return fmt::format(" ({})", fmt::join(parts, "; "));
+}
+
+// What gives the option this value on a command line.
+template <class T>
+std::string WordOf(const std::string& name, const T& value) {
+  if constexpr (std::is_same_v<T, bool>) {
+    return value ? "--" + name : "--no-" + name;
+  } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
+    return fmt::format("--{}={}", name, std::filesystem::absolute(value).generic_string());
+  } else if constexpr (IsList<T>::value) {
+    return fmt::format("--{}={}", name, fmt::join(value, ","));
+  } else {
+    return fmt::format("--{}={}", name, value);
+  }
 }
 
 // The choices that a person can type: an empty one only stands for an option that is not given.
@@ -314,6 +329,21 @@ Json OptionSet::Echo(Invalidates which) const {
           }
         },
         option.target);
+  }
+  return echo;
+}
+
+Json OptionSet::CommandLineEcho() const {
+  const char* names = std::getenv(kRunOptionsVariable);
+  const std::string by_run = names == nullptr ? "" : fmt::format(",{},", names);
+  Json echo = Json::object();
+  for (const Option& option : options_) {
+    const std::string name = OneName(option.name);
+    if (option.positional || option.invalidates != Invalidates::kYes) continue;
+    if (!option.set_on_command_line || !option.set_on_command_line()) continue;
+    if (by_run.find("," + name + ",") != std::string::npos) continue;
+    echo[name] =
+        std::visit([&name](const auto* target) { return WordOf(name, *target); }, option.target);
   }
   return echo;
 }

@@ -24,6 +24,9 @@ namespace glint {
 // (threads, verbosity) are kept out of the manifest and go to run.json.
 enum class Invalidates { kYes, kNo };
 
+// Names of the options that `glint run` gives a stage by itself, with commas between.
+inline constexpr char kRunOptionsVariable[] = "GLINT_RUN_OPTIONS";
+
 class OptionSet {
  public:
   using Target =
@@ -57,6 +60,11 @@ class OptionSet {
 
   Json ManifestEcho() const;  // every invalidating option with its resolved value
   Json RunEcho() const;       // the others
+
+  // The invalidating options that a person gave on the command line, each with the word that gives
+  // it again: {"light": "--light=camera"}. Those that `glint run` gave by itself are not among
+  // them.
+  Json CommandLineEcho() const;
 
  private:
   struct Option {

@@ -152,6 +152,7 @@ Stage::Stage(fs::path folder, StageInfo info, const OptionSet& options, const Co
       info_(std::move(info)),
       options_(options.ManifestEcho()),
       run_options_(options.RunEcho()),
+      command_line_(options.CommandLineEcho()),
       threads_(common.threads),
       started_s_(SecondsSince1970()) {
   options_["seed"] = common.seed;
@@ -235,7 +236,8 @@ void Stage::WriteRunFacts() const {
                       {"instruction_sets", InstructionSetNames()},
                       {"threads", threads_},
                       {"outside", outside_inputs_},
-                      {"options", run_options_}};
+                      {"options", run_options_},
+                      {"command_line", command_line_}};
   WriteFileAtomically(staging() / "run.json", facts.dump(2) + "\n");
 }
 

@@ -71,7 +71,7 @@ class Stage {
 
   std::filesystem::path folder_;
   StageInfo info_;
-  Json options_, run_options_;
+  Json options_, run_options_, command_line_;
   int threads_;
   std::unique_ptr<FileLock> lock_;
   std::vector<ManifestInput> inputs_;

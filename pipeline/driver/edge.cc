@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <sstream>
 
 #include "base/errors/errors.h"
+#include "pipeline/contract/options.h"
 #include "pipeline/contract/run_progress.h"
 #include "pipeline/contract/stages.h"
 #include "pipeline/driver/child_process.h"
@@ -41,6 +43,15 @@ struct FileStamp {
            time.tv_nsec == other.time.tv_nsec;
   }
 };
+
+// "method,seed" of {"--method", "latent", "--seed", "3"}.
+std::string OptionNames(const std::vector<std::string>& arguments) {
+  std::string names;
+  for (const std::string& argument : arguments) {
+    if (argument.starts_with("--")) names += (names.empty() ? "" : ",") + argument.substr(2);
+  }
+  return names;
+}
 
 // −1: none.
 int DescriptorVariable(const char* name) { return std::atoi(Variable(name, "-1").c_str()); }
@@ -85,15 +96,17 @@ int RunEdge(const std::vector<std::string>& words) {
   DieWithParent(kRunNinjaVariable);
   ChildProcess child;
   child.arguments = {words[1], Variable(kRunCaptureVariable, ".")};
-  child.arguments.insert(child.arguments.end(), words.begin() + 2, words.end());
+  const auto kept = std::find(words.begin() + 2, words.end(), kKeptFlag);
+  child.arguments.insert(child.arguments.end(), words.begin() + 2, kept);
+  if (kept != words.end()) child.arguments.insert(child.arguments.end(), kept + 1, words.end());
   std::istringstream more(Variable(kRunArgumentsVariable, ""));
   for (std::string word; std::getline(more, word);) child.arguments.push_back(word);
 
   const int result_descriptor = DescriptorVariable(kRunStdoutVariable);
   if (result_descriptor >= 0) ::dup2(result_descriptor, STDOUT_FILENO);
 
-  child.environment = {
-      {kRunProgressVariable, ProgressOf(Variable(kRunPlanVariable, ""), words[0])}};
+  child.environment = {{kRunProgressVariable, ProgressOf(Variable(kRunPlanVariable, ""), words[0])},
+                       {kRunOptionsVariable, OptionNames({words.begin() + 2, kept})}};
   const fs::path manifest = fs::absolute(ManifestPath(words[0]));
   const FileStamp before(manifest);
   EdgeOutcome outcome;

@@ -1,7 +1,9 @@
 // One edge of build.ninja at work: runs a stage's program for `glint run`, which learns through a
 // descriptor what Ninja does not pass on: the exit code, and whether the result changed.
 //
-//   glint --edge STAGE PROGRAM [ARGUMENTS]     in the capture's folder
+//   glint --edge STAGE PROGRAM [ARGUMENTS] [--kept ARGUMENTS]     in the capture's folder
+//
+// Those after --kept a person gave to the stage once; the stage notes them as such again.
 //
 // The environment says what may differ from run to run without making a result stale:
 //   GLINT_RUN_FOLDER     the folder in which the person works
@@ -23,6 +25,7 @@
 namespace glint {
 
 inline constexpr char kEdgeFlag[] = "--edge";
+inline constexpr char kKeptFlag[] = "--kept";
 inline constexpr char kRunFolderVariable[] = "GLINT_RUN_FOLDER";
 inline constexpr char kRunCaptureVariable[] = "GLINT_RUN_CAPTURE";
 inline constexpr char kRunArgumentsVariable[] = "GLINT_RUN_ARGUMENTS";
@@ -46,7 +49,7 @@ std::string ToText(const RunPlan& plan);
 // Where `stage` stands in a plan's text; "" where the text is none, or without the stage.
 std::string ProgressOf(const std::string& plan, const std::string& stage);
 
-// Returns the program's exit code. `words` are STAGE PROGRAM [ARGUMENTS].
+// Returns the program's exit code. `words` are what follows --edge.
 int RunEdge(const std::vector<std::string>& words);
 
 // An anonymous file that edges append their outcomes to; it takes no space on any disk.

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/errors/errors.h"
+#include "pipeline/driver/edge.h"
 #include "pipeline/files/hash.h"
 
 namespace glint {
@@ -67,6 +68,8 @@ std::string EdgeText(const NinjaEdge& edge) {
   text += "\n  program = " + EscapedWord(edge.program.string());
   text += "\n  arguments =";
   for (const std::string& argument : step.arguments) text += " " + EscapedWord(argument);
+  if (!step.kept.empty()) text += " " + std::string(kKeptFlag);
+  for (const std::string& argument : step.kept) text += " " + EscapedWord(argument);
   // Ninja does not see that an input is gone or has another content; that the command has changed
   // it does.
   text += "\n  inputs = " + HashBytes(inputs + edge.content);

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include "pipeline/contract/run_progress.h"
 #include "pipeline/contract/stages.h"
 #include "pipeline/driver/child_process.h"
+#include "pipeline/driver/kept_options.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/programs.h"
 #include "pipeline/files/files.h"
@@ -316,8 +318,9 @@ Json RunSummary::ToJson() const {
 RunSummary RunCapture(const RunOptions& options) {
   const Capture capture = ReadCapture(options.capture);
   RequireKnownViews(capture, options.choices.exclude);
-  const std::vector<StageStep> steps =
+  std::vector<StageStep> steps =
       SelectSteps(StageSteps(capture, options.choices), options.from, options.until);
+  for (const std::string& note : KeepOptions(capture, &steps)) spdlog::info("{}", note);
   RequireEarlierResults(capture, steps);
   const fs::path ninja = RequireNinja();
   const auto lock = LockRun(capture.work());

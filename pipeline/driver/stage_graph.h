@@ -30,6 +30,7 @@ RunChoices RunChoicesFromJson(const Json& json);
 struct StageStep {
   std::string stage;                   // "fit"; its program is glint-fit
   std::vector<std::string> arguments;  // after the capture's folder
+  std::vector<std::string> kept;       // further ones, see kept_options.h
   std::vector<std::string> inputs;     // files; those of earlier stages are their manifests
   std::vector<std::string> waits_for;  // stages among the steps whose manifests are inputs
   std::string manifest;                // "glint/fit/manifest.json"

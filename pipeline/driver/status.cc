@@ -72,6 +72,7 @@ void AskProgram(const Capture& capture, const StageStep& step, StageStatus* stat
   ChildProcess child;
   child.arguments = {RequireGlintProgram("glint-" + step.stage).string(), capture.folder.string()};
   child.arguments.insert(child.arguments.end(), step.arguments.begin(), step.arguments.end());
+  child.arguments.insert(child.arguments.end(), step.kept.begin(), step.kept.end());
   child.arguments.insert(child.arguments.end(), {"--status", "--json", "--log-level", "off"});
   std::string text;
   child.on_line = [&text](const std::string& line) { text += line + "\n"; };

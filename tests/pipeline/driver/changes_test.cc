@@ -39,6 +39,42 @@ TEST_F(RunTest, AChangedOptionComputesItsStageAndLaterOnesOnly) {
   EXPECT_THAT(RunJson().started, IsEmpty());
 }
 
+TEST_F(RunTest, WhatWasGivenToAStageOnItsCommandLineIsKept) {
+  RunJson();
+  const std::string refine = (folder_.path() / "bin/glint-refine").string();
+  const auto gain = [&] {
+    return Json::parse(test::ReadAll(manifest("refine")))["options"]["gain"].get<double>();
+  };
+  EXPECT_EQ(test::RunProgram({refine, capture().string(), "--gain", "2.5"}).code, 0);
+  EXPECT_THAT(RunJson().computed, ElementsAre("export", "report"));
+  EXPECT_EQ(gain(), 2.5);
+  // Also where the stage is computed anew, more than once.
+  for (const char* bytes : {"changed", "changed again"}) {
+    test::WriteAll(capture() / "photos/a.jpg", bytes);
+    const Outcome run = Glint({"run", capture().string()});
+    EXPECT_THAT(run.err, HasSubstr("refine keeps --gain=2.5")) << run.err;
+    EXPECT_EQ(gain(), 2.5);
+  }
+  EXPECT_THAT(Glint({"status", capture().string()}).out, testing::Not(HasSubstr("stale")));
+  // capture.toml wins where it names the option, and the stage without it forgets it.
+  SetToml("[refine]\ngain = 3.0\n");
+  EXPECT_THAT(Glint({"run", capture().string()}).err,
+              HasSubstr("[refine] gain in capture.toml overrides --gain=2.5"));
+  EXPECT_EQ(gain(), 3);
+  SetToml("");
+  EXPECT_EQ(test::RunProgram({refine, capture().string(), "--gain", "2"}).code, 0);
+  EXPECT_EQ(test::RunProgram({refine, capture().string()}).code, 0);
+  RunJson();
+  EXPECT_EQ(gain(), 1);
+}
+
+// They hold for that run alone, as those that `glint run` gives to its stages always did.
+TEST_F(RunTest, WhatWasGivenToARunIsNotKept) {
+  RunJson({"--exclude", "a.jpg"});
+  EXPECT_THAT(RunJson().computed, ElementsAre("fit", "refine", "export", "report"));
+  EXPECT_TRUE(Json::parse(test::ReadAll(manifest("refine")))["options"]["exclude"].empty());
+}
+
 TEST_F(RunTest, ATouchedPhotographComputesNothing) {
   RunJson();
   fs::last_write_time(capture() / "photos/a.jpg", fs::file_time_type::clock::now());

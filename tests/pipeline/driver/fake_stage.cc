@@ -123,6 +123,8 @@ int RunStage(const std::string& name, const FakeOptions& o, const glint::OptionS
   }
   manifest.outputs.push_back({"result.txt", glint::HashBytes(text), 0, 0, {}});
   glint::WriteFileAtomically(fresh / "manifest.json", glint::ToJson(manifest).dump(2));
+  const glint::Json facts = {{"command_line", options.CommandLineEcho()}};
+  glint::WriteFileAtomically(fresh / "run.json", facts.dump());
   fs::remove_all(folder);
   fs::rename(fresh, folder);
   std::printf("%s: done\n", name.c_str());
