@@ -1,4 +1,5 @@
 #include "calib/capture/calibrate_capture.h"
+#include "calib/validation/misfit.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -123,6 +124,24 @@ void TellOfPrintScale(const Board& board) {
   if (std::abs(board.print_scale - 1) < kWorthAWord) return;
   spdlog::warn("the board was printed at {}; all its lengths are multiplied by {:.4f}",
                PrintScaleInWords(board), board.print_scale);
+}
+
+// Adds to a photograph's rejection what would make it go with the others, and says what the board
+// looks like by all of them.
+void ExplainMisfits(const CalibOptions& options, const BundleProblem& problem,
+                    CalibSummary* summary) {
+  const BoardStretch stretch = FindBoardStretch(problem, BundleOptionsOf(options), summary->bundle);
+  if (stretch.relative != 0) {
+    const std::string words = InWords(stretch);
+    spdlog::warn("{}", words);
+    summary->board_findings.push_back(words);
+    return;  // photographs were rejected for that
+  }
+  for (PhotoEstimate& photo : summary->bundle.photos) {
+    if (photo.rejected.empty()) continue;
+    const auto view = ExplainByOtherView(summary->bundle, photo);
+    if (view) photo.rejected += "; " + InWords(*view);
+  }
 }
 
 // A focal length that is known to a hundredth only is worth a word.
@@ -315,6 +334,7 @@ void SolveCapture(const Capture& capture, const CalibOptions& options,
     AdjustWhatIsLeft(capture, options, problem, summary);
     if (!EstimateBoardLight(capture, options, round < kMostRounds, summary)) break;
   }
+  ExplainMisfits(options, problem, summary);
   WarnOfUncertainty(summary->bundle);
   if (assumed.empty()) WarnOfToldFocal(problem, summary->bundle);
   FinishCapture(capture, options, !assumed.empty(), threads, summary);

@@ -259,6 +259,7 @@ std::optional<ResponseCurve> ToneCurveOf(const Capture& capture, const CalibSumm
   ResponseCurve curve;
   for (int c = 0; c < 3; ++c) {
     curve.linear[c] = LinearTable(encoding, kResponseCodes, c);
+    const bool hdr = curve.linear[c].back() > 1;
     float before = -1;
     for (float& value : curve.linear[c]) {
       value = static_cast<float>(summary.light.tone->Linear(value));
@@ -266,7 +267,7 @@ std::optional<ResponseCurve> ToneCurveOf(const Capture& capture, const CalibSumm
       if (before < 0) value = 0;
       before = value;
     }
-    curve.linear[c].back() = 1;
+    if (!hdr) curve.linear[c].back() = 1;
   }
   return curve;
 }
@@ -276,7 +277,8 @@ std::vector<std::string> LightAdvice(const CalibSummary& summary) {
   std::vector<std::string> advice = light.held;
   advice.insert(advice.end(), summary.light_findings.begin(), summary.light_findings.end());
   if (!light.known) return advice;
-  constexpr double kFlash_mm = 2, kAmbientOfFlash = 0.01, kVignetting = 0.01, kResidual = 3;
+  constexpr double kFlash_mm = 2, kAmbientOfFlash = 0.01, kVignetting = 0.01, kResidual = 3,
+                   kSaidBefore = 5;
   double flash = 0;
   for (const Estimate& estimate : light.flash_in_camera_mm) flash = std::max(flash, estimate.sigma);
   if (flash > kFlash_mm) {
@@ -304,7 +306,7 @@ std::vector<std::string> LightAdvice(const CalibSummary& summary) {
         "rim fix that",
         100 * sigma));
   }
-  if (light.rms_percent > kResidual) {
+  if (light.rms_percent > kResidual && light.rms_percent <= kSaidBefore) {
     advice.push_back(fmt::format(
         "the paper's brightness differs from the light found by {:.1f} %: see light_residuals.png "
         "for shadows, a lamp, a curled sheet, or another tone curve ([radiometry] encoding)",

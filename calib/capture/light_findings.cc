@@ -118,6 +118,19 @@ void AddFlash(const Capture& capture, const LightEstimate& light, std::vector<st
   }
 }
 
+// More than shadows' edges and a curled sheet leave.
+constexpr double kUneven_percent = 5;
+
+void AddUneven(const LightEstimate& light, std::vector<std::string>* words) {
+  if (light.rms_percent <= kUneven_percent) return;
+  words->push_back(fmt::format(
+      "the paper is {:.1f} % brighter and darker from place to place than the flash explains "
+      "(light_residuals.png), so that the light's power may be off by tens of per cent: a phone's "
+      "HDR brightens parts of a picture by themselves, and shadows or another lamp do the like. "
+      "Switch HDR, night and scene modes off, or photograph RAW, in the dark",
+      light.rms_percent));
+}
+
 }  // namespace
 
 std::string ContradictionOf(const LightOfPhoto& photo) {
@@ -137,6 +150,7 @@ std::vector<std::string> LightFindings(const Capture& capture, const CalibSummar
   AddWhiteBalance(summary.light, &words);
   AddTone(capture, summary.light, &words);
   AddFlash(capture, summary.light, &words);
+  AddUneven(summary.light, &words);
   return words;
 }
 

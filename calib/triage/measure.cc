@@ -171,6 +171,9 @@ PhotoMeasures MeasurePhoto(const std::string& name, const Photo& photo, const Gr
   measures.file = WithoutSamples(photo);
   measures.corners = static_cast<int>(detection.corners.size());
   measures.blur_px = MedianBlur(detection);
+  for (const float sample : photo.image.samples) {
+    measures.brightest = std::max(measures.brightest, static_cast<double>(sample));
+  }
   int factor = 1;
   const GrayImage small = Reduced(gray, kReduced_px, &factor);
   const Region region = BoardRegion(photo.image, detection);

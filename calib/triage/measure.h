@@ -23,8 +23,9 @@ struct PhotoMeasures {
   // ten are wider, so that what lies out of focus does not count. Along rows or along columns,
   // whichever is larger, since a shake blurs one direction; 0: too few edges.
   double edge_px = 0;
-  double clipped = 0;  // share of the board's region (or the picture) with a channel at its end
-  double white = 0;    // 99th percentile of the luma there, stored, 0 … 1
+  double clipped = 0;    // share of the board's region (or the picture) with a channel at its end
+  double white = 0;      // 99th percentile of the luma there, stored, 0 … 1
+  double brightest = 0;  // of all samples, stored
   std::vector<unsigned char> thumbnail;  // 48×48, for duplicates
 };
 

@@ -50,6 +50,16 @@ void FindBlurred(const std::vector<PhotoMeasures>& photos, const PhotoMeasures& 
   }
 }
 
+// Samples of 10, 12 or 14 bits that a camera or a program left unscaled in 16; 0: they are not.
+int UnscaledBits(const PhotoMeasures& photo) {
+  if (photo.file.bits != 16 || photo.file.format == "raw" || photo.brightest <= 0) return 0;
+  const auto top = static_cast<int>(std::lround(65535 * photo.brightest));
+  for (const int bits : {8, 10, 12, 14}) {
+    if (top < 1 << bits) return bits;
+  }
+  return 0;
+}
+
 void FindBadlyExposed(const PhotoMeasures& photo, const TriageOptions& options,
                       std::vector<Remark>* remarks) {
   const std::string where = photo.corners > 0 ? "the board's region" : "the picture";
@@ -64,7 +74,15 @@ void FindBadlyExposed(const PhotoMeasures& photo, const TriageOptions& options,
   }
   // Linear pictures are brightened before they are looked at.
   const bool linear = photo.file.is_float() || photo.file.format == "raw";
-  if (!linear && photo.white < options.white) {
+  const int bits = UnscaledBits(photo);
+  if (!linear && photo.white < options.white && bits > 0) {
+    remarks->push_back(
+        {photo.name, RemarkKind::kDark,
+         fmt::format("dark: none of its 16-bit samples is above {:.0f} of 65535: they seem to have "
+                     "{} bits and were not scaled; multiply them by {} when you export it",
+                     65535 * photo.brightest, bits, 65536 >> bits),
+         photo.white, options.white, true});
+  } else if (!linear && photo.white < options.white) {
     remarks->push_back(
         {photo.name, RemarkKind::kDark,
          fmt::format(

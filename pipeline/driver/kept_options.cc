@@ -53,14 +53,15 @@ std::vector<std::string> KeepOptions(const Capture& capture, std::vector<StageSt
       const toml::node* in_file = table == nullptr ? nullptr : table->get(name);
       if (in_file == nullptr) {
         step.kept.push_back(word);
-        notes.push_back(fmt::format(
-            "{0} keeps {1}, which was given on its command line; glint {0} without it, or [{0}] {2} "
-            "in {3}, undoes that",
-            step.stage, word, name, capture.file.filename().string()));
+        notes.push_back(
+            fmt::format("{0} keeps {1}, which was given on its command line; glint {0} without it, "
+                        "or [{0}] {2} "
+                        "in {3}, undoes that",
+                        step.stage, word, name, capture.file.filename().string()));
       } else if (WordOfToml(name, *in_file) != word) {
-        notes.push_back(fmt::format(
-            "{0}: [{0}] {1} in {2} overrides {3}, which was given on the command line", step.stage,
-            name, capture.file.filename().string(), word));
+        notes.push_back(
+            fmt::format("{0}: [{0}] {1} in {2} overrides {3}, which was given on the command line",
+                        step.stage, name, capture.file.filename().string(), word));
       }
     }
   }

@@ -1,14 +1,32 @@
 #include "pipeline/files/toml_file.h"
 
 #include <sstream>
+#include <string_view>
 
 #include "base/errors/errors.h"
 #include "pipeline/files/files.h"
 
 namespace glint {
 namespace {
+
 constexpr std::size_t kMaxTomlBytes = 1u << 20;
+
+// What editors and habits do to a file, which the parser's words do not name.
+std::string RemedyFor(std::string_view text) {
+  using namespace std::string_view_literals;
+  if (text.starts_with("\xFF\xFE"sv) || text.starts_with("\xFE\xFF"sv)) {
+    return "the file is in UTF-16: save it as UTF-8";
+  }
+  for (const std::string_view quote : {"\u201C"sv, "\u201D"sv, "\u201E"sv, "\u00AB"sv}) {
+    if (text.find(quote) != std::string_view::npos) {
+      return "it has typographic quotes, such as " + std::string(quote) +
+             ", which a word processor makes: write plain ones (\")";
+    }
+  }
+  return "write TOML in UTF-8, with decimal points, for example: size_mm = [100.5, 100]";
 }
+
+}  // namespace
 
 std::string TomlPlace::Field(const toml::node& node) const {
   const auto line = node.source().begin.line;
@@ -21,10 +39,10 @@ std::unique_ptr<toml::table> ReadTomlFile(const std::filesystem::path& file) {
     return std::make_unique<toml::table>(toml::parse(text, file.string()));
   } catch (const toml::parse_error& error) {
     const auto where = error.source().begin;
+    const std::string remedy = RemedyFor(text);
     throw UserError(
         file, "line " + std::to_string(where.line) + ", column " + std::to_string(where.column),
-        "a syntax error (" + std::string(error.description()) + ")",
-        "write TOML, for example: size_mm = [100, 100]");
+        "a syntax error (" + std::string(error.description()) + ")", remedy);
   }
 }
 

@@ -26,13 +26,14 @@ std::vector<float> ReadChannel(const std::filesystem::path& file, const Json& cu
   for (const Json& number : curve[name]) {
     const double value = number.is_number() ? number.get<double>() : -1;
     const bool rises = values.empty() ? value == 0 : value > values.back();
-    if (!(value >= 0 && value <= 1 && rises)) {
+    if (!(value >= 0 && std::isfinite(value) && rises)) {
       throw UserError(file, field + "[" + std::to_string(values.size()) + "]", number.dump(),
-                      "the curve must rise from 0 to 1; " + std::string(kRemedy));
+                      "the curve must rise from 0; " + std::string(kRemedy));
     }
     values.push_back(static_cast<float>(value));
   }
-  if (values.back() != 1) throw UserError(file, field, "a curve that does not end at 1", kRemedy);
+  // That of an HDR picture goes beyond white.
+  if (values.back() < 1) throw UserError(file, field, "a curve that ends below 1", kRemedy);
   return values;
 }
 

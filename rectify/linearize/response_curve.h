@@ -11,7 +11,8 @@ namespace glint {
 
 inline constexpr int kResponseCodes = 256;
 
-// Linear radiance of the stored values 0, 1/255 … 1, per channel R, G, B; rising, from 0 to 1.
+// Linear radiance of the stored values 0, 1/255 … 1, per channel R, G, B; rising, from 0 to 1, and
+// beyond in HDR pictures.
 // Between them values are interpolated linearly, so that 16-bit photographs have them too.
 struct ResponseCurve {
   std::array<std::vector<float>, 3> linear;

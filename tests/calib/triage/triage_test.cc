@@ -81,6 +81,19 @@ TEST(Triage, NamesTheBlurredTheDarkTheBrightAndTheDuplicateAlone) {
   EXPECT_THAT(TextsOf(remarks), HasSubstr("shows what good2 shows"));
 }
 
+// A camera's 12 bits in the lower ones of 16.
+TEST(Triage, SamplesThatWereNotScaledTo16BitsAreNotCalledUnderexposed) {
+  PhotoMeasures photo = Take("a", {.peak = 0.03});
+  photo.file.bits = 16;
+  photo.brightest = 3800 / 65535.0;
+  const std::string text = TextsOf(Triage({photo}));
+  EXPECT_THAT(text,
+              HasSubstr("they seem to have 12 bits and were not scaled; multiply them by 16"));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("expose more")));
+  photo.brightest = 0.9;
+  EXPECT_THAT(TextsOf(Triage({photo})), HasSubstr("expose more"));
+}
+
 TEST(Triage, BlurIsMeasuredInPixelsOfThePhoto) {
   for (const double blur : {0.7, 1.2, 1.7}) {
     // The pixel itself widens an edge by 0.29 px.

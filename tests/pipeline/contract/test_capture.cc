@@ -55,6 +55,13 @@ class CaptureTest : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
+// What Notepad and word processors make of a file.
+TEST_F(CaptureTest, TextThatIsNoUtf8OrHasTypographicQuotesIsNamed) {
+  EXPECT_THAT(Complaint("\xFF\xFE[\0s\0"), HasSubstr("in UTF-16: save it as UTF-8"));
+  EXPECT_THAT(Complaint("[board]\nkind = \u201Ccharuco\u201D\n"), HasSubstr("typographic quotes"));
+  EXPECT_THAT(Complaint("[board]\nsquare_mm = 13,5\n"), HasSubstr("with decimal points"));
+}
+
 TEST_F(CaptureTest, ReadsEveryTable) {
   const Capture capture = Read(kGood);
   EXPECT_THAT(capture.photos, ElementsAre("photos/a.jpg", "photos/b.JPG"));
