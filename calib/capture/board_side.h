@@ -16,6 +16,9 @@ namespace glint {
 
 bool LooksTheSameUpsideDown(const Board& board);
 
+// Where the sample's centre may lie by the corners as they are numbered first.
+std::vector<Eigen::Vector2d> PlacesOfSample(const Board& board);
+
 // Numbers the corners of photographs from the other side anew. Returns what a person should know:
 // which were turned, or that the texture does not tell; empty where the board has but one way up.
 std::vector<std::string> SettleBoardSides(const Capture& capture,

@@ -1,4 +1,5 @@
 #include "calib/capture/detect_photos.h"
+#include "calib/capture/board_side.h"
 
 #include <fmt/format.h>
 
@@ -68,8 +69,8 @@ DetectedPhoto DetectOne(const Capture& capture, const CalibOptions& options,
         ClippedShareOfSample(photo, detected.detection.corners, capture.sample_size_mm);
   }
   if (!board_photo) {
-    detected.picture =
-        SamplePictureOf(photo, encoding, detected.detection.corners, capture.sample_size_mm);
+    detected.picture = SamplePictureOf(photo, encoding, detected.detection.corners,
+                                       capture.sample_size_mm, PlacesOfSample(capture.board));
   }
   if (reduction > 1) Enlarge(reduction, PhotoSize(file), &detected);
   return detected;

@@ -14,7 +14,8 @@ constexpr double kFull = 65535;
 
 // Of the sample and its margin, within the photograph.
 cv::Rect PartOf(const Photo& photo, const std::vector<CornerObservation>& corners,
-                const std::array<double, 2>& sample_size_mm) {
+                const std::array<double, 2>& sample_size_mm,
+                const std::vector<Eigen::Vector2d>& centres_mm) {
   const cv::Rect all(0, 0, photo.image.width, photo.image.height);
   std::vector<PlanePoint> points;
   points.reserve(corners.size());
@@ -24,10 +25,10 @@ cv::Rect PartOf(const Photo& photo, const std::vector<CornerObservation>& corner
   const auto h = FitHomography(points);
   if (!h) return all;
   double left = all.width, top = all.height, right = 0, bottom = 0;
-  for (const double x : {-0.5, 0.5}) {
-    for (const double y : {-0.5, 0.5}) {
-      const auto at = ApplyHomography(
-          *h, {kSampleMargin * x * sample_size_mm[0], kSampleMargin * y * sample_size_mm[1]});
+  const Eigen::Array2d half_mm(0.5 * sample_size_mm[0], 0.5 * sample_size_mm[1]);
+  for (const Eigen::Vector2d& centre : centres_mm) {
+    for (const Eigen::Array2d side : {Eigen::Array2d(-1, -1), {-1, 1}, {1, -1}, {1, 1}}) {
+      const auto at = ApplyHomography(*h, centre + (kSampleMargin * side * half_mm).matrix());
       if (!at) return all;
       left = std::min(left, at->x());
       right = std::max(right, at->x());
@@ -46,8 +47,9 @@ cv::Rect PartOf(const Photo& photo, const std::vector<CornerObservation>& corner
 
 SamplePicture SamplePictureOf(const Photo& photo, const Encoding& encoding,
                               const std::vector<CornerObservation>& corners,
-                              const std::array<double, 2>& sample_size_mm) {
-  const cv::Rect part = PartOf(photo, corners, sample_size_mm);
+                              const std::array<double, 2>& sample_size_mm,
+                              const std::vector<Eigen::Vector2d>& centres_mm) {
+  const cv::Rect part = PartOf(photo, corners, sample_size_mm, centres_mm);
   if (part.empty()) return {};
   SamplePicture picture;
   picture.scale = std::min(1.0, std::sqrt(kMostPixels / part.area()));

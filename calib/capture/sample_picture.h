@@ -25,10 +25,12 @@ struct SamplePicture {
   std::vector<std::uint16_t> values;
 };
 
-// `corners` tell where the sample is; without them it may be anywhere. Empty where the photograph
-// does not show the sample.
+// `corners` tell where the sample is; without them it may be anywhere. `centres_mm`: where its
+// centre may lie; more than the origin where a board that looks the same upside down may be turned.
+// Empty where the photograph does not show the sample.
 SamplePicture SamplePictureOf(const Photo& photo, const Encoding& encoding,
                               const std::vector<CornerObservation>& corners,
-                              const std::array<double, 2>& sample_size_mm);
+                              const std::array<double, 2>& sample_size_mm,
+                              const std::vector<Eigen::Vector2d>& centres_mm = {{0, 0}});
 
 }  // namespace glint

@@ -162,8 +162,8 @@ std::optional<OtherView> ExplainByOtherView(const BundleResult& result,
     view.before_px = before_px;
     const bool explained = view.after_px < kExplained * before_px &&
                            view.after_px < std::max(kGood_px, kUsual * result.rms_px);
-    const bool worth_a_word = std::abs(std::log(view.zoom)) > kLeastZoom ||
-                              view.shift_px.norm() > kLeastShift * side;
+    const bool worth_a_word =
+        std::abs(std::log(view.zoom)) > kLeastZoom || view.shift_px.norm() > kLeastShift * side;
     if (explained && worth_a_word) return view;
   }
   return std::nullopt;
@@ -177,11 +177,11 @@ std::string InWords(const OtherView& view) {
     text += fmt::format("{}cut with its centre {:.0f} px off", zoomed ? ", and " : "",
                         view.shift_px.norm());
   }
-  return text + fmt::format(
-                    " (the residual falls from {:.2f} to {:.2f} px): {}", view.before_px,
-                    view.after_px,
-                    shifted ? "it was cropped or stabilised; use the camera's own file"
-                            : "zoom, another lens or another focus; lock zoom, lens and focus");
+  return text + fmt::format(" (the residual falls from {:.2f} to {:.2f} px): {}", view.before_px,
+                            view.after_px,
+                            shifted
+                                ? "it was cropped or stabilised; use the camera's own file"
+                                : "zoom, another lens or another focus; lock zoom, lens and focus");
 }
 
 BoardStretch FindBoardStretch(const BundleProblem& problem, const BundleOptions& options,

@@ -65,6 +65,23 @@ TEST_F(BoardSide, TheSamplesTextureTellsIt) {
   }
 }
 
+// The board turned about its own centre takes a sample that lies beside it to another place.
+TEST_F(BoardSide, TheTextureOfASampleOffTheBoardsCentreTellsItToo) {
+  std::string toml = test::ReadAll(capture_ / "capture.toml");
+  const std::string size = "size_mm = [100, 100]";
+  ASSERT_NE(toml.find(size), std::string::npos);
+  toml.replace(toml.find(size), size.size(), "size_mm = [45, 45]\ncentre_mm = [25, 25]");
+  test::WriteAll(capture_ / "capture.toml", toml);
+  FromTheOtherSide(1);
+  FromTheOtherSide(3);
+  const test::Outcome turned =
+      test::RunProgram({testing::Program("glint-calib"), capture_.string()});
+  ASSERT_EQ(turned.code, 0) << turned.err;
+  EXPECT_THAT(turned.err, HasSubstr("photos/photo_001.jpg, photos/photo_003.jpg: taken from the "
+                                    "other side of the checkerboard"));
+  EXPECT_THAT(turned.err, Not(HasSubstr("does not tell")));
+}
+
 TEST(LooksTheSameUpsideDown, WhereColumnsAndRowsAreBothOddOrBothEven) {
   Board board;
   board.kind = BoardKind::kCheckerboard;
