@@ -306,7 +306,8 @@ std::vector<std::string> LightAdvice(const CalibSummary& summary) {
         "rim fix that",
         100 * sigma));
   }
-  if (light.rms_percent > kResidual && light.rms_percent <= kSaidBefore) {
+  const bool said = light.rms_percent > kSaidBefore && light.flash_in_camera_mm[0].sigma > 0;
+  if (light.rms_percent > kResidual && !said) {
     advice.push_back(fmt::format(
         "the paper's brightness differs from the light found by {:.1f} %: see light_residuals.png "
         "for shadows, a lamp, a curled sheet, or another tone curve ([radiometry] encoding)",

@@ -122,7 +122,8 @@ void AddFlash(const Capture& capture, const LightEstimate& light, std::vector<st
 constexpr double kUneven_percent = 5;
 
 void AddUneven(const LightEstimate& light, std::vector<std::string>* words) {
-  if (light.rms_percent <= kUneven_percent) return;
+  // Where the flash is held, the paper has told of no flash at all.
+  if (light.rms_percent <= kUneven_percent || light.flash_in_camera_mm[0].sigma <= 0) return;
   words->push_back(fmt::format(
       "the paper is {:.1f} % brighter and darker from place to place than the flash explains "
       "(light_residuals.png), so that the light's power may be off by tens of per cent: a phone's "

@@ -27,7 +27,7 @@ cv::Rect PartOf(const Photo& photo, const std::vector<CornerObservation>& corner
   double left = all.width, top = all.height, right = 0, bottom = 0;
   const Eigen::Array2d half_mm(0.5 * sample_size_mm[0], 0.5 * sample_size_mm[1]);
   for (const Eigen::Vector2d& centre : centres_mm) {
-    for (const Eigen::Array2d side : {Eigen::Array2d(-1, -1), {-1, 1}, {1, -1}, {1, 1}}) {
+    for (const Eigen::Array2d& side : {Eigen::Array2d(-1, -1), {-1, 1}, {1, -1}, {1, 1}}) {
       const auto at = ApplyHomography(*h, centre + (kSampleMargin * side * half_mm).matrix());
       if (!at) return all;
       left = std::min(left, at->x());

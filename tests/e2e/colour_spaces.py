@@ -108,7 +108,6 @@ def make(base, folder, space, ending):
         if ending == "heic":
             through = folder / "through.png"
             write(through, stored, icc, "uint8")
-            # Colour at full resolution, as JPEG of quality 95 would not lose it either.
             subprocess.check_call(["heif-enc", "-q", "95", str(through), "-o", str(file)],
                                   stdout=subprocess.DEVNULL)
             through.unlink()
@@ -177,7 +176,8 @@ def main():
             "--format", "exr", "--photos", o.photos, "--megapixels", o.megapixels, "--texels",
             "256", "--resolution", o.resolution], stdout=subprocess.DEVNULL)
     maps = {}
-    print(f"{'':12} {'format':8} {'diffuse':>20}  dE00, mean (95 %), against sRGB: same format, TIFF")
+    print(f"{'':12} {'format':8} {'diffuse':>20}  dE00, mean (95 %), against sRGB of the same "
+          "format, and of TIFF")
     worst = 0
     for name, ending in FORMATS.items():
         for space in SPACES:
@@ -189,12 +189,13 @@ def main():
                     shutil.rmtree(folder)
                     raise
             maps[space, name] = refined(programs, folder)
-            labs = [lab_of(maps[key]) for key in ((space, name), ("sRGB", name), ("sRGB", "TIFF 16"))]
-            same, tiff = (delta_e00(labs[0], lab) for lab in labs[1:])
+            lab = lab_of(maps[space, name])
+            same = delta_e00(lab, lab_of(maps["sRGB", name]))
+            tiff = delta_e00(lab, lab_of(maps["sRGB", "TIFF 16"]))
             worst = max(worst, same.mean())
             colour = " ".join(f"{v:.4f}" for v in maps[space, name].mean(axis=(0, 1)))
-            print(f"{space:12} {name:8} {colour:>20}  {same.mean():5.2f} ({np.percentile(same, 95):.2f})"
-                  f"  {tiff.mean():5.2f} ({np.percentile(tiff, 95):.2f})", flush=True)
+            figures = "  ".join(f"{d.mean():5.2f} ({np.percentile(d, 95):.2f})" for d in (same, tiff))
+            print(f"{space:12} {name:8} {colour:>20}  {figures}", flush=True)
     return 1 if worst > 1 else 0
 
 

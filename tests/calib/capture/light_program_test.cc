@@ -162,5 +162,26 @@ TEST_F(BoardLight, AWhiteBalanceThatDriftsIsToldAndTakenOut) {
   EXPECT_EQ(found.photos[3].white_balance_rgb, Eigen::Vector3d::Ones());
 }
 
+// A phone that brightens the dark parts of a picture, by what lies around them.
+TEST_F(BoardLight, LocalToneMappingIsNamed) {
+  const auto brighten = [](const cv::Mat& picture) {
+    cv::Mat linear, grey, around;
+    picture.convertTo(linear, CV_32FC3, 1 / 255.0);
+    cv::pow(linear, 2.2, linear);
+    cv::cvtColor(linear, grey, cv::COLOR_RGB2GRAY);
+    cv::log(grey + 1e-3, grey);
+    cv::GaussianBlur(grey, around, {0, 0}, 60);
+    cv::exp(-0.35 * (around - std::log(0.3)), around);
+    cv::Mat gains, stored;
+    cv::merge(std::vector<cv::Mat>{around, around, around}, gains);
+    cv::pow(cv::min(linear.mul(gains), 1.0), 1 / 2.2, linear);
+    linear.convertTo(stored, CV_8UC3, 255);
+    return stored;
+  };
+  for (int photo = 0; photo < 6; ++photo) Change(photo, brighten);
+  EXPECT_THAT(Calibrate().err, HasSubstr("brighter and darker from place to place"));
+  EXPECT_THAT(Calibrate("--check").out, HasSubstr("brighter and darker from place to place"));
+}
+
 }  // namespace
 }  // namespace glint
