@@ -95,11 +95,13 @@ Primaries FromChromaticities(const std::array<std::array<double, 2>, 4>& xy) {
   cmsToneCurve* curves[] = {linear, linear, linear};
   const Profile profile(cmsCreateRGBProfile(&white, &primaries, curves));
   cmsFreeToneCurve(linear);
-  Primaries result;
+  if (!profile) return Primaries::Zero();  // they lie on a line
+  Primaries result = Primaries::Zero();
   int column = 0;
   for (const auto tag : {cmsSigRedColorantTag, cmsSigGreenColorantTag, cmsSigBlueColorantTag}) {
     const auto* xyz = static_cast<const cmsCIEXYZ*>(cmsReadTag(profile.get(), tag));
-    result.col(column++) << xyz->X, xyz->Y, xyz->Z;
+    if (xyz != nullptr) result.col(column) << xyz->X, xyz->Y, xyz->Z;
+    ++column;
   }
   return result;
 }

@@ -1,6 +1,7 @@
 #include "pipeline/photos/heic_turn.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <fstream>
 #include <optional>
@@ -100,6 +101,25 @@ std::vector<size_t> PropertiesOf(std::string_view ipma, std::uint64_t item) {
   return {};
 }
 
+// What x and y become, x to the right and y downward: xx, xy, yx, yy.
+using Turn = std::array<int, 4>;
+constexpr Turn kUpright = {1, 0, 0, 1}, kFlip = {-1, 0, 0, 1}, kFlop = {1, 0, 0, -1},
+               kAnticlockwise = {0, 1, -1, 0};
+// EXIF's orientations 1 … 8.
+constexpr std::array<Turn, 8> kTurnsOfExif = {{kUpright,
+                                               kFlip,
+                                               {-1, 0, 0, -1},
+                                               kFlop,
+                                               {0, 1, 1, 0},
+                                               {0, -1, 1, 0},
+                                               {0, -1, -1, 0},
+                                               kAnticlockwise}};
+
+Turn After(const Turn& first, const Turn& then) {
+  return {then[0] * first[0] + then[1] * first[2], then[0] * first[1] + then[1] * first[3],
+          then[2] * first[0] + then[3] * first[2], then[2] * first[1] + then[3] * first[3]};
+}
+
 }  // namespace
 
 int HeicOrientation(std::string_view bytes) {
@@ -112,15 +132,19 @@ int HeicOrientation(std::string_view bytes) {
   const auto ipco = Find(properties, "ipco"), ipma = Find(properties, "ipma");
   if (!ipco || !ipma) return 1;
   const std::vector<Box> all = Boxes(*ipco);
-  int quarter_turns = 0;  // anticlockwise
+  Turn turn = kUpright;
   for (const size_t index : PropertiesOf(*ipma, PrimaryItem(*primary))) {
     if (index < 1 || index > all.size() || all[index - 1].content.empty()) continue;
     const Box& property = all[index - 1];
-    if (property.type == "imir") return 2;
-    if (property.type == "irot") quarter_turns += property.content[0] & 3;
+    // In their order; a mirror's axis 1 exchanges left and right, as libheif has it.
+    if (property.type == "imir") turn = After(turn, property.content[0] & 1 ? kFlip : kFlop);
+    if (property.type == "irot") {
+      for (int i = 0; i < (property.content[0] & 3); ++i) turn = After(turn, kAnticlockwise);
+    }
   }
-  constexpr int kExif[] = {1, 8, 3, 6};
-  return kExif[quarter_turns & 3];
+  return static_cast<int>(std::find(kTurnsOfExif.begin(), kTurnsOfExif.end(), turn) -
+                          kTurnsOfExif.begin()) +
+         1;
 }
 
 int HeicOrientation(const std::filesystem::path& file) {

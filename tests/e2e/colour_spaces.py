@@ -194,7 +194,8 @@ def main():
             tiff = delta_e00(lab, lab_of(maps["sRGB", "TIFF 16"]))
             worst = max(worst, same.mean())
             colour = " ".join(f"{v:.4f}" for v in maps[space, name].mean(axis=(0, 1)))
-            figures = "  ".join(f"{d.mean():5.2f} ({np.percentile(d, 95):.2f})" for d in (same, tiff))
+            figures = "  ".join(
+                f"{d.mean():5.2f} ({np.percentile(d, 95):.2f})" for d in (same, tiff))
             print(f"{space:12} {name:8} {colour:>20}  {figures}", flush=True)
     return 1 if worst > 1 else 0
 

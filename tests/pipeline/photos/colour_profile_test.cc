@@ -277,6 +277,35 @@ TEST_F(PhotoColours, AvifIsRead) {
   EXPECT_TRUE(IsPhotoFileName("a.AVIF"));
 }
 
+// irot and imir as libheif writes them for EXIF's eight orientations.
+TEST_F(PhotoColours, TurnsOfAvifAreExifs) {
+  for (int orientation = 1; orientation <= 8; ++orientation) {
+    const fs::path file = folder_ / ("turned" + std::to_string(orientation) + ".avif");
+    heif_context* context = heif_context_alloc();
+    heif_encoder* encoder = nullptr;
+    if (heif_context_get_encoder_for_format(context, heif_compression_AV1, &encoder).code !=
+        heif_error_Ok) {
+      heif_context_free(context);
+      GTEST_SKIP() << "libheif has no encoder";
+    }
+    heif_image* image = nullptr;
+    heif_image_create(64, 48, heif_colorspace_RGB, heif_chroma_interleaved_RGB, &image);
+    heif_image_add_plane(image, heif_channel_interleaved, 64, 48, 8);
+    heif_encoding_options* options = heif_encoding_options_alloc();
+    options->image_orientation = static_cast<heif_orientation>(orientation);
+    ASSERT_EQ(heif_context_encode_image(context, image, encoder, options, nullptr).code,
+              heif_error_Ok);
+    ASSERT_EQ(heif_context_write_to_file(context, file.c_str()).code, heif_error_Ok);
+    heif_encoding_options_free(options);
+    heif_image_release(image);
+    heif_encoder_release(encoder);
+    heif_context_free(context);
+    const Photo photo = ReadPhoto(file);
+    EXPECT_EQ(photo.orientation, orientation);
+    EXPECT_EQ(photo.image.width, orientation < 5 ? 64 : 48) << orientation;
+  }
+}
+
 TEST_F(PhotoColours, GreyPicturesAreKnown) {
   const fs::path file = folder_ / "grey.jpg";
   const auto output = OIIO::ImageOutput::create(file.string());

@@ -137,7 +137,7 @@ TEST(HeicTurn, IsThatOfThePrimaryPicture) {
       EXPECT_LE(orientation, 8);
     }
   }
-  EXPECT_EQ(HeicOrientation(std::string_view(Heic(Box("imir", BigEndian(0, 1))))), 2);
+  EXPECT_EQ(HeicOrientation(std::string_view(Heic(Box("imir", BigEndian(1, 1))))), 2);
 }
 
 TEST(Photo, HeicAndRawAreReadWithTheirExif) {
