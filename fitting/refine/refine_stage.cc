@@ -417,10 +417,9 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "estimation-size", &refine->estimation_size, 16, 1 << 20,
       "longer side, in texels, of the grid from which texels are drawn for the estimation; "
       "larger maps are uniformly subsampled to this size");
-  set->Add(
-      "second-lobe", &refine->second_lobe,
-      "look for a second, narrow specular lobe of the whole sample (varnish, polish); it is "
-      "taken where it predicts held-out photographs clearly better, from three photographs on");
+  set->Add("second-lobe", &refine->second_lobe,
+           "look for a second, narrow specular lobe of the whole sample (varnish, polish); it is "
+           "taken where it predicts held-out photographs clearly better, from five photographs on");
   set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the weight of the priors; 0: none");
   set->AddRange("point-spread", &refine->point_spread_px, 0, 100,
                 "standard deviation of a photograph's blur in pixels, of lens, pixel, demosaicking "

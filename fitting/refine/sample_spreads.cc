@@ -20,6 +20,9 @@ namespace {
 constexpr int kMostFolds = 7;
 constexpr int kBlockSide = 4;  // of texels that are each other's neighbours
 constexpr int kHalves = 2;     // of a checkerboard
+// Errors that neighbours share look like a lobe where each texel's highlight is in a photograph or
+// two: of four synthetic ones two lobes were found by mistake.
+constexpr size_t kLeastViewsForTwoLobes = 5;
 
 }  // namespace
 
@@ -157,7 +160,7 @@ void SampleModel::ChooseSpreads(const Sampling& sampling) {
 // judged with the spreads that each choice asks for.
 void SampleModel::ChooseLobesAndSpreads(const Sampling& sampling) {
   SampleModel two(*this);
-  if (options_.second_lobe && !lobes_.two()) {
+  if (options_.second_lobe && !lobes_.two() && all_views_.size() >= kLeastViewsForTwoLobes) {
     const SpecularLobes found = SearchLobes([&](const SpecularLobes& lobes) {
       two.lobes_ = lobes;
       return two.CrossValidate(sampling);

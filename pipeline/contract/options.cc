@@ -158,7 +158,10 @@ std::string WordOf(const std::string& name, const T& value) {
   } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
     return fmt::format("--{}={}", name, std::filesystem::absolute(value).generic_string());
   } else if constexpr (IsList<T>::value) {
-    return fmt::format("--{}={}", name, fmt::join(value, ","));
+    // Not fmt::join, whose errors' class would bring the image libraries to programs without any.
+    std::string words;
+    for (const auto& one : value) words += (words.empty() ? "" : ",") + fmt::format("{}", one);
+    return fmt::format("--{}={}", name, words);
   } else {
     return fmt::format("--{}={}", name, value);
   }
