@@ -1,8 +1,8 @@
-#include "pipeline/studio/access.h"
+#include "pipeline/studio/access/access.h"
 
 #include <gtest/gtest.h>
 
-#include "pipeline/studio/token.h"
+#include "pipeline/studio/access/token.h"
 
 namespace glint {
 namespace {

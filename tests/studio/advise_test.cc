@@ -1,4 +1,4 @@
-#include "pipeline/studio/advise.h"
+#include "pipeline/studio/photographs/advise.h"
 
 #include <gtest/gtest.h>
 

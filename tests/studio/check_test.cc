@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/files/json_file.h"
-#include "pipeline/studio/photo_check.h"
+#include "pipeline/studio/photographs/photo_check.h"
 #include "tests/studio/synthetic.h"
 
 namespace glint {

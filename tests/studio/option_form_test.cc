@@ -1,10 +1,10 @@
-#include "pipeline/studio/option_form.h"
+#include "pipeline/studio/captures/option_form.h"
 
 #include <gtest/gtest.h>
 
 #include "base/errors/errors.h"
+#include "pipeline/studio/captures/program_message.h"
 #include "pipeline/studio/http/http_types.h"
-#include "pipeline/studio/program_message.h"
 
 namespace glint {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/studio/phone_links.h"
+#include "pipeline/studio/access/phone_links.h"
 
 #include <gtest/gtest.h>
 

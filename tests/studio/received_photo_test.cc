@@ -1,4 +1,4 @@
-#include "pipeline/studio/received_photo.h"
+#include "pipeline/studio/photographs/received_photo.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -1,4 +1,4 @@
-#include "pipeline/studio/toml_edit.h"
+#include "pipeline/studio/captures/toml_edit.h"
 
 #include <gtest/gtest.h>
 

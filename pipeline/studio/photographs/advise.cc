@@ -1,0 +1,280 @@
+#include "pipeline/studio/photographs/advise.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+// README: about twelve photographs, four of them within 10° of vertical.
+constexpr int kTopViews = 4;
+// More change little: docs/results/table1.md ends at 20.
+constexpr size_t kMostPhotos = 20;
+// Between the highlights of neighbouring top views; within GuidanceLimits' top_deg.
+constexpr double kTopTilt_deg = 7;
+// The tilts that README asks for, 15 to 40°, in three steps.
+constexpr std::array kTilts_deg = {25.0, 35.0, 17.5};
+
+std::string RemedyFor(RemarkKind kind) {
+  switch (kind) {
+    case RemarkKind::kBlurred:
+      return "Hold the phone still, tap the sample to focus, and take it again.";
+    case RemarkKind::kDark:
+      return "Check that the flash fires, and take it again.";
+    case RemarkKind::kOverexposed:
+      return "Step back or expose less, and take it again.";
+    case RemarkKind::kDuplicate:
+      return "Leave one of the two out, and take one from another side.";
+    case RemarkKind::kExif:
+      break;
+  }
+  return "Compare it with the others, and take it again if it is not like them.";
+}
+
+std::string Sentence(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  }
+  if (!text.empty() && text.back() != '.') text += '.';
+  return text;
+}
+
+// What the check itself says, without the others.
+PhotoVerdict JudgeAlone(const PhotoCheck& check, const CheckTask& task) {
+  using State = PhotoVerdict::State;
+  if (!check.unreadable.empty()) {
+    return {State::kBad, "The file cannot be read: " + Sentence(check.unreadable),
+            "Send the photograph again.", ""};
+  }
+  if (!task.board) return {};
+  if (check.mismatch) {
+    return {State::kBad, "Another board is seen than the one chosen: " + check.board_problem + ".",
+            "Choose the board that lies round the sample.", ""};
+  }
+  if (!check.board_found) {
+    return {State::kBad,
+            "The board was not found" +
+                (check.board_problem.empty() ? "." : ": " + check.board_problem + "."),
+            "Take it again with the whole board in the picture, sharp and lit by the flash.", ""};
+  }
+  const GuidanceLimits limits;
+  if (check.clipped_share > limits.clipped_share) {
+    return {State::kWeak,
+            fmt::format("{:.0f} % of the sample is clipped.", 100 * check.clipped_share),
+            "Step back or expose less.", ""};
+  }
+  if (!check.pose) {
+    return {State::kWeak, "Only a part of the board is seen, so that its place is not known.",
+            "Take it again with the whole board in the picture.", ""};
+  }
+  const double shown = ShownShare(*check.pose, MakeCoverageGrid(task.sample_size_mm));
+  if (1 - shown > limits.cut_share) {
+    return {State::kWeak, fmt::format("It shows {:.0f} % of the sample only.", 100 * shown),
+            "Step back until the whole board is in the picture.", ""};
+  }
+  return {};
+}
+
+// The photograph before this one that its remark names.
+std::string NamedIn(const std::string& text, const std::vector<PhotoMeasures>& measures) {
+  std::string longest;
+  for (const PhotoMeasures& one : measures) {
+    if (text.find(one.name + " shows") != std::string::npos && one.name.size() > longest.size()) {
+      longest = one.name;
+    }
+  }
+  return longest;
+}
+
+void AddRemarks(const std::vector<PhotoMeasures>& measures, std::vector<PhotoVerdict>* verdicts,
+                const std::vector<size_t>& index) {
+  for (const Remark& remark : Triage(measures)) {
+    // What EXIF says is a hint to whoever reads a log; here it would make good photographs weak.
+    if (remark.kind == RemarkKind::kExif) continue;
+    for (size_t i = 0; i < measures.size(); ++i) {
+      if (measures[i].name != remark.photo) continue;
+      PhotoVerdict& verdict = (*verdicts)[index[i]];
+      if (verdict.state == PhotoVerdict::State::kBad) continue;
+      verdict.state = remark.condemns ? PhotoVerdict::State::kBad : PhotoVerdict::State::kWeak;
+      verdict.reason = Sentence(remark.text);
+      verdict.remedy = RemedyFor(remark.kind);
+      if (remark.kind == RemarkKind::kDuplicate) verdict.same_as = NamedIn(remark.text, measures);
+    }
+  }
+}
+
+std::vector<GuidancePhoto> PosesOf(const std::vector<NamedCheck>& photos) {
+  std::vector<GuidancePhoto> poses;
+  for (const NamedCheck& photo : photos) {
+    if (!photo.check.pose) continue;
+    poses.push_back(*photo.check.pose);
+    poses.back().name = photo.name;
+  }
+  return poses;
+}
+
+bool Has(const Verdict& verdict, const std::string& topic) {
+  return std::any_of(verdict.advice.begin(), verdict.advice.end(),
+                     [&](const Advice& one) { return one.topic == topic; });
+}
+
+// Round the sample where there is none yet, at the tilt that is rarest.
+Direction NextTilted(const Verdict& verdict, const std::vector<GuidancePhoto>& photos) {
+  std::array<int, kTilts_deg.size()> count{};
+  for (const ViewFacts& view : verdict.views) {
+    if (view.camera.tilt_deg < verdict.limits.tilted_deg) continue;
+    size_t nearest = 0;
+    for (size_t i = 1; i < kTilts_deg.size(); ++i) {
+      if (std::abs(view.camera.tilt_deg - kTilts_deg[i]) <
+          std::abs(view.camera.tilt_deg - kTilts_deg[nearest])) {
+        nearest = i;
+      }
+    }
+    ++count[nearest];
+  }
+  const auto rarest = std::min_element(count.begin(), count.end()) - count.begin();
+  return {kTilts_deg[static_cast<size_t>(rarest)],
+          LargestGap(photos, verdict.limits.tilted_deg).middle_deg};
+}
+
+// Where it brings most highlights; where none is lacking, beside the others.
+Direction NextTop(const Verdict& verdict, const std::vector<GuidancePhoto>& photos) {
+  if (verdict.top_views == 0) return {0, 0};
+  if (!verdict.suggestions.empty()) return verdict.suggestions[0].direction;
+  constexpr double kOffCentre_deg = 3;
+  std::vector<GuidancePhoto> tops;
+  for (const GuidancePhoto& photo : photos) {
+    if (DirectionOf(photo.camera_in_sample_mm).tilt_deg <= verdict.limits.top_deg) {
+      tops.push_back(photo);
+    }
+  }
+  return {kTopTilt_deg, LargestGap(tops, kOffCentre_deg).middle_deg};
+}
+
+// Why the photograph is asked for, in a few words.
+std::string Reason(const Verdict& verdict, const Direction& direction) {
+  if (verdict.views.empty()) return "the fit starts from such a view";
+  if (direction.tilt_deg <= verdict.limits.top_deg) {
+    return verdict.top_views == 0 ? "the fit starts from such a view"
+                                  : "a few views from near the top make the colours sure";
+  }
+  if (verdict.tilted_views == 0) return "tilted views tell relief and gloss";
+  if (Has(verdict, "sides")) return "no tilted photograph comes from there yet";
+  if (Has(verdict, "highlight")) return "it shows a highlight where none has been seen";
+  return "each side more lowers the error";
+}
+
+StudioAdvice AdviseWithoutBoard(const Capture& capture, const std::vector<NamedCheck>& used) {
+  StudioAdvice advice;
+  if (capture.fixed_camera() || capture.imported()) {
+    advice.verdict = used.empty() && !capture.imported() ? "none" : "usable";
+    advice.enough = true;
+    advice.sentence = "Studio gives no advice for captures of this kind; run it.";
+    return advice;
+  }
+  if (used.empty()) {
+    advice.sentence =
+        "Take one photograph straight from above, with the flash on and the room dark.";
+    advice.target = Direction{0, 0};
+    return advice;
+  }
+  advice.verdict = "usable";
+  advice.enough = true;
+  advice.sentence = "One photograph is there: run it. Several with a board are more accurate.";
+  return advice;
+}
+
+}  // namespace
+
+std::string_view StateName(PhotoVerdict::State state) {
+  switch (state) {
+    case PhotoVerdict::State::kGood:
+      return "good";
+    case PhotoVerdict::State::kWeak:
+      return "weak";
+    case PhotoVerdict::State::kBad:
+      break;
+  }
+  return "bad";
+}
+
+std::vector<PhotoVerdict> JudgePhotos(const std::vector<NamedCheck>& photos,
+                                      const CheckTask& task) {
+  std::vector<PhotoVerdict> verdicts;
+  std::vector<PhotoMeasures> measures;
+  std::vector<size_t> index;
+  for (size_t i = 0; i < photos.size(); ++i) {
+    verdicts.push_back(JudgeAlone(photos[i].check, task));
+    if (!photos[i].check.unreadable.empty()) continue;
+    measures.push_back(photos[i].check.measures);
+    measures.back().name = photos[i].name;
+    index.push_back(i);
+  }
+  AddRemarks(measures, &verdicts, index);
+  return verdicts;
+}
+
+Direction NextDirection(const Verdict& verdict, const std::vector<GuidancePhoto>& photos) {
+  if (photos.empty() || verdict.top_views == 0) return {0, 0};
+  if (verdict.tilted_views == 0) return NextTilted(verdict, photos);
+  const bool dark = Has(verdict, "highlight") && !verdict.suggestions.empty();
+  const bool one_sided = Has(verdict, "sides");
+  // In turn, so that neither is left for the end.
+  if (one_sided && (!dark || verdict.tilted_views < verdict.top_views)) {
+    return NextTilted(verdict, photos);
+  }
+  if (dark) return verdict.suggestions[0].direction;
+  // One top view for each two tilted ones, as in README's twelve.
+  if (verdict.top_views < kTopViews && 2 * verdict.top_views < verdict.tilted_views + 1) {
+    return NextTop(verdict, photos);
+  }
+  return NextTilted(verdict, photos);
+}
+
+StudioAdvice AdviseFor(const Capture& capture, const std::vector<NamedCheck>& used,
+                       const std::vector<LeftOutPhoto>& left_out) {
+  if (!capture.has_board || capture.fixed_camera()) return AdviseWithoutBoard(capture, used);
+  const std::vector<GuidancePhoto> poses = PosesOf(used);
+  StudioAdvice advice;
+  if (poses.empty()) {
+    advice.sentence =
+        "Take the first photograph straight from above, flash on, the whole board in the picture.";
+    advice.target = Direction{0, 0};
+    return advice;
+  }
+  GuidanceInput input;
+  input.sample_size_mm = capture.sample_size_mm;
+  input.resolution_px = capture.resolution_px;
+  input.photos = poses;
+  input.left_out = left_out;
+  Verdict verdict = Judge(input);
+  if (verdict.tilted_views == 0) {  // the calibration could not tell the focal length
+    input.focal_assumed = true;
+    verdict = Judge(input);
+  }
+  const std::string word = verdict.Word();
+  advice.verdict = word == "not enough" ? "poor" : word;
+  for (const Advice& one : verdict.advice) advice.list.push_back(Sentence(one.text));
+  const size_t wanted = static_cast<size_t>(verdict.limits.enough_photos);
+  const bool lacks_views = Has(verdict, "unseen") || Has(verdict, "tilted") ||
+                           Has(verdict, "sides") || Has(verdict, "top") ||
+                           Has(verdict, "highlight");
+  advice.enough = poses.size() >= kMostPhotos || (poses.size() >= wanted && !lacks_views);
+  if (advice.enough) {
+    advice.sentence = "That is enough: run it, or look at what can still be better.";
+    return advice;
+  }
+  if (Has(verdict, "over_board")) {
+    advice.sentence = advice.list[0];
+    return advice;
+  }
+  advice.target = NextDirection(verdict, poses);
+  advice.sentence = fmt::format("Take the next one {}, looking at the sample's middle: {}.",
+                                InWords(*advice.target), Reason(verdict, *advice.target));
+  return advice;
+}
+
+}  // namespace glint

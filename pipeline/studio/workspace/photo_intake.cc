@@ -1,0 +1,75 @@
+#include "pipeline/studio/workspace/photo_intake.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "pipeline/files/hash.h"
+#include "pipeline/studio/captures/capture_edit.h"
+#include "pipeline/studio/captures/notes.h"
+#include "pipeline/studio/captures/photo_list.h"
+#include "pipeline/studio/http/http_types.h"
+#include "pipeline/studio/workspace/photo_review.h"
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<std::string> IdOfSameBytes(const std::vector<StudioPhoto>& photos,
+                                         const std::string& hash, std::uintmax_t bytes) {
+  for (const StudioPhoto& one : photos) {
+    std::error_code error;
+    if (fs::file_size(one.file, error) == bytes && !error && HashFile(one.file) == hash) {
+      return one.id;
+    }
+  }
+  return std::nullopt;
+}
+
+void RequireRoomFor(const CaptureState& state, const std::vector<StudioPhoto>& photos) {
+  if (photos.size() >= kMostPhotographs) {
+    throw HttpError{413, "the capture has 1000 photographs", "make another capture"};
+  }
+  const bool one_is_used = std::any_of(photos.begin(), photos.end(),
+                                       [](const StudioPhoto& other) { return !other.left_out; });
+  if (IsOfOnePhotograph(state) && one_is_used) {
+    throw HttpError{409, "this capture is of one photograph, which is there",
+                    "leave that one out first, or make a capture with a board for several"};
+  }
+}
+
+// Whoever sent a photograph that cannot be listed is told, and still has it.
+void ListOrRemove(const fs::path& capture, const fs::path& file) {
+  try {
+    ListPhoto(capture, file);
+  } catch (...) {
+    ::unlink(file.c_str());
+    throw;
+  }
+}
+
+}  // namespace
+
+TakenPhoto TakeIn(const LibraryEntry& entry, const std::string& hash, ReceivedPhoto* photo,
+                  CheckQueue* checks) {
+  const CaptureState state = ReadState(entry.folder);
+  if (!state.problem.message.empty()) {
+    throw HttpError{409, state.problem.message, state.problem.remedy};
+  }
+  const auto photos = PhotosOf(state);
+  if (const auto same = IdOfSameBytes(photos, hash, photo->size())) return {*same, true};
+  RequireRoomFor(state, photos);
+  const fs::path file = photo->Keep();
+  const std::string place = file.lexically_relative(entry.folder).generic_string();
+  std::set<std::string> undecided = UndecidedPhotos(entry.folder);
+  undecided.insert(place);
+  NoteUndecided(entry.folder, undecided);
+  ListOrRemove(entry.folder, file);
+  checks->Look(entry.id, file, TaskOf(ReadState(entry.folder)), CheckFolderOf(entry.folder));
+  return {IdOf(place), false};
+}
+
+}  // namespace glint
