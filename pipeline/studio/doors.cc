@@ -28,10 +28,10 @@ void Doors::Close() {
 }
 
 std::unique_ptr<HttpServer> Doors::Serve(const ServerOptions& options, const Door* door) {
-  return std::make_unique<HttpServer>(
-      options, [this, door](const HttpRequest& request, HttpBody* body) {
-        return handler_(CopyOf(*door), request, body);
-      });
+  return std::make_unique<HttpServer>(options,
+                                      [this, door](const HttpRequest& request, HttpBody* body) {
+                                        return handler_(CopyOf(*door), request, body);
+                                      });
 }
 
 Door Doors::CopyOf(const Door& door) {

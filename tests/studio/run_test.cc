@@ -2,6 +2,9 @@
 // command line.
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <cstdlib>
+
 #include "tests/studio/studio_fixture.h"
 #include "tests/studio/synthetic.h"
 
@@ -23,6 +26,33 @@ std::string WaitForRun(const RunningStudio& running, const std::string& id) {
     state = RunState(running, id);
   }
   return state;
+}
+
+// The process whose command line begins so; 0: there is none.
+pid_t ProcessOf(const std::string& program, const std::string& argument) {
+  const std::string wanted = program + '\0' + argument + '\0';
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator("/proc", error)) {
+    const pid_t pid = std::atoi(entry.path().filename().c_str());
+    if (pid > 0 && test::ReadAll(entry.path() / "cmdline").starts_with(wanted)) return pid;
+  }
+  return 0;
+}
+
+void ExpectThatAKilledRunSaysWhatToDo(const RunningStudio& running, const std::string& id,
+                                      const fs::path& capture) {
+  ASSERT_EQ(running.page->Post("/api/captures/" + id + "/run", {{"quick", true}}).status, 200);
+  pid_t pid = 0;
+  for (int i = 0; i < 500 && pid == 0; ++i) {
+    pid = ProcessOf(std::string(GLINT_BIN_DIR) + "/glint-run", capture.string());
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ASSERT_GT(pid, 0);
+  ::kill(pid, SIGKILL);
+  EXPECT_EQ(WaitForRun(running, id), "failed");
+  const Json run = running.Capture(id)["run"];
+  EXPECT_NE(run["message"].get<std::string>().find("was killed"), std::string::npos) << run;
+  EXPECT_NE(run["remedy"].get<std::string>().find("run it again"), std::string::npos) << run;
 }
 
 TEST(StudioRun, ThePhotographsBecomeAMaterialAndTheCommandLineGoesOnFromThere) {
@@ -49,6 +79,7 @@ TEST(StudioRun, ThePhotographsBecomeAMaterialAndTheCommandLineGoesOnFromThere) {
   EXPECT_EQ(running.page->Post(path + "/run", {{"quick", true}}).status, 409);
   EXPECT_EQ(running.page->Post(path + "/cancel").status, 200);
   EXPECT_EQ(WaitForRun(running, id), "cancelled");
+  ExpectThatAKilledRunSaysWhatToDo(running, id, running.folder / "wood");
 
   ASSERT_EQ(running.page->Post(path + "/run", {{"quick", true}}).status, 200);
   EXPECT_EQ(WaitForRun(running, id), "done") << running.Capture(id)["run"];

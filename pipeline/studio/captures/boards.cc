@@ -9,7 +9,7 @@
 #include "pipeline/contract/subprocess.h"
 #include "pipeline/driver/programs.h"
 #include "pipeline/files/files.h"
-#include "pipeline/studio/captures/library.h"
+#include "pipeline/studio/captures/capture_boards.h"
 #include "pipeline/studio/captures/program_message.h"
 #include "pipeline/studio/http/http_types.h"
 
@@ -59,9 +59,27 @@ KeptBoard BoardIn(const fs::path& folder) {
           ReadBoardFile(folder / "board.json")};
 }
 
+bool HasPdf(const KeptBoard& board) {
+  std::error_code error;
+  return fs::is_regular_file(board.folder / "board.pdf", error);
+}
+
 }  // namespace
 
+std::string BoardText(const KeptBoard& board) {
+  const fs::path file = board.folder / "board.json";
+  std::error_code error;
+  if (fs::is_regular_file(file, error)) return ReadTextFile(file);
+  return ToJson(board.file).dump(2) + "\n";
+}
+
 std::vector<KeptBoard> BoardShelf::List() const {
+  std::vector<KeptBoard> boards = Printed();
+  for (KeptBoard& board : BoardsOfCaptures(captures_(), boards)) boards.push_back(std::move(board));
+  return boards;
+}
+
+std::vector<KeptBoard> BoardShelf::Printed() const {
   std::vector<KeptBoard> boards;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder_, error)) {
@@ -88,7 +106,7 @@ std::optional<std::string> BoardShelf::BoardOf(const fs::path& capture) const {
   const fs::path own = capture / "board.json";
   if (!fs::is_regular_file(own, error)) return std::nullopt;
   const std::string text = ReadTextFile(own);
-  for (const KeptBoard& board : List()) {
+  for (const KeptBoard& board : Printed()) {
     if (ReadTextFile(board.folder / "board.json") == text) return board.id;
   }
   return std::nullopt;
@@ -109,9 +127,20 @@ KeptBoard BoardShelf::Print(const std::string& paper,
   return BoardIn(folder_ / name);
 }
 
+KeptBoard BoardShelf::Adopt(const KeptBoard& board) const {
+  const std::string name = FileNameOf(board.name);
+  fs::path folder = folder_ / name;
+  std::error_code error;
+  for (int n = 2; fs::exists(folder, error); ++n) folder = folder_ / fmt::format("{}-{}", name, n);
+  fs::create_directories(folder);
+  WriteFileAtomically(folder / "board.json", BoardText(board));
+  return BoardIn(folder);
+}
+
 KeptBoard BoardShelf::Measure(const std::string& id, double ruler_mm) {
-  const auto board = Find(id);
+  auto board = Find(id);
   if (!board) throw HttpError{404, "there is no such board", "reload the page"};
+  if (board->folder.parent_path() != folder_) board = Adopt(*board);
   RunBoardProgram({fmt::format("--measured={:.6g}", ruler_mm)}, board->folder);
   return BoardIn(board->folder);
 }
@@ -131,7 +160,8 @@ Json ToJson(const KeptBoard& kept) {
                {"square_mm", board.square_mm},
                {"window_mm", nullptr},
                {"ruler_mm", nullptr},
-               {"print_scale", board.print_scale}};
+               {"print_scale", board.print_scale},
+               {"pdf", HasPdf(kept)}};
   if (const auto window = WindowOf(board)) json["window_mm"] = *window;
   if (board.ruler) json["ruler_mm"] = board.ruler->length_mm();
   return json;

@@ -1,42 +1,55 @@
-// Boards that were printed, kept beneath Studio's folder to be chosen again.
+// Boards to choose from: those that were printed and are kept beneath Studio's folder, and those of
+// captures that are there.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "pipeline/contract/board_file.h"
 #include "pipeline/files/json.h"
+#include "pipeline/studio/captures/library.h"
 
 namespace glint {
 
 struct KeptBoard {
   std::string id, name;
-  std::filesystem::path folder;  // with board.json and board.pdf
+  std::filesystem::path folder;  // with board.json and board.pdf; a capture's may lack both
   BoardFile file;
 };
 
 class BoardShelf {
  public:
-  explicit BoardShelf(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  // `captures` lists those whose boards may be chosen as well.
+  BoardShelf(std::filesystem::path folder, std::function<std::vector<LibraryEntry>()> captures)
+      : folder_(std::move(folder)), captures_(std::move(captures)) {}
 
-  std::vector<KeptBoard> List() const;  // by name; folders that hold no board are passed over
+  std::vector<KeptBoard> List() const;  // printed ones first
   std::optional<KeptBoard> Find(const std::string& id) const;
-  // The id of the board whose description the capture has.
+  // The id of the printed board whose description the capture has.
   std::optional<std::string> BoardOf(const std::filesystem::path& capture) const;
   // Runs `glint board`: `paper` is "A4", "Letter" …; `window_mm` what the window must hold, or
   // none. A board of the same making is not made twice. Throws HttpError with what the program
   // says.
   KeptBoard Print(const std::string& paper, const std::optional<std::array<double, 2>>& window_mm);
-  // The printed ruler's length: `glint board --measured`.
+  // The printed ruler's length: `glint board --measured`. A capture's board is copied before, so
+  // that the capture stays as it is.
   KeptBoard Measure(const std::string& id, double ruler_mm);
 
  private:
+  std::vector<KeptBoard> Printed() const;  // by name; folders that hold no board are passed over
+  KeptBoard Adopt(const KeptBoard& board) const;
+
   std::filesystem::path folder_;
+  std::function<std::vector<LibraryEntry>()> captures_;
 };
 
-// {id, name, paper, squares, square_mm, window_mm, ruler_mm}
+// board.json of the board.
+std::string BoardText(const KeptBoard& board);
+
+// {id, name, paper, squares, square_mm, window_mm, ruler_mm, print_scale, pdf}
 Json ToJson(const KeptBoard& board);
 
 // Width and height of the window; none: a whole board.

@@ -80,7 +80,7 @@ void Fill(const NewCapture& wanted, const std::string& name, const fs::path& fol
     WriteFileAtomically(folder / kDraftFile, DraftJson(wanted).dump(1) + "\n");
     return;
   }
-  WriteFileAtomically(folder / "board.json", ReadTextFile(wanted.board->folder / "board.json"));
+  WriteFileAtomically(folder / "board.json", BoardText(*wanted.board));
   const fs::path file = WriteCapture(InitOptionsOf(wanted, folder)).file;
   std::string text = ReadTextFile(file);
   // The folder's name is not yet the one that glint init would see.

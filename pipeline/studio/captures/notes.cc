@@ -25,6 +25,12 @@ Json ReadNote(const fs::path& file) {
   }
 }
 
+std::string TextAt(const Json& json, const std::string& place) {
+  const Json::json_pointer pointer(place);
+  if (!json.is_object() || !json.contains(pointer) || !json[pointer].is_string()) return "";
+  return json[pointer].get<std::string>();
+}
+
 void WriteNote(const fs::path& file, const Json& json) {
   if (ReadNote(file) == json) return;
   std::error_code error;
@@ -39,7 +45,12 @@ void WriteNote(const fs::path& file, const Json& json) {
 
 std::string NotedVerdict(const fs::path& capture) {
   const Json note = ReadNote(VerdictNote(capture));
-  return note.is_object() ? note.value("verdict", "none") : "none";
+  const std::string verdict = TextAt(note, "/verdict");
+  if (!verdict.empty() && verdict != "none") return verdict;
+  const Json manifest = ReadNote(capture / "glint" / "calib" / "manifest.json");
+  const std::string word = TextAt(manifest, "/metrics/guidance/verdict");
+  if (word == "good" || word == "usable") return word;
+  return word.empty() ? "none" : "poor";  // "not enough"
 }
 
 void NoteVerdict(const fs::path& capture, const std::string& verdict) {

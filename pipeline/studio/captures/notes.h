@@ -1,5 +1,5 @@
-// What Studio notes for itself beside a capture, in glint/.studio: it makes Studio quicker or spares
-// it a decision, and may be lost.
+// What Studio notes for itself beside a capture, in glint/.studio: it makes Studio quicker or
+// spares it a decision, and may be lost.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,8 @@
 
 namespace glint {
 
-// The verdict of the photographs together, as it was last told; "none": never.
+// The verdict of the photographs together, as Studio has last told it, else as `glint calib` has;
+// "none": nobody has.
 std::string NotedVerdict(const std::filesystem::path& capture);
 void NoteVerdict(const std::filesystem::path& capture, const std::string& verdict);
 

@@ -10,6 +10,7 @@
 
 #include "pipeline/files/files.h"
 #include "pipeline/files/hash.h"
+#include "pipeline/studio/photographs/thumbnail.h"
 
 namespace glint {
 namespace {
@@ -32,6 +33,10 @@ std::string KeyOf(const fs::path& file, const CheckTask& task) {
 
 std::string PlainHash(const std::string& hash) { return hash.substr(hash.find(':') + 1); }
 
+fs::path ThumbnailIn(const fs::path& cache, const std::string& content) {
+  return cache / (content + ".jpg");
+}
+
 std::optional<PhotoCheck> ReadCheck(const fs::path& file) {
   std::ifstream stream(file);
   if (!stream) return std::nullopt;
@@ -47,6 +52,48 @@ void KeepCheck(const fs::path& file, const fs::path& thumbnail, const PhotoCheck
     if (!jpeg.empty()) WriteFileAtomically(thumbnail, jpeg);
     WriteFileAtomically(file, ToJson(check).dump());
   } catch (const std::exception&) {
+  }
+}
+
+// What was kept of the photograph, or what is found now and kept.
+CheckedPhoto FindCheck(const fs::path& photo, const fs::path& cache, const CheckTask& task) {
+  CheckedPhoto checked;
+  checked.state = CheckState::kDone;
+  try {
+    checked.content = PlainHash(HashFile(photo));
+  } catch (const std::exception& error) {
+    PhotoCheck gone;
+    gone.unreadable = error.what();
+    checked.check = std::make_shared<PhotoCheck>(gone);
+    return checked;
+  }
+  const fs::path file = cache / (checked.content + "-" + PlainHash(task.Key()) + ".json");
+  checked.thumbnail = ThumbnailIn(cache, checked.content);
+  if (auto kept = ReadCheck(file)) {
+    checked.check = std::make_shared<PhotoCheck>(std::move(*kept));
+  } else {
+    std::string jpeg;
+    checked.check = std::make_shared<PhotoCheck>(CheckPhoto(photo, task, &jpeg));
+    KeepCheck(file, checked.thumbnail, *checked.check, jpeg);
+  }
+  std::error_code error;
+  if (!fs::is_regular_file(checked.thumbnail, error)) checked.thumbnail.clear();
+  return checked;
+}
+
+SmallPicture FindPicture(const fs::path& photo, const fs::path& cache) {
+  try {
+    const std::string content = PlainHash(HashFile(photo));
+    const fs::path thumbnail = ThumbnailIn(cache, content);
+    std::error_code error;
+    if (!fs::is_regular_file(thumbnail, error)) {
+      const std::string jpeg = SmallJpegOf(photo);
+      fs::create_directories(cache, error);
+      WriteFileAtomically(thumbnail, jpeg);
+    }
+    return {thumbnail, content};
+  } catch (const std::exception&) {  // its check will say what is wrong with it
+    return {};
   }
 }
 
@@ -88,48 +135,57 @@ CheckedPhoto CheckQueue::Look(const std::string& capture, const fs::path& file,
   return found->second;
 }
 
+SmallPicture CheckQueue::LookAtPicture(const std::string& capture, const fs::path& file,
+                                       const fs::path& cache) {
+  const std::string key = file.string() + "\n" + StampOf(file);
+  const std::lock_guard<std::mutex> guard(mutex_);
+  const auto [found, is_new] = pictures_.try_emplace(key);
+  if (is_new) {
+    pictures_waiting_.push_back({key, capture, file, cache, {}});
+    arrived_.notify_one();
+  }
+  return found->second;
+}
+
 void CheckQueue::Work() {
   std::unique_lock<std::mutex> guard(mutex_);
+  const auto has_picture = [&] { return !makes_picture_ && !pictures_waiting_.empty(); };
   for (;;) {
-    arrived_.wait(guard, [&] { return ending_ || !waiting_.empty(); });
+    arrived_.wait(guard, [&] { return ending_ || !waiting_.empty() || has_picture(); });
     if (ending_) return;
-    const Job job = waiting_.front();
-    waiting_.pop_front();
-    known_[job.key].state = CheckState::kChecking;
-    guard.unlock();
-    const CheckedPhoto checked = Check(job);
-    guard.lock();
-    known_[job.key] = checked;
-    guard.unlock();
-    on_change_(job.capture);
-    guard.lock();
+    if (!waiting_.empty()) {
+      CheckNext(&guard);
+    } else {
+      PictureNext(&guard);
+    }
   }
 }
 
-CheckedPhoto CheckQueue::Check(const Job& job) const {
-  CheckedPhoto checked;
-  checked.state = CheckState::kDone;
-  try {
-    checked.content = PlainHash(HashFile(job.file));
-  } catch (const std::exception& error) {
-    PhotoCheck gone;
-    gone.unreadable = error.what();
-    checked.check = std::make_shared<PhotoCheck>(gone);
-    return checked;
-  }
-  const std::string name = checked.content + "-" + PlainHash(job.task.Key());
-  const fs::path file = job.cache / (name + ".json");
-  checked.thumbnail = job.cache / (checked.content + ".jpg");
-  if (auto kept = ReadCheck(file)) {
-    checked.check = std::make_shared<PhotoCheck>(std::move(*kept));
-  } else {
-    std::string jpeg;
-    checked.check = std::make_shared<PhotoCheck>(CheckPhoto(job.file, job.task, &jpeg));
-    KeepCheck(file, checked.thumbnail, *checked.check, jpeg);
-  }
-  std::error_code error;
-  if (!fs::is_regular_file(checked.thumbnail, error)) checked.thumbnail.clear();
-  return checked;
+void CheckQueue::CheckNext(std::unique_lock<std::mutex>* guard) {
+  const Job job = waiting_.front();
+  waiting_.pop_front();
+  known_[job.key].state = CheckState::kChecking;
+  guard->unlock();
+  const CheckedPhoto checked = FindCheck(job.file, job.cache, job.task);
+  guard->lock();
+  known_[job.key] = checked;
+  guard->unlock();
+  on_change_(job.capture);
+  guard->lock();
+}
+
+void CheckQueue::PictureNext(std::unique_lock<std::mutex>* guard) {
+  const Job job = pictures_waiting_.front();
+  pictures_waiting_.pop_front();
+  makes_picture_ = true;
+  guard->unlock();
+  const SmallPicture picture = FindPicture(job.file, job.cache);
+  guard->lock();
+  pictures_[job.key] = picture;
+  makes_picture_ = false;
+  guard->unlock();
+  if (!picture.thumbnail.empty()) on_change_(job.capture);
+  guard->lock();
 }
 
 }  // namespace glint

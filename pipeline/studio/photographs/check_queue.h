@@ -26,6 +26,11 @@ struct CheckedPhoto {
   std::filesystem::path thumbnail;          // kDone; empty: there is none
 };
 
+struct SmallPicture {
+  std::filesystem::path thumbnail;  // empty: there is none, or not yet
+  std::string content;              // hash of the photograph
+};
+
 class CheckQueue {
  public:
   // `on_change` is called, by any thread, with the id of a capture of which a photograph's state
@@ -45,6 +50,11 @@ class CheckQueue {
   // The same without queueing anything.
   CheckedPhoto Peek(const std::filesystem::path& file, const CheckTask& task);
 
+  // A photograph's thumbnail without its check, which takes a tenth of the time; made by one thread
+  // while no photograph waits for its check.
+  SmallPicture LookAtPicture(const std::string& capture, const std::filesystem::path& file,
+                             const std::filesystem::path& cache);
+
  private:
   struct Job {
     std::string key, capture;
@@ -52,13 +62,17 @@ class CheckQueue {
     CheckTask task;
   };
   void Work();
-  CheckedPhoto Check(const Job& job) const;
+  void CheckNext(std::unique_lock<std::mutex>* guard);
+  void PictureNext(std::unique_lock<std::mutex>* guard);
 
   std::function<void(const std::string&)> on_change_;
   std::mutex mutex_;
   std::condition_variable arrived_;
   std::deque<Job> waiting_;
   std::map<std::string, CheckedPhoto> known_;  // by file, time, size and task
+  std::deque<Job> pictures_waiting_;
+  std::map<std::string, SmallPicture> pictures_;  // by file, time and size
+  bool makes_picture_ = false;                    // some thread does
   bool ending_ = false;
   std::vector<std::thread> threads_;
 };

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "base/errors/errors.h"
@@ -14,13 +13,13 @@
 #include "calib/guidance/clipping.h"
 #include "pipeline/contract/board_file.h"
 #include "pipeline/files/hash.h"
+#include "pipeline/studio/photographs/thumbnail.h"
 
 namespace glint {
 namespace {
 
 // 12 megapixels at half their size, as for `glint calib --check`.
 constexpr int kCheck_px = 2100;
-constexpr int kThumbnailSide_px = 320;
 // Raised whenever the same photograph may be judged otherwise, so that older results are not used.
 constexpr int kCheckVersion = 1;
 constexpr double kUsualFocal_mm = 26;  // 35 mm equivalent, see capture/assumed_camera.h
@@ -85,27 +84,6 @@ std::optional<GuidancePhoto> PoseOf(const Photo& photo, const CheckTask& task,
       Eigen::Vector3d(task.light_offset_mm[0], task.light_offset_mm[1], task.light_offset_mm[2]);
   pose.posed = PosedCamera{camera, *camera_from_sample};
   return pose;
-}
-
-std::string SmallJpeg(const Image& image) {
-  cv::Mat picture(image.height, image.width, CV_8UC3);
-  for (int y = 0; y < image.height; ++y) {
-    unsigned char* row = picture.ptr<unsigned char>(y);
-    for (int c = 0; c < 3; ++c) {
-      const float* from = image.channel(c).data() + static_cast<size_t>(y) * image.width;
-      for (int x = 0; x < image.width; ++x) {
-        row[3 * x + 2 - c] =
-            static_cast<unsigned char>(std::lround(255 * std::clamp(from[x], 0.0f, 1.0f)));
-      }
-    }
-  }
-  const double scale =
-      std::min(1.0, kThumbnailSide_px / static_cast<double>(std::max(image.width, image.height)));
-  cv::Mat small;
-  cv::resize(picture, small, {}, scale, scale, cv::INTER_AREA);
-  std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", small, bytes, {cv::IMWRITE_JPEG_QUALITY, 80});
-  return {bytes.begin(), bytes.end()};
 }
 
 // From the reduced copy to the photograph itself.

@@ -24,7 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kInterrupted = 128 + SIGINT;
+constexpr int kSignalBase = 128;
+constexpr int kInterrupted = kSignalBase + SIGINT;
+constexpr int kKilled = kSignalBase + SIGKILL;
 
 fs::path RecordOf(const fs::path& folder) { return StudioFolderOf(folder) / "run.json"; }
 
@@ -60,10 +62,60 @@ std::vector<RunStage> StagesOf(const fs::path& folder, bool quick) {
   return stages;
 }
 
+// Of a run that was killed, what it wrote says nothing; of one that wrote nothing, only its code is
+// known.
+ProgramMessage FailureIn(const fs::path& log, int code) {
+  const std::string remedy = "run it again: earlier results are kept, and it continues from there";
+  if (code == kKilled) {
+    return {"the run was killed (signal 9), perhaps because memory ran out",
+            remedy + "; where that happens again, lower the resolution of the maps"};
+  }
+  if (code > kSignalBase) {
+    return {"the run was ended by signal " + std::to_string(code - kSignalBase), remedy};
+  }
+  const ProgramMessage said = MessageIn(TextIn(log));
+  if (!said.message.empty()) return said;
+  return {"the run ended with exit code " + std::to_string(code) + " and said nothing", remedy};
+}
+
 bool IsAfter(const fs::path& file, fs::file_time_type time) {
   std::error_code error;
   const auto written = fs::last_write_time(file, error);
   return !error && written >= time;
+}
+
+// Stages that have written a new result are done; the one at work keeps its new files in a hidden
+// folder; those before it that did neither are up to date.
+void AdvanceStages(const fs::path& work, fs::file_time_type began, std::vector<RunStage>* stages) {
+  std::error_code error;
+  size_t at_work = 0;
+  for (size_t i = 0; i < stages->size(); ++i) {
+    RunStage& stage = (*stages)[i];
+    if (IsAfter(work / stage.name / "manifest.json", began)) {
+      stage.state = "done";
+      at_work = i + 1;
+    } else if (fs::exists(work / ("." + stage.name + ".new"), error)) {
+      at_work = i;
+    }
+  }
+  for (size_t i = 0; i < stages->size(); ++i) {
+    RunStage& stage = (*stages)[i];
+    if (stage.state == "done") continue;
+    stage.state = i < at_work ? "up to date" : i == at_work ? "running" : "waiting";
+  }
+}
+
+// Once the run has ended, no stage runs.
+void EndStages(RunView* view) {
+  const bool done = view->state == "done", failed = view->state == "failed";
+  for (RunStage& stage : view->stages) {
+    stage.share.reset();
+    if (stage.state == "running") {
+      stage.state = done ? "up to date" : failed ? "failed" : "waiting";
+    } else if (stage.state == "waiting" && done) {
+      stage.state = "up to date";
+    }
+  }
 }
 
 void KeepRecord(const fs::path& folder, const RunView& view) {
@@ -179,14 +231,12 @@ std::optional<RunView> RunManager::Look(const std::string& capture, const fs::pa
   }
 }
 
-void RunManager::Watch(Run* run) {
-  const fs::path place = StudioFolderOf(run->folder);
-  const fs::path log = place / "run.log", progress = place / "progress";
+// Its exit code; why it could not start goes to `failure`.
+int RunManager::RunProgram(Run* run, const fs::path& log, std::string* failure) {
+  const fs::path progress = StudioFolderOf(run->folder) / "progress";
   std::error_code error;
   fs::remove(log, error);
   std::ofstream(progress, std::ios::trunc).close();
-  int code = kExitEnvironment;
-  std::string failure;
   try {
     std::vector<std::string> command = {RequireGlintProgram("glint-run").string(),
                                         run->folder.string()};
@@ -197,10 +247,17 @@ void RunManager::Watch(Run* run) {
       UpdateProgress(run);
       return run->cancel.load();
     };
-    code = RunInGroup(command, log, options);
+    return RunInGroup(command, log, options);
   } catch (const Error& cannot_start) {
-    failure = cannot_start.what();
+    *failure = cannot_start.what();
+    return kExitEnvironment;
   }
+}
+
+void RunManager::Watch(Run* run) {
+  const fs::path log = StudioFolderOf(run->folder) / "run.log";
+  std::string failure;
+  const int code = RunProgram(run, log, &failure);
   UpdateProgress(run);
   {
     const std::lock_guard<std::mutex> guard(mutex_);
@@ -208,18 +265,9 @@ void RunManager::Watch(Run* run) {
     view.remaining_s.reset();
     view.state = code == 0 ? "done" : run->cancel || code == kInterrupted ? "cancelled" : "failed";
     if (view.state == "done") view.share = 1;
-    for (RunStage& stage : view.stages) {
-      stage.share.reset();
-      if (stage.state == "running") {
-        stage.state = view.state == "done"     ? "up to date"
-                      : view.state == "failed" ? "failed"
-                                               : "waiting";
-      } else if (stage.state == "waiting" && view.state == "done") {
-        stage.state = "up to date";
-      }
-    }
+    EndStages(&view);
     if (view.state == "failed") {
-      const ProgramMessage said = failure.empty() ? MessageIn(TextIn(log)) : SplitMessage(failure);
+      const ProgramMessage said = failure.empty() ? FailureIn(log, code) : SplitMessage(failure);
       view.message = said.message;
       view.remedy = said.remedy;
     }
@@ -229,8 +277,6 @@ void RunManager::Watch(Run* run) {
   on_change_(run->capture);
 }
 
-// Stages that have written a new result are done; the one at work keeps its new files in a hidden
-// folder; those before it that did neither are up to date.
 void RunManager::UpdateProgress(Run* run) {
   const Json last = Json::parse(LastLine(StudioFolderOf(run->folder) / "progress"), nullptr, false);
   bool changed = false;
@@ -238,23 +284,7 @@ void RunManager::UpdateProgress(Run* run) {
     const std::lock_guard<std::mutex> guard(mutex_);
     RunView& view = run->view;
     const std::string before = ToJson(view).dump();
-    const fs::path work = run->folder / "glint";
-    std::error_code error;
-    size_t at_work = 0;
-    for (size_t i = 0; i < view.stages.size(); ++i) {
-      RunStage& stage = view.stages[i];
-      if (IsAfter(work / stage.name / "manifest.json", run->began)) {
-        stage.state = "done";
-        at_work = i + 1;
-      } else if (fs::exists(work / ("." + stage.name + ".new"), error)) {
-        at_work = i;
-      }
-    }
-    for (size_t i = 0; i < view.stages.size(); ++i) {
-      RunStage& stage = view.stages[i];
-      if (stage.state == "done") continue;
-      stage.state = i < at_work ? "up to date" : i == at_work ? "running" : "waiting";
-    }
+    AdvanceStages(run->folder / "glint", run->began, &view.stages);
     if (last.is_object()) {
       view.share = std::max(view.share, last.value("share", 0.0));
       view.remaining_s.reset();

@@ -52,6 +52,7 @@ class RunManager {
  private:
   struct Run;
   void Watch(Run* run);
+  int RunProgram(Run* run, const std::filesystem::path& log, std::string* failure);
   void UpdateProgress(Run* run);
 
   std::function<void(const std::string&)> on_change_;

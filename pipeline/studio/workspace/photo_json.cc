@@ -22,20 +22,11 @@ Json DirectionJson(const std::optional<Direction>& direction) {
 }  // namespace
 
 Json WaitingPhotoJson(const StudioPhoto& photo) {
-  return {{"id", photo.id},
-          {"name", photo.name},
-          {"thumbnail", nullptr},
-          {"state", "waiting"},
-          {"left_out", photo.left_out},
-          {"reason", nullptr},
-          {"remedy", nullptr},
-          {"board_found", false},
-          {"sharpness", nullptr},
-          {"clipped_share", nullptr},
-          {"tilt_deg", nullptr},
-          {"azimuth_deg", nullptr},
-          {"same_as", nullptr},
-          {"added_s", photo.added_s}};
+  return {{"id", photo.id},           {"name", photo.name},         {"thumbnail", nullptr},
+          {"state", "waiting"},       {"left_out", photo.left_out}, {"reason", nullptr},
+          {"remedy", nullptr},        {"board_found", false},       {"sharpness", nullptr},
+          {"clipped_share", nullptr}, {"tilt_deg", nullptr},        {"azimuth_deg", nullptr},
+          {"same_as", nullptr},       {"added_s", photo.added_s}};
 }
 
 void AddCheck(const CheckedPhoto& checked, const std::string& thumbnail, Json* json) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/errors/errors.h"
+#include "pipeline/photos/photo_name.h"
 #include "pipeline/studio/captures/capture_edit.h"
 #include "pipeline/studio/captures/notes.h"
 #include "pipeline/studio/captures/option_form.h"
@@ -60,8 +61,8 @@ fs::path ReportThumbnail(const fs::path& capture) {
 Workspace::Workspace(const fs::path& root, int check_threads)
     : root_(fs::canonical(root)),
       lock_(LockFolder(root_)),
-      boards_(root_ / kStudioFolder / "boards"),
-      captures_(root_) {
+      captures_(root_),
+      boards_(root_ / kStudioFolder / "boards", [this] { return captures_.All(); }) {
   RemoveHalfMade(root_);
   for (const LibraryEntry& entry : captures_.All()) {
     ReceivedPhoto::RemoveLeftovers(entry.folder / "photos");
@@ -104,14 +105,15 @@ Json Workspace::StudioJson() const {
   return {{"folder", root_.string()}, {"free_bytes", free_bytes}, {"read_only", lock_ == nullptr}};
 }
 
-Json Workspace::ThumbnailJson(const LibraryEntry& entry, const CaptureState& state,
-                              const std::vector<StudioPhoto>& photos) {
+Json Workspace::ThumbnailJson(const LibraryEntry& entry, const std::vector<StudioPhoto>& photos) {
   const std::string address = "/api/captures/" + entry.id + "/thumbnail";
   std::error_code error;
   if (fs::is_regular_file(ReportThumbnail(entry.folder), error)) return address;
-  if (photos.empty()) return nullptr;
-  const CheckedPhoto first = checks_->Peek(photos[0].file, TaskOf(state));
-  return first.thumbnail.empty() ? Json() : Json(address + "/" + photos[0].id);
+  if (photos.empty() || !lock_ || SplitPhotoName(photos[0].file).frame >= 0) return nullptr;
+  const SmallPicture first =
+      checks_->LookAtPicture(entry.id, photos[0].file, CheckFolderOf(entry.folder));
+  if (first.thumbnail.empty()) return nullptr;
+  return address + "/" + photos[0].id + "?v=" + first.content.substr(0, 8);
 }
 
 Json Workspace::LibraryJson() {
@@ -120,7 +122,7 @@ Json Workspace::LibraryJson() {
     const CaptureState state = ReadState(entry.folder);
     const auto photos = PhotosOf(state);
     Json row = RowJson(entry, state, photos, runs_.get());
-    row["thumbnail"] = ThumbnailJson(entry, state, photos);
+    row["thumbnail"] = ThumbnailJson(entry, photos);
     list.push_back(row);
   }
   return {{"captures", list}};
@@ -239,7 +241,10 @@ fs::path Workspace::Thumbnail(const LibraryEntry& entry, const std::string& phot
   if (photo.empty()) return ReportThumbnail(entry.folder);
   const CaptureState state = ReadState(entry.folder);
   for (const StudioPhoto& one : PhotosOf(state)) {
-    if (one.id == photo) return checks_->Peek(one.file, TaskOf(state)).thumbnail;
+    if (one.id != photo) continue;
+    const CheckedPhoto checked = checks_->Peek(one.file, TaskOf(state));
+    if (!checked.thumbnail.empty()) return checked.thumbnail;
+    return checks_->LookAtPicture(entry.id, one.file, CheckFolderOf(entry.folder)).thumbnail;
   }
   return {};
 }

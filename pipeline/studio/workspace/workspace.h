@@ -50,14 +50,13 @@ class Workspace {
   void SetLeftOut(const LibraryEntry& entry, const std::string& photo, bool left_out);
   void SetOptions(const LibraryEntry& entry, const Json& changes);
   void Run(const LibraryEntry& entry, bool quick);
-  // A small picture of a photograph that has been checked; empty: there is none.
+  // A small picture of a photograph, or of the result; empty: there is none (yet).
   std::filesystem::path Thumbnail(const LibraryEntry& entry, const std::string& photo);
 
  private:
   void OnChecked(const std::string& capture);
   void RequireWritable() const;
-  Json ThumbnailJson(const LibraryEntry& entry, const CaptureState& state,
-                     const std::vector<StudioPhoto>& photos);
+  Json ThumbnailJson(const LibraryEntry& entry, const std::vector<StudioPhoto>& photos);
   void AddPhotographs(const LibraryEntry& entry, const CaptureState& state,
                       const std::vector<StudioPhoto>& photos, const std::string& thumbnails,
                       Json* json);
@@ -65,8 +64,8 @@ class Workspace {
   std::filesystem::path root_;
   std::unique_ptr<FileLock> lock_;  // null: the folder can only be read
   EventHub events_;
-  BoardShelf boards_;
   CaptureList captures_;
+  BoardShelf boards_;
   PhotoReviewer reviewer_;
   OptionsMeanwhile options_;
   std::unique_ptr<RunManager> runs_;

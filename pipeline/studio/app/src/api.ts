@@ -141,6 +141,7 @@ export interface Board {
   square_mm: number;
   window_mm: Size | null; // null: a whole board, without a window
   ruler_mm: number | null; // as printed
+  pdf?: boolean; // false: of a capture whose PDF is elsewhere
   print_scale?: number; // printed over designed size, from the ruler that was measured; 1: as its label says
 }
 

@@ -48,8 +48,11 @@ export function NewCapturePage() {
   const opening = board?.window_mm ?? null;
   const tooLarge = opening !== null && (size[0] > opening[0] || size[1] > opening[1]);
 
-  const replaceBoard = (changed: Board) =>
-    kept.set({ boards: boards.some((b) => b.id === changed.id) ? boards.map((b) => (b.id === changed.id ? changed : b)) : [...boards, changed] });
+  const replaceBoard = (changed: Board) => {
+    const known = boards.some((b) => b.id === changed.id);
+    kept.set({ boards: known ? boards.map((b) => (b.id === changed.id ? changed : b)) : [...boards, changed] });
+    if (!known) setChosen(changed.id); // made, or the measured copy of a capture's board
+  };
 
   const create = async (event: Event) => {
     event.preventDefault();
@@ -59,8 +62,7 @@ export function NewCapturePage() {
       let boardId = board?.id ?? null;
       if (kind === 'board' && boardId === null) {
         const made = await api.makeBoard(paper, size);
-        replaceBoard(made);
-        setChosen(made.id); // should the capture be refused, the board is there already
+        replaceBoard(made); // should the capture be refused, the board is there already
         boardId = made.id;
       }
       const { id } = await api.makeCapture({

@@ -115,10 +115,12 @@ export function BoardChooser({ boards, chosen, onChoose, onBoard, paper, onPaper
       {failure && <FailureNotice failure={failure} />}
       {board && (
         <div class="board-chosen">
-          <a class="button" href={api.boardPdf(board.id)} target="_blank" rel="noopener">
-            <OutIcon />
-            {t.printPdf}
-          </a>
+          {board.pdf !== false && (
+            <a class="button" href={api.boardPdf(board.id)} target="_blank" rel="noopener">
+              <OutIcon />
+              {t.printPdf}
+            </a>
+          )}
           <Ruler key={board.id} board={board} onChange={onBoard} />
         </div>
       )}
