@@ -155,6 +155,18 @@ TEST(JudgePhotos, BadOnesAreNamedWithReasonAndRemedy) {
   }
 }
 
+TEST(JudgePhotos, AnotherBoardIsSaidOnceAndInPlainWords) {
+  PhotoCheck check;
+  check.mismatch = true;
+  const auto verdicts = JudgePhotos({{"a.jpg", check}}, TaskWithBoard());
+  EXPECT_EQ(verdicts[0].state, PhotoVerdict::State::kBad);
+  EXPECT_EQ(verdicts[0].reason,
+            "It shows another board than the capture's, which has 13 × 17 squares.");
+  const auto advice = AdviseFor(CaptureWithBoard(), {}, {{"a.jpg", verdicts[0].reason}});
+  EXPECT_NE(advice.sentence.find("choose the board"), std::string::npos) << advice.sentence;
+  EXPECT_FALSE(advice.target.has_value());
+}
+
 TEST(JudgePhotos, ARepeatedPhotographNamesTheOther) {
   auto photos = FourGood();
   photos[3].check.measures.thumbnail = photos[1].check.measures.thumbnail;

@@ -66,6 +66,8 @@ TEST(Server, NoPathOfAClientReachesTheFileSystem) {
   const std::string id = running.MakeCapture();
   running.folder.Write("wood/glint/report/index.html", "<p>report");
   running.folder.Write("wood/glint/export/manifest.json", "{}");
+  running.folder.Write("wood/glint/refine/manifest.json", "{}");
+  running.folder.Write("wood/glint/refine/svbrdf.exr", "maps");
   running.folder.Write("secret.txt", "secret");
   fs::create_symlink(running.folder / "secret.txt", running.folder / "wood/glint/export/link.png");
   fs::create_directory_symlink(running.folder.path(), running.folder / "wood/glint/export/all");
@@ -73,6 +75,8 @@ TEST(Server, NoPathOfAClientReachesTheFileSystem) {
   const std::string page = running.Capture(id)["result"]["page"];
   EXPECT_EQ(running.page->Get(page).body, "<p>report");
   const std::string base = page.substr(0, page.find("report/"));
+  EXPECT_EQ(running.page->Get(base + "refine/manifest.json").body, "{}");  // the report's link
+  EXPECT_EQ(running.page->Get(base + "refine/svbrdf.exr").status, 404);
   for (const std::string& path :
        {base + "../secret.txt", base + "export/../../../secret.txt",
         base + "%2e%2e/%2e%2e/secret.txt", base + "export%2f..%2f..%2f..%2fsecret.txt",

@@ -41,15 +41,19 @@ struct RunningStudio {
 
   Json Capture(const std::string& id) const { return page->Get("/api/captures/" + id).json(); }
 
-  // Until no photograph waits for its check.
+  // Until no photograph waits for its check. A bad one is left out a moment after it is known to
+  // be bad, unless a person has decided about it.
   Json CheckedCapture(const std::string& id) const {
+    int moments = 0;
     for (int i = 0; i < 1000; ++i) {
       const Json capture = Capture(id);
-      bool done = true;
+      bool done = true, left_out = true;
       for (const Json& photo : capture["photographs"]) {
         done &= photo["state"] != "waiting" && photo["state"] != "checking";
+        left_out &= photo["state"] != "bad" || photo["left_out"].get<bool>();
       }
-      if (done) return capture;
+      constexpr int kMoments = 25;
+      if (done && (left_out || ++moments == kMoments)) return capture;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     return Capture(id);

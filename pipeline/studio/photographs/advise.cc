@@ -18,6 +18,8 @@ constexpr double kTopTilt_deg = 7;
 // The tilts that README asks for, 15 to 40°, in three steps.
 constexpr std::array kTilts_deg = {25.0, 35.0, 17.5};
 
+constexpr char kOtherBoard[] = "It shows another board than the capture's";
+
 std::string RemedyFor(RemarkKind kind) {
   switch (kind) {
     case RemarkKind::kBlurred:
@@ -51,8 +53,10 @@ PhotoVerdict JudgeAlone(const PhotoCheck& check, const CheckTask& task) {
   }
   if (!task.board) return {};
   if (check.mismatch) {
-    return {State::kBad, "Another board is seen than the one chosen: " + check.board_problem + ".",
-            "Choose the board that lies round the sample.", ""};
+    return {State::kBad,
+            fmt::format("{}, which has {} × {} squares.", kOtherBoard, task.board->squares_x,
+                        task.board->squares_y),
+            "Make a new capture and choose the board that lies round the sample.", ""};
   }
   if (!check.board_found) {
     return {State::kBad,
@@ -167,6 +171,25 @@ std::string Reason(const Verdict& verdict, const Direction& direction) {
   return "each side more lowers the error";
 }
 
+// While no photograph is used.
+StudioAdvice AdviseFirst(const std::vector<LeftOutPhoto>& left_out) {
+  const bool all_show_another =
+      !left_out.empty() &&
+      std::all_of(left_out.begin(), left_out.end(),
+                  [](const LeftOutPhoto& photo) { return photo.reason.starts_with(kOtherBoard); });
+  StudioAdvice advice;
+  if (all_show_another) {
+    advice.sentence =
+        "Every photograph shows another board than the capture's: make a new capture, and choose "
+        "the board that lies round the sample.";
+    return advice;
+  }
+  advice.sentence =
+      "Take the first photograph straight from above, flash on, the whole board in the picture.";
+  advice.target = Direction{0, 0};
+  return advice;
+}
+
 StudioAdvice AdviseWithoutBoard(const Capture& capture, const std::vector<NamedCheck>& used) {
   StudioAdvice advice;
   if (capture.fixed_camera() || capture.imported()) {
@@ -239,12 +262,7 @@ StudioAdvice AdviseFor(const Capture& capture, const std::vector<NamedCheck>& us
   if (!capture.has_board || capture.fixed_camera()) return AdviseWithoutBoard(capture, used);
   const std::vector<GuidancePhoto> poses = PosesOf(used);
   StudioAdvice advice;
-  if (poses.empty()) {
-    advice.sentence =
-        "Take the first photograph straight from above, flash on, the whole board in the picture.";
-    advice.target = Direction{0, 0};
-    return advice;
-  }
+  if (poses.empty()) return AdviseFirst(left_out);
   GuidanceInput input;
   input.sample_size_mm = capture.sample_size_mm;
   input.resolution_px = capture.resolution_px;

@@ -39,6 +39,18 @@ void AddFolder(const fs::path& folder, const std::string& prefix, int deep,
   }
 }
 
+// Where a report says that its figures come from.
+void AddManifests(const fs::path& work, std::map<std::string, fs::path>* files) {
+  std::error_code error;
+  for (const auto& stage : fs::directory_iterator(work, error)) {
+    const std::string name = stage.path().filename();
+    if (name[0] == '.' || stage.is_symlink(error) || !stage.is_directory(error)) continue;
+    const fs::path manifest = stage.path() / "manifest.json";
+    if (fs::is_symlink(manifest, error) || !fs::is_regular_file(manifest, error)) continue;
+    files->emplace(name + "/manifest.json", manifest);
+  }
+}
+
 fs::path PreviousFolder(const fs::path& capture) { return StudioFolderOf(capture) / "previous"; }
 
 std::string MeaningOf(const std::string& map) {
@@ -197,6 +209,7 @@ std::map<std::string, fs::path> ResultFiles(const fs::path& capture) {
   AddFolder(work / "export", "export/", 2, &files);
   AddFolder(work / "tile", "tile/", 1, &files);
   AddFolder(PreviousFolder(capture), "previous/", 0, &files);
+  AddManifests(work, &files);
   return files;
 }
 

@@ -101,6 +101,7 @@ export const texts = {
     makeBoard: 'Make it now',
     boardMade: (name: string) => `Board ${name} is ready to print`,
     printPdf: 'Open the board’s PDF',
+    squares: (columns: number, rows: number, side_mm: number) => `${columns} × ${rows} squares of ${side_mm} mm`,
     window: (w: number, h: number) => `window ${Math.round(w)} × ${Math.round(h)} mm`,
     ruler: 'Length of the printed ruler (mm)',
     rulerHelp: (mm: number) =>

@@ -17,7 +17,7 @@ function measuredRuler({ ruler_mm, print_scale = 1 }: Board): number | null {
 function facts(board: Board): string {
   const measured = measuredRuler(board);
   return [
-    board.paper,
+    board.paper || t.squares(board.squares[0], board.squares[1], board.square_mm), // of a capture: its sheet is not known
     board.window_mm && t.window(board.window_mm[0], board.window_mm[1]),
     measured !== null && t.rulerIs(measured),
   ].filter(Boolean).join(' · ');
@@ -113,7 +113,7 @@ export function BoardChooser({ boards, chosen, onChoose, onBoard, paper, onPaper
         </div>
       )}
       {failure && <FailureNotice failure={failure} />}
-      {board && (
+      {board && (board.pdf !== false || board.ruler_mm !== null) && (
         <div class="board-chosen">
           {board.pdf !== false && (
             <a class="button" href={api.boardPdf(board.id)} target="_blank" rel="noopener">

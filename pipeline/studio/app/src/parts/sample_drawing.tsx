@@ -17,6 +17,7 @@ const papers_mm: Record<string, Size> = { A3: [297, 420], A4: [210, 297], A5: [1
 const width = 320;
 const planHeight = 250;
 const sideHeight = 62;
+const labelWidth = 52; // of the height beside the drawing, which stays in the middle
 
 // The squares of the frame; every second one is black.
 function Squares({ board }: { board: Board }) {
@@ -86,7 +87,7 @@ export function SampleDrawing({ size, board, paper, height_mm, pictureWidth_mm }
     Math.max(size[0], sheet?.[0] ?? 0, picture?.[0] ?? 0),
     Math.max(size[1], sheet?.[1] ?? 0, picture?.[1] ?? 0),
   ];
-  const scale = Math.min((width - 70) / extent[0], (planHeight - 56) / extent[1]);
+  const scale = Math.min((width - 2 * labelWidth) / extent[0], (planHeight - 56) / extent[1]);
   const [w, h] = [size[0] * scale, size[1] * scale];
   const label = picture
     ? t.drawingSingle(pictureWidth_mm!)
