@@ -107,7 +107,7 @@ std::optional<std::string> BoardShelf::BoardOf(const fs::path& capture) const {
   if (!fs::is_regular_file(own, error)) return std::nullopt;
   const std::string text = ReadTextFile(own);
   for (const KeptBoard& board : Printed()) {
-    if (ReadTextFile(board.folder / "board.json") == text) return board.id;
+    if (HasPdf(board) && BoardText(board) == text) return board.id;
   }
   return std::nullopt;
 }
@@ -134,13 +134,19 @@ KeptBoard BoardShelf::Adopt(const KeptBoard& board) const {
   for (int n = 2; fs::exists(folder, error); ++n) folder = folder_ / fmt::format("{}-{}", name, n);
   fs::create_directories(folder);
   WriteFileAtomically(folder / "board.json", BoardText(board));
+  if (HasPdf(board)) fs::copy_file(board.folder / "board.pdf", folder / "board.pdf", error);
   return BoardIn(folder);
 }
 
+std::optional<KeptBoard> BoardShelf::Take(const std::string& id) const {
+  const auto board = Find(id);
+  if (!board || board->folder.parent_path() == folder_) return board;
+  return Adopt(*board);
+}
+
 KeptBoard BoardShelf::Measure(const std::string& id, double ruler_mm) {
-  auto board = Find(id);
+  const auto board = Take(id);
   if (!board) throw HttpError{404, "there is no such board", "reload the page"};
-  if (board->folder.parent_path() != folder_) board = Adopt(*board);
   RunBoardProgram({fmt::format("--measured={:.6g}", ruler_mm)}, board->folder);
   return BoardIn(board->folder);
 }

@@ -28,14 +28,16 @@ class BoardShelf {
 
   std::vector<KeptBoard> List() const;  // printed ones first
   std::optional<KeptBoard> Find(const std::string& id) const;
-  // The id of the printed board whose description the capture has.
+  // The same, to be used by one more capture: another capture's board is copied to the printed
+  // ones, so that it keeps its name and place whatever becomes of that capture.
+  std::optional<KeptBoard> Take(const std::string& id) const;
+  // The id of the printed board with a PDF whose description the capture has.
   std::optional<std::string> BoardOf(const std::filesystem::path& capture) const;
   // Runs `glint board`: `paper` is "A4", "Letter" …; `window_mm` what the window must hold, or
   // none. A board of the same making is not made twice. Throws HttpError with what the program
   // says.
   KeptBoard Print(const std::string& paper, const std::optional<std::array<double, 2>>& window_mm);
-  // The printed ruler's length: `glint board --measured`. A capture's board is copied before, so
-  // that the capture stays as it is.
+  // The printed ruler's length: `glint board --measured`. A capture stays as it is: see Take.
   KeptBoard Measure(const std::string& id, double ruler_mm);
 
  private:

@@ -23,7 +23,7 @@ HttpReply MakeCaptureFrom(const RouteContext& context, const Json& json) {
   wanted.picture_width_mm = NumberIn(json, "picture_width_mm", 0);
   wanted.distance_mm = NumberIn(json, "distance_mm", 0);
   const std::string board = TextIn(json, "board", "");
-  if (!board.empty()) wanted.board = context.workspace->boards().Find(board);
+  if (!board.empty()) wanted.board = context.workspace->boards().Take(board);
   return JsonReply({{"id", context.workspace->Make(wanted)}});
 }
 

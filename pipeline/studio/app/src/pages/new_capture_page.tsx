@@ -13,9 +13,12 @@ import { texts } from '../texts';
 const t = texts.create;
 const kinds = ['board', 'single'] as const satisfies readonly Kind[];
 
+// "Sample 1" becomes the folder Sample_1, which is the capture's name from then on.
+const folderName = (name: string) => name.toLocaleLowerCase('en').replace(/[^\p{L}\p{N}]+/gu, '_');
+
 function unusedName(taken: string[]): string {
-  const names = new Set(taken.map((name) => name.toLocaleLowerCase('en')));
-  for (let n = 1; ; ++n) if (!names.has(t.firstName(n).toLocaleLowerCase('en'))) return t.firstName(n);
+  const names = new Set(taken.map(folderName));
+  for (let n = 1; ; ++n) if (!names.has(folderName(t.firstName(n)))) return t.firstName(n);
 }
 
 const sizeError = (text: string) => (Number(text) >= 1 && Number(text) <= 2000 ? null : t.badSize);
