@@ -197,7 +197,9 @@ PhotoRenderer::Rgb PhotoRenderer::ShadePixel(const PhotoGeometry& geometry, cons
   if (uniform && surface != kSample) {
     samples = 4;  // the pattern is smooth
     for (int i = 0; i < samples; ++i) {
-      add(ShadeSurface(geometry, surface, at(0.25 + 0.5 * (i % 2), 0.25 + 0.5 * (i / 2))), &sum);
+      add(ShadeSurface(geometry, surface,
+                       at(0.25 + 0.5 * (i % 2), 0.25 + 0.5 * static_cast<double>(i / 2))),
+          &sum);
     }
   } else if (uniform) {
     const double texel_mm = plan_.options.sample_mm / std::max(map_width_, map_height_);
@@ -207,7 +209,8 @@ PhotoRenderer::Rgb PhotoRenderer::ShadePixel(const PhotoGeometry& geometry, cons
                    kFewestMapSamples, kMostMapSamples);
     samples = side * side;
     for (int i = 0; i < samples; ++i) {
-      add(ShadeSample(geometry, at((i % side + 0.5) / side, (i / side + 0.5) / side)), &sum);
+      const int across = i % side, down = i / side;
+      add(ShadeSample(geometry, at((across + 0.5) / side, (down + 0.5) / side)), &sum);
     }
   } else {
     samples = kEdgeSamples;

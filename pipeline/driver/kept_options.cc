@@ -12,8 +12,6 @@
 namespace glint {
 namespace {
 
-namespace fs = std::filesystem;
-
 // {"light": "--light=camera"}, as the stage has written it; empty where nothing was chosen.
 Json GivenOnCommandLine(const Capture& capture, const StageStep& step) {
   std::ifstream stream((capture.folder / step.manifest).parent_path() / "run.json");
