@@ -139,7 +139,7 @@ KeptBoard BoardShelf::Adopt(const KeptBoard& board) const {
 }
 
 std::optional<KeptBoard> BoardShelf::Take(const std::string& id) const {
-  const auto board = Find(id);
+  std::optional<KeptBoard> board = Find(id);
   if (!board || board->folder.parent_path() == folder_) return board;
   return Adopt(*board);
 }

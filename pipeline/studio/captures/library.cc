@@ -77,7 +77,7 @@ fs::path MoveToTrash(const fs::path& root, const LibraryEntry& entry) {
   fs::create_directories(trash, error);
   const std::string name = entry.name + "-" + TimeText();
   for (int attempt = 1; attempt < 100; ++attempt) {
-    const fs::path to = trash / (attempt == 1 ? name : name + "-" + std::to_string(attempt));
+    fs::path to = trash / (attempt == 1 ? name : name + "-" + std::to_string(attempt));
     if (::renameat2(AT_FDCWD, entry.folder.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) {
       return to;
     }

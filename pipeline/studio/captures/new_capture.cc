@@ -117,7 +117,7 @@ fs::path MakeCapture(const fs::path& root, const NewCapture& wanted) {
   std::error_code error;
   try {
     Fill(wanted, name, hidden);
-    const fs::path folder = root / name;
+    fs::path folder = root / name;
     if (::renameat2(AT_FDCWD, hidden.c_str(), AT_FDCWD, folder.c_str(), RENAME_NOREPLACE) == 0) {
       fs::remove(hidden.parent_path(), error);
       return folder;

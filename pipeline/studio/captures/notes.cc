@@ -45,10 +45,10 @@ void WriteNote(const fs::path& file, const Json& json) {
 
 std::string NotedVerdict(const fs::path& capture) {
   const Json note = ReadNote(VerdictNote(capture));
-  const std::string verdict = TextAt(note, "/verdict");
+  std::string verdict = TextAt(note, "/verdict");
   if (!verdict.empty() && verdict != "none") return verdict;
   const Json manifest = ReadNote(capture / "glint" / "calib" / "manifest.json");
-  const std::string word = TextAt(manifest, "/metrics/guidance/verdict");
+  std::string word = TextAt(manifest, "/metrics/guidance/verdict");
   if (word == "good" || word == "usable") return word;
   return word.empty() ? "none" : "poor";  // "not enough"
 }

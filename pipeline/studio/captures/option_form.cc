@@ -46,7 +46,7 @@ bool IsOfTheRun(const std::string& option) {
 
 std::string TypeOf(const Json& option) {
   if (option.contains("choices")) return "choice";
-  const std::string kind = option.value("kind", "text");
+  std::string kind = option.value("kind", "text");
   if (kind == "flag" || kind == "integer" || kind == "number") return kind;
   return "text";
 }

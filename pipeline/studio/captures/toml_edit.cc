@@ -157,7 +157,7 @@ std::string WithTomlValue(const std::filesystem::path& file, const std::string& 
       AddTable(table, line, &lines);
     }
   }
-  const std::string changed = lines.Joined();
+  std::string changed = lines.Joined();
   bool good = false;
   try {
     const toml::table after = Parsed(file, changed);
@@ -188,7 +188,7 @@ std::string WithTomlTable(const std::filesystem::path& file, const std::string& 
       lines.all.erase(at, at + static_cast<std::ptrdiff_t>(EndOfTable(lines, header) - header + 1));
     }
   }
-  const std::string changed = lines.Joined();
+  std::string changed = lines.Joined();
   toml::table after = Parsed(file, changed);
   const bool good = after.contains(table) == present;
   before.erase(table);

@@ -43,6 +43,7 @@ std::vector<std::string> LanAddresses() {
   std::stable_sort(found.begin(), found.end(),
                    [](const Found& a, const Found& b) { return a.rank < b.rank; });
   std::vector<std::string> addresses;
+  addresses.reserve(found.size());
   for (const Found& one : found) addresses.push_back(one.address);
   return addresses;
 }
