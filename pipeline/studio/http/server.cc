@@ -33,6 +33,7 @@ class HttplibStream final : public httplib::Stream {
  public:
   HttplibStream(DeadlineSocket* socket, std::string ip, int port, int local_port)
       : socket_(socket), ip_(std::move(ip)), port_(port), local_port_(local_port) {}
+  // NOLINTBEGIN(modernize-use-override)
   bool is_readable() const { return socket_->Readable(); }
   bool wait_readable() const { return socket_->Readable(); }
   bool is_writable() const { return socket_->Writable(); }
@@ -53,6 +54,7 @@ class HttplibStream final : public httplib::Stream {
   }
   socket_t socket() const { return socket_->descriptor(); }
   time_t duration() const { return 0; }
+  // NOLINTEND(modernize-use-override)
 
  private:
   DeadlineSocket* socket_;
@@ -146,7 +148,7 @@ void SendStream(const std::function<bool(std::string*)>& next, const std::string
 
 void Fill(const HttpReply& reply, httplib::Response* to) {
   to->status = reply.status;
-  for (const auto& [name, value] : reply.headers) to->set_header(name.c_str(), value.c_str());
+  for (const auto& [name, value] : reply.headers) to->set_header(name, value);
   if (reply.stream) {
     SendStream(reply.stream, reply.type, to);
   } else if (reply.file && reply.file->bytes() > 0) {

@@ -164,7 +164,7 @@ fs::path ReceivedPhoto::Keep() {
   constexpr int kMostOfAName = 10000;
   for (int attempt = 1; attempt < kMostOfAName; ++attempt) {
     const std::string number = attempt == 1 ? "" : "-" + std::to_string(attempt);
-    const fs::path file = folder_ / (stem + number + ending_);
+    fs::path file = folder_ / (stem + number + ending_);
     if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, file.c_str(), RENAME_NOREPLACE) == 0) {
       temporary_.clear();
       const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
