@@ -5,7 +5,7 @@ namespace glint {
 Json JsonBody(HttpBody* body) {
   constexpr std::size_t kMost_bytes = 1 << 20;
   const std::string text = body->Text(kMost_bytes);
-  const Json json = Json::parse(text.empty() ? "{}" : text, nullptr, false);
+  Json json = Json::parse(text.empty() ? "{}" : text, nullptr, false);
   if (!json.is_object()) throw HttpError{400, "found no JSON object", "reload the page"};
   return json;
 }

@@ -97,7 +97,7 @@ await page.getByRole('button', { name: `Take back in: ${path.basename(photograph
 verdict(true, 'what one browser changes the other shows');
 await second.close();
 
-// capture.toml broken by hand, and mended.
+// capture.toml broken by hand, and put right.
 const toml = path.join(capture, 'capture.toml');
 const text = fs.readFileSync(toml, 'utf8');
 fs.writeFileSync(toml, text.replace('[sample]', '[sample'));
@@ -108,7 +108,7 @@ await shot(page, 'bad-toml');
 fs.writeFileSync(toml, text);
 await page.reload();
 await page.waitForSelector('.tile');
-verdict(await page.locator('.notice.error').count() === 0, 'a mended one is read again');
+verdict(await page.locator('.notice.error').count() === 0, 'one that was put right is read again');
 
 // A run that is cancelled, and one that another program kills.
 await page.getByRole('link', { name: 'Maps', exact: true }).click();
