@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/formats/board_file.h"
+#include "base/programs/program.h"
 #include "calib/printing/draw_sheet.h"
 #include "calib/printing/drawing.h"
 #include "calib/printing/sheet_plan.h"
-#include "pipeline/contract/board_file.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

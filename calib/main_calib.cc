@@ -5,14 +5,14 @@
 #include <utility>
 
 #include "base/errors/errors.h"
+#include "base/formats/capture.h"
+#include "base/programs/cost_model.h"
+#include "base/programs/program.h"
 #include "calib/capture/calibrate_capture.h"
 #include "calib/capture/export_colmap.h"
 #include "calib/capture/guide_capture.h"
 #include "calib/capture/place_sample.h"
 #include "calib/capture/pose_source.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/program.h"
 
 namespace glint {
 namespace {

@@ -3,11 +3,11 @@
 #include <spdlog/spdlog.h>
 
 #include "base/errors/errors.h"
+#include "base/linearize/response_curve.h"
+#include "base/programs/program.h"
 #include "calib/response/response.h"
 #include "calib/response/response_picture.h"
 #include "calib/response/sample_photos.h"
-#include "pipeline/contract/program.h"
-#include "rectify/linearize/response_curve.h"
 
 namespace glint {
 namespace {

@@ -18,7 +18,7 @@ include(GNUInstallDirs)
 
 file(GLOB glint_models CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fitting/models/*.safetensors)
 install(FILES ${glint_models} DESTINATION share/glint/models)
-install(FILES pipeline/contract/manifest.schema.json DESTINATION share/glint/schemas)
+install(FILES base/formats/manifest.schema.json DESTINATION share/glint/schemas)
 install(DIRECTORY workflow DESTINATION share/glint)
 install(FILES pipeline/studio/desktop/glint-studio.desktop DESTINATION share/applications)
 install(FILES pipeline/studio/app/src/icon.svg DESTINATION share/icons/hicolor/scalable/apps
@@ -60,7 +60,8 @@ function(glint_install_libraries)
   endforeach()
 endfunction()
 glint_install_libraries(glint_cpu glint_memory glint_parallel glint_resampling glint_reflectance
-  glint_render glint_camera glint_board glint_files glint_images glint_photos glint_contract)
+  glint_render glint_camera glint_board glint_files glint_images glint_photos glint_stages
+  glint_formats glint_programs)
 set_target_properties(glint_compile_options PROPERTIES EXPORT_NAME compile_options)
 install(EXPORT GlintTargets NAMESPACE Glint:: DESTINATION lib/cmake/Glint COMPONENT development)
 include(CMakePackageConfigHelpers)

@@ -6,24 +6,24 @@
 #include <tuple>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/formats/calibration.h"
+#include "base/formats/capture.h"
+#include "base/formats/rectified_set.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/programs/verbs.h"
 #include "datasets/evaluation/calibration_error.h"
 #include "datasets/evaluation/experiment_verbs.h"
 #include "datasets/evaluation/holdout_verb.h"
 #include "datasets/evaluation/light_verb.h"
 #include "datasets/evaluation/limits_verb.h"
-#include "datasets/evaluation/looks.h"
 #include "datasets/evaluation/map_error.h"
 #include "datasets/evaluation/predicted_deviation.h"
 #include "datasets/evaluation/relight_verb.h"
 #include "datasets/evaluation/tiling_verb.h"
-#include "datasets/evaluation/view_error.h"
+#include "datasets/looks/looks.h"
+#include "datasets/looks/view_error.h"
 #include "datasets/synth/material_source.h"
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/contract/verbs.h"
-#include "pipeline/files/files.h"
 
 namespace {
 

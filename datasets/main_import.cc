@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/programs/program.h"
 #include "calib/guidance/rectified_guidance.h"
 #include "datasets/import/import_set.h"
 #include "datasets/import/register_set.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/files/files.h"
 #include "rectify/views/rectify_capture.h"
 
 namespace glint {

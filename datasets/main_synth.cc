@@ -5,17 +5,17 @@
 #include <cmath>
 
 #include "base/errors/errors.h"
+#include "base/formats/board_file.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/images/image.h"
+#include "base/programs/verbs.h"
+#include "datasets/material_pack/material_pack.h"
 #include "datasets/procedural/material.h"
 #include "datasets/statistics/comparison_files.h"
 #include "datasets/synth/capture_writer.h"
 #include "datasets/synth/dome_writer.h"
 #include "datasets/synth/material_source.h"
 #include "datasets/synth/view_set.h"
-#include "fitting/training/material_pack.h"
-#include "pipeline/contract/board_file.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/contract/verbs.h"
-#include "pipeline/images/image.h"
 
 namespace {
 

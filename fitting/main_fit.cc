@@ -1,10 +1,10 @@
 // glint-fit: maps from rectified views, in the latent space or texel by texel.
 #include <fmt/format.h>
 
+#include "base/formats/capture.h"
+#include "base/programs/cost_model.h"
+#include "base/programs/program.h"
 #include "fitting/latent/fit_stage.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/program.h"
 
 namespace glint {
 namespace {

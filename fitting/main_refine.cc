@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/errors/errors.h"
+#include "base/formats/capture.h"
+#include "base/programs/cost_model.h"
+#include "base/programs/program.h"
 #include "fitting/refine/refine_stage.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/program.h"
 
 namespace glint {
 namespace {

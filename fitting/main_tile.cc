@@ -1,9 +1,9 @@
 // glint-tile: a piece of the material that repeats without visible borders.
 #include <fmt/format.h>
 
+#include "base/programs/cost_model.h"
+#include "base/programs/program.h"
 #include "fitting/tiling/tile_stage.h"
-#include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/program.h"
 
 namespace glint {
 namespace {

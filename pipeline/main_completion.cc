@@ -1,5 +1,5 @@
 // glint-completion: scripts for shells.
-#include "pipeline/contract/program.h"
+#include "base/programs/program.h"
 #include "pipeline/driver/completion.h"
 
 int main(int argc, char** argv) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/program.h"
+#include "base/programs/program.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/programs.h"
 

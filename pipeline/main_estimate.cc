@@ -1,5 +1,5 @@
 // glint-estimate: what a run will cost.
-#include "pipeline/contract/program.h"
+#include "base/programs/program.h"
 #include "pipeline/driver/estimate.h"
 #include "pipeline/driver/ninja_file.h"
 

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/program.h"
+#include "base/formats/capture.h"
+#include "base/programs/cost_model.h"
+#include "base/programs/program.h"
 #include "pipeline/export/export_stage.h"
 
 namespace {

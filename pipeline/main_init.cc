@@ -1,6 +1,6 @@
 // glint-init: writes a capture.toml.
+#include "base/programs/program.h"
 #include "calib/triage/list_photos.h"
-#include "pipeline/contract/program.h"
 #include "pipeline/driver/init.h"
 
 namespace {

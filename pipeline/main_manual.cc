@@ -1,7 +1,7 @@
 // glint-manual: manual pages.
 #include <filesystem>
 
-#include "pipeline/contract/program.h"
+#include "base/programs/program.h"
 #include "pipeline/driver/manual.h"
 
 int main(int argc, char** argv) {

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/files/files.h"
+#include "base/files/files.h"
+#include "base/programs/program.h"
 #include "pipeline/overview/overview_page.h"
 
 namespace {

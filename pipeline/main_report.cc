@@ -1,9 +1,9 @@
 // glint-report: one HTML page showing the whole result.
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/contract/stage.h"
-#include "pipeline/files/files.h"
+#include "base/files/files.h"
+#include "base/formats/capture.h"
+#include "base/programs/cost_model.h"
+#include "base/programs/program.h"
+#include "base/programs/stage.h"
 #include "pipeline/report/report.h"
 
 namespace {

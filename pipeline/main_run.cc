@@ -2,7 +2,7 @@
 #include <string>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/program.h"
+#include "base/programs/program.h"
 #include "pipeline/driver/kept_options.h"
 #include "pipeline/driver/run.h"
 #include "pipeline/driver/status.h"

@@ -1,5 +1,5 @@
 // glint-status: which results are up to date.
-#include "pipeline/contract/program.h"
+#include "base/programs/program.h"
 #include "pipeline/driver/kept_options.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/status.h"

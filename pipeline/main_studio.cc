@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/contract/subprocess.h"
+#include "base/programs/program.h"
+#include "base/programs/subprocess.h"
 #include "pipeline/studio/http/http_types.h"
 #include "pipeline/studio/studio.h"
 

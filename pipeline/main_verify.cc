@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/program.h"
+#include "base/programs/program.h"
 #include "pipeline/driver/verify.h"
 
 int main(int argc, char** argv) {

@@ -2,9 +2,9 @@
 #include <filesystem>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/contract/subprocess.h"
+#include "base/formats/capture.h"
+#include "base/programs/program.h"
+#include "base/programs/subprocess.h"
 
 namespace {
 

@@ -20,11 +20,11 @@
 #include <vector>
 
 #include "base/errors/errors.h"
-#include "fitting/reflectance/brdf.h"
+#include "base/files/hash.h"
+#include "base/images/exr_rows.h"
+#include "base/images/image.h"
+#include "base/reflectance/brdf.h"
 #include "fitting/render/renderer.h"
-#include "pipeline/files/hash.h"
-#include "pipeline/images/exr_rows.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

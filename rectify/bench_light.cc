@@ -8,12 +8,12 @@
 #include <exception>
 #include <vector>
 
+#include "base/formats/calibration.h"
+#include "base/formats/capture.h"
+#include "base/photos/photo.h"
 #include "calib/corners/detector.h"
 #include "calib/light/light.h"
 #include "calib/light/paper.h"
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/photos/photo.h"
 #include "rectify/views/rectify_photo.h"
 
 namespace glint {

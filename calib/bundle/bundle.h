@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/camera/camera_model.h"
-#include "calib/camera/rigid3.h"
+#include "base/camera/camera_model.h"
+#include "base/camera/rigid3.h"
 
 namespace glint {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "pipeline/canvas/canvas.h"
+#include "base/canvas/canvas.h"
 
 namespace glint {
 namespace {

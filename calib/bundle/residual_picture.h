@@ -1,8 +1,8 @@
 // Reprojection errors as a picture: an arrow per corner, over the camera's image plane.
 #pragma once
 
+#include "base/images/image.h"
 #include "calib/bundle/bundle.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "base/camera/orientation.h"
 #include "base/errors/errors.h"
-#include "calib/camera/orientation.h"
 #include "calib/capture/assumed_camera.h"
 
 namespace glint {

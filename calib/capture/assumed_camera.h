@@ -1,7 +1,7 @@
 // Intrinsics where photographs do not determine them.
 #pragma once
 
-#include "calib/camera/camera_model.h"
+#include "base/camera/camera_model.h"
 #include "calib/capture/camera_groups.h"
 
 namespace glint {

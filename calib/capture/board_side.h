@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "base/formats/capture.h"
 #include "calib/capture/detect_photos.h"
-#include "pipeline/contract/capture.h"
 
 namespace glint {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/formats/capture.h"
+#include "base/programs/options.h"
 #include "calib/bundle/bundle.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/options.h"
 
 namespace glint {
 

@@ -9,9 +9,11 @@
 #include <map>
 #include <utility>
 
+#include "base/camera/orientation.h"
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/formats/board_file.h"
 #include "calib/bundle/residual_picture.h"
-#include "calib/camera/orientation.h"
 #include "calib/capture/above_pose.h"
 #include "calib/capture/assumed_camera.h"
 #include "calib/capture/board_side.h"
@@ -27,8 +29,6 @@
 #include "calib/chart/chart_picture.h"
 #include "calib/guidance/coverage_picture.h"
 #include "calib/guidance/polar_picture.h"
-#include "pipeline/contract/board_file.h"
-#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/formats/calibration.h"
+#include "base/programs/program.h"
+#include "base/programs/stage.h"
 #include "calib/bundle/bundle.h"
 #include "calib/capture/calib_options.h"
 #include "calib/capture/camera_groups.h"
@@ -17,9 +20,6 @@
 #include "calib/moving_light/lamp_strengths.h"
 #include "calib/registration/register_sample.h"
 #include "calib/triage/triage.h"
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/contract/stage.h"
 
 namespace glint {
 

@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/camera/orientation.h"
 #include "base/errors/errors.h"
-#include "calib/camera/orientation.h"
 
 namespace glint {
 namespace {

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "base/errors/errors.h"
+#include "base/photos/photo.h"
 #include "calib/capture/capture_light.h"
 #include "calib/chart/read_chart.h"
-#include "pipeline/photos/photo.h"
 
 namespace glint {
 namespace {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/camera/orientation.h"
+#include "base/camera/orientation.h"
+#include "base/files/files.h"
 #include "calib/capture/light_findings.h"
 #include "calib/light/light_picture.h"
-#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

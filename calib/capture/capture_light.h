@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "base/linearize/response_curve.h"
 #include "calib/capture/calibrate_capture.h"
-#include "rectify/linearize/response_curve.h"
 
 namespace glint {
 

@@ -11,13 +11,13 @@
 #include <optional>
 #include <unordered_map>
 
+#include "base/camera/orientation.h"
 #include "base/errors/errors.h"
-#include "calib/camera/orientation.h"
+#include "base/files/files.h"
 #include "calib/capture/pose_source.h"
 #include "calib/capture/sample_frame.h"
 #include "calib/colmap/colmap_camera.h"
 #include "calib/colmap/run_colmap.h"
-#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "base/errors/errors.h"
 #include "base/parallel/parallel.h"
+#include "base/programs/progress.h"
 #include "calib/capture/reduced_photo.h"
 #include "calib/corners/markers.h"
 #include "calib/guidance/clipping.h"
-#include "pipeline/contract/progress.h"
 
 namespace glint {
 namespace {

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "base/formats/capture.h"
 #include "calib/capture/calib_options.h"
 #include "calib/capture/sample_picture.h"
 #include "calib/corners/detector.h"
 #include "calib/light/paper.h"
 #include "calib/triage/measure.h"
-#include "pipeline/contract/capture.h"
 
 namespace glint {
 

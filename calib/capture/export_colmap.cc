@@ -4,13 +4,13 @@
 #include <cmath>
 #include <map>
 
+#include "base/board/board.h"
+#include "base/camera/orientation.h"
 #include "base/errors/errors.h"
-#include "calib/board/board.h"
-#include "calib/camera/orientation.h"
+#include "base/files/files.h"
+#include "base/formats/calibration.h"
+#include "base/formats/manifest.h"
 #include "calib/colmap/colmap_camera.h"
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
+#include "base/formats/capture.h"
 #include "calib/colmap/colmap_model.h"
-#include "pipeline/contract/capture.h"
 
 namespace glint {
 

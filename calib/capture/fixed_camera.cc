@@ -9,13 +9,13 @@
 #include <numbers>
 
 #include "base/errors/errors.h"
+#include "base/linearize/linear_photo.h"
 #include "base/parallel/parallel.h"
+#include "base/programs/progress.h"
 #include "base/statistics/median.h"
 #include "calib/capture/guide_capture.h"
 #include "calib/moving_light/lights_file.h"
 #include "calib/moving_light/reflecting_ball.h"
-#include "pipeline/contract/progress.h"
-#include "rectify/linearize/linear_photo.h"
 
 namespace glint {
 namespace {

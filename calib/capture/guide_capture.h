@@ -1,9 +1,9 @@
 // From a calibration to what guidance judges; and a quick look at a capture.
 #pragma once
 
+#include "base/programs/program.h"
 #include "calib/capture/calibrate_capture.h"
 #include "calib/guidance/verdict.h"
-#include "pipeline/contract/program.h"
 
 namespace glint {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/manifest.h"
+#include "base/formats/manifest.h"
 
 namespace glint {
 namespace {

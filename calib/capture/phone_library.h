@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/camera/camera_model.h"
+#include "base/camera/camera_model.h"
 
 namespace glint {
 

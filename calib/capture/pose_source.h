@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/formats/capture.h"
 #include "calib/capture/calib_options.h"
 #include "calib/capture/detect_photos.h"
 #include "calib/colmap/colmap_model.h"
-#include "pipeline/contract/capture.h"
 
 namespace glint {
 

@@ -5,9 +5,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/errors/errors.h"
-#include "pipeline/files/files.h"
-#include "pipeline/photos/jpeg_end.h"
-#include "pipeline/photos/photo_header.h"
+#include "base/files/files.h"
+#include "base/photos/jpeg_end.h"
+#include "base/photos/photo_header.h"
 
 namespace glint {
 namespace {

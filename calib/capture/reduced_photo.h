@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "pipeline/photos/photo.h"
+#include "base/photos/photo.h"
 
 namespace glint {
 

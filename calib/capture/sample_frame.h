@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "calib/camera/camera_model.h"
-#include "calib/camera/similarity3.h"
+#include "base/camera/camera_model.h"
+#include "base/camera/similarity3.h"
+#include "base/formats/capture.h"
 #include "calib/colmap/plane.h"
-#include "pipeline/contract/capture.h"
 
 namespace glint {
 

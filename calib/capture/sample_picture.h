@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/linearize/encoding.h"
+#include "base/photos/photo.h"
 #include "calib/corners/detector.h"
-#include "pipeline/photos/photo.h"
-#include "rectify/linearize/encoding.h"
 
 namespace glint {
 

@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "base/files/json.h"
+#include "base/formats/capture.h"
+#include "base/programs/stage.h"
 #include "calib/bundle/bundle.h"
 #include "calib/uncertainty/projection_uncertainty.h"
 #include "calib/uncertainty/sample_uncertainty.h"
 #include "calib/validation/cross_validation.h"
 #include "calib/validation/diagnosis.h"
 #include "calib/validation/model_choice.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/stage.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -5,10 +5,10 @@
 #include <sstream>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/files/json.h"
 #include "calib/chart/chart.h"
 #include "calib/chart/cielab.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 namespace {

@@ -1,8 +1,8 @@
 // A chart as it was measured, beside what it should be.
 #pragma once
 
+#include "base/images/image.h"
 #include "calib/chart/solve_chart.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 

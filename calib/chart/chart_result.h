@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "base/files/json.h"
 #include "calib/chart/chart.h"
 #include "calib/chart/find_chart.h"
 #include "calib/chart/measure_chart.h"
 #include "calib/chart/solve_chart.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 

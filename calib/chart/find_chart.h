@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/photos/photo.h"
+#include "base/photos/photo.h"
 
 namespace glint {
 

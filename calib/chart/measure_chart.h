@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "base/linearize/linear_photo.h"
 #include "calib/chart/chart.h"
 #include "calib/chart/find_chart.h"
-#include "rectify/linearize/linear_photo.h"
 
 namespace glint {
 

@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "base/formats/colour_correction.h"
 #include "calib/chart/chart.h"
 #include "calib/chart/measure_chart.h"
-#include "pipeline/contract/colour_correction.h"
 
 namespace glint {
 

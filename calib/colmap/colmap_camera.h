@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "calib/camera/camera_model.h"
+#include "base/camera/camera_model.h"
 #include "calib/colmap/colmap_model.h"
 
 namespace glint {

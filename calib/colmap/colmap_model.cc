@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
 #include "calib/colmap/model_io.h"
-#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

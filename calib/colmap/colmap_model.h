@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/camera/rigid3.h"
+#include "base/camera/rigid3.h"
 
 namespace glint {
 

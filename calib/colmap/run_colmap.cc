@@ -10,14 +10,14 @@
 #include <map>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/progress.h"
-#include "pipeline/contract/subprocess.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/hash.h"
-#include "pipeline/files/json.h"
-#include "pipeline/images/image.h"
-#include "pipeline/photos/photo.h"
-#include "rectify/linearize/encoding.h"
+#include "base/files/files.h"
+#include "base/files/hash.h"
+#include "base/files/json.h"
+#include "base/images/image.h"
+#include "base/linearize/encoding.h"
+#include "base/photos/photo.h"
+#include "base/programs/progress.h"
+#include "base/programs/subprocess.h"
 
 namespace glint {
 namespace {

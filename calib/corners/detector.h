@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/board/board.h"
+#include "base/board/board.h"
 #include "calib/corners/gray_image.h"
 #include "calib/corners/marker_outline.h"
 #include "calib/corners/saddle.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "calib/board/dictionary.h"
+#include "base/board/dictionary.h"
 #include "calib/corners/detector_internal.h"
 #include "calib/corners/marker_match.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include "calib/board/aruco.h"
-#include "calib/board/dictionary.h"
+#include "base/board/aruco.h"
+#include "base/board/dictionary.h"
 
 namespace glint {
 namespace {

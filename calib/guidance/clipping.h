@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
+#include "base/photos/photo.h"
 #include "calib/corners/detector.h"
-#include "pipeline/photos/photo.h"
 
 namespace glint {
 

@@ -1,8 +1,8 @@
 // Where highlights fall on the sample, as a picture.
 #pragma once
 
+#include "base/images/image.h"
 #include "calib/guidance/verdict.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 

@@ -1,8 +1,8 @@
 // The verdict on views that another program rectified.
 #pragma once
 
+#include "base/formats/rectified_set.h"
 #include "calib/guidance/verdict.h"
-#include "pipeline/contract/rectified_set.h"
 
 namespace glint {
 

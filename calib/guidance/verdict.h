@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "base/files/json.h"
 #include "calib/guidance/coverage.h"
 #include "calib/guidance/suggestion.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 

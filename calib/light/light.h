@@ -25,8 +25,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/camera/camera_model.h"
-#include "calib/camera/rigid3.h"
+#include "base/camera/camera_model.h"
+#include "base/camera/rigid3.h"
 #include "calib/light/paper.h"
 #include "calib/light/tone_curve.h"
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "fitting/reflectance/brdf_core.h"
+#include "base/reflectance/brdf_core.h"
 
 namespace glint::light {
 

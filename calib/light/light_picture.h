@@ -1,8 +1,8 @@
 // What the paper's brightness has left over, as a picture.
 #pragma once
 
+#include "base/images/image.h"
 #include "calib/light/light.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 

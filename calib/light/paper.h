@@ -4,10 +4,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "calib/board/board.h"
+#include "base/board/board.h"
+#include "base/linearize/encoding.h"
+#include "base/photos/photo.h"
 #include "calib/corners/detector.h"
-#include "pipeline/photos/photo.h"
-#include "rectify/linearize/encoding.h"
 
 namespace glint {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "calib/board/dictionary.h"
+#include "base/board/dictionary.h"
 #include "calib/light/paper.h"
 
 namespace glint {

@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "calib/camera/rigid3.h"
+#include "base/camera/rigid3.h"
 #include "calib/light/paper.h"
 
 namespace glint {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "base/camera/orientation.h"
 #include "base/statistics/median.h"
-#include "calib/camera/orientation.h"
 
 namespace glint::light {
 namespace {

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
 #include "calib/moving_light/lights_file_formats.h"
-#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

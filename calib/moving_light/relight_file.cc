@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "base/errors/errors.h"
+#include "base/files/json_file.h"
+#include "base/files/json_object.h"
 #include "calib/moving_light/lights_file_formats.h"
-#include "pipeline/files/json_file.h"
-#include "pipeline/files/json_object.h"
 
 namespace glint {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/board/dictionary.h"
+#include "base/board/dictionary.h"
 #include "calib/printing/sheet_plan.h"
 
 namespace glint {

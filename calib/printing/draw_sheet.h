@@ -1,8 +1,8 @@
 // The drawing of a planned sheet.
 #pragma once
 
+#include "base/formats/board_file.h"
 #include "calib/printing/drawing.h"
-#include "pipeline/contract/board_file.h"
 
 namespace glint {
 

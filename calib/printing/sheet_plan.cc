@@ -8,9 +8,9 @@
 #include <cmath>
 #include <map>
 
+#include "base/board/dictionary.h"
 #include "base/colour/srgb.h"
 #include "base/errors/errors.h"
-#include "calib/board/dictionary.h"
 
 namespace glint {
 namespace {

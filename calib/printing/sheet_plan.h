@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/board_file.h"
+#include "base/formats/board_file.h"
 
 namespace glint {
 

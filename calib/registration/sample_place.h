@@ -11,7 +11,7 @@
 #include <Eigen/LU>
 #include <array>
 
-#include "calib/camera/rigid3.h"
+#include "base/camera/rigid3.h"
 
 namespace glint {
 

@@ -6,8 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "pipeline/canvas/canvas.h"
-#include "rectify/linearize/encoding.h"
+#include "base/canvas/canvas.h"
+#include "base/linearize/encoding.h"
 
 namespace glint {
 namespace {

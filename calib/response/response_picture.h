@@ -1,8 +1,8 @@
 // A picture of a response curve.
 #pragma once
 
-#include "pipeline/images/image.h"
-#include "rectify/linearize/response_curve.h"
+#include "base/images/image.h"
+#include "base/linearize/response_curve.h"
 
 namespace glint {
 

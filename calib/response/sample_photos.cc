@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "base/errors/errors.h"
-#include "pipeline/files/json.h"
-#include "pipeline/files/json_file.h"
-#include "pipeline/images/image.h"
-#include "pipeline/images/image_format.h"
-#include "pipeline/photos/photo.h"
+#include "base/files/json.h"
+#include "base/files/json_file.h"
+#include "base/images/image.h"
+#include "base/images/image_format.h"
+#include "base/photos/photo.h"
 
 namespace glint {
 namespace {

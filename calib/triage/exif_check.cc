@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
+#include "base/camera/orientation.h"
 #include "base/text/name_list.h"
-#include "calib/camera/orientation.h"
 #include "calib/triage/triage.h"
 
 namespace glint {

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "base/errors/errors.h"
-#include "pipeline/images/image_format.h"
-#include "pipeline/photos/photo_name.h"
+#include "base/images/image_format.h"
+#include "base/photos/photo_name.h"
 
 namespace glint {
 namespace {

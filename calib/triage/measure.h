@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/photos/photo.h"
 #include "calib/corners/detector.h"
 #include "calib/corners/gray_image.h"
-#include "pipeline/photos/photo.h"
 
 namespace glint {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/files/json.h"
 #include "calib/triage/measure.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 

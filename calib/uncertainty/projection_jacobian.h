@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "calib/camera/camera_model.h"
+#include "base/camera/camera_model.h"
 
 namespace glint {
 

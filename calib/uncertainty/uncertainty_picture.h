@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/images/image.h"
 #include "calib/uncertainty/projection_uncertainty.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 

@@ -1,8 +1,8 @@
 // Residuals as pictures: by place on the board, and photograph by photograph.
 #pragma once
 
+#include "base/images/image.h"
 #include "calib/validation/diagnosis.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/camera/similarity3.h"
-#include "pipeline/contract/calibration.h"
+#include "base/camera/similarity3.h"
+#include "base/formats/calibration.h"
 
 namespace glint {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/formats/manifest.h"
 #include "fitting/view_correction/corrections_json.h"
-#include "pipeline/contract/manifest.h"
 
 namespace glint {
 namespace {

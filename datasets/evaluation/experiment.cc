@@ -9,18 +9,18 @@
 #include <set>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/files/hash.h"
+#include "base/formats/manifest.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/programs/subprocess.h"
 #include "datasets/evaluation/capture_store.h"
 #include "datasets/evaluation/corrected_lights.h"
 #include "datasets/evaluation/shipped_models.h"
-#include "datasets/evaluation/view_error.h"
+#include "datasets/looks/view_error.h"
 #include "datasets/statistics/population.h"
 #include "fitting/latent/fit_stage.h"
 #include "fitting/refine/refine_stage.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/contract/subprocess.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/hash.h"
 
 namespace glint {
 namespace {

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "base/files/json.h"
+#include "base/programs/program.h"
 #include "datasets/evaluation/experiment_result.h"
 #include "datasets/synth/view_set.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 
+#include "base/files/files.h"
 #include "datasets/evaluation/paper_experiments.h"
 #include "datasets/evaluation/picture_sheet.h"
-#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

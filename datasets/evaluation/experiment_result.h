@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/files/json.h"
 #include "datasets/evaluation/map_error.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pipeline/contract/verbs.h"
+#include "base/programs/verbs.h"
 
 namespace glint {
 

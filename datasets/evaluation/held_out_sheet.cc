@@ -6,8 +6,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "datasets/evaluation/view_error.h"
-#include "pipeline/canvas/canvas.h"
+#include "base/canvas/canvas.h"
+#include "datasets/looks/view_error.h"
 
 namespace glint {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "base/images/image.h"
 #include "datasets/evaluation/held_out_views.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 

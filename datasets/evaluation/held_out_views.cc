@@ -8,14 +8,14 @@
 #include <memory>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/images/image.h"
+#include "base/programs/subprocess.h"
 #include "datasets/evaluation/experiment.h"
 #include "datasets/evaluation/link_files.h"
 #include "datasets/evaluation/predicted_deviation.h"
 #include "datasets/evaluation/their_rendering.h"
-#include "datasets/evaluation/view_error.h"
-#include "pipeline/contract/subprocess.h"
-#include "pipeline/files/files.h"
-#include "pipeline/images/image.h"
+#include "datasets/looks/view_error.h"
 
 namespace glint {
 namespace {

@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/evaluation/looks.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
+#include "base/programs/program.h"
+#include "datasets/looks/looks.h"
 
 namespace glint {
 

@@ -3,9 +3,9 @@
 #include <spdlog/spdlog.h>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
 #include "datasets/evaluation/held_out_sheet.h"
 #include "datasets/evaluation/held_out_views.h"
-#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

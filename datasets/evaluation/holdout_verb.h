@@ -1,7 +1,7 @@
 // glint-eval holdout.
 #pragma once
 
-#include "pipeline/contract/verbs.h"
+#include "base/programs/verbs.h"
 
 namespace glint {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/calibration.h"
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
+#include "base/formats/calibration.h"
 
 namespace glint {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "base/errors/errors.h"
-#include "datasets/evaluation/view_error.h"
-#include "pipeline/contract/subprocess.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/files/files.h"
+#include "base/files/files.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/programs/subprocess.h"
+#include "datasets/looks/view_error.h"
 
 namespace glint {
 namespace {

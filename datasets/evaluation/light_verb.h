@@ -1,7 +1,7 @@
 // The verb of glint-eval that measures the light calibration.
 #pragma once
 
-#include "pipeline/contract/verbs.h"
+#include "base/programs/verbs.h"
 
 namespace glint {
 

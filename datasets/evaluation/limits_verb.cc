@@ -6,13 +6,13 @@
 #include <stdexcept>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
 #include "datasets/evaluation/decoder_limits.h"
 #include "datasets/evaluation/experiment.h"
 #include "datasets/evaluation/named_weights.h"
 #include "datasets/evaluation/picture_sheet.h"
 #include "datasets/synth/material_source.h"
 #include "fitting/weights/find_model.h"
-#include "pipeline/files/files.h"
 
 namespace glint {
 namespace {

@@ -1,7 +1,7 @@
 // The verb of glint-eval that measures what auto-encoders can express at all.
 #pragma once
 
-#include "pipeline/contract/verbs.h"
+#include "base/programs/verbs.h"
 
 namespace glint {
 

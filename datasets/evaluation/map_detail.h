@@ -2,7 +2,7 @@
 // and "noisy" as numbers.
 #pragma once
 
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/svbrdf_maps.h"
 
 namespace glint {
 

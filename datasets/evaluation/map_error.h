@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fitting/reflectance/svbrdf_maps.h"
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/svbrdf_maps.h"
+#include "base/reflectance/view.h"
 
 namespace glint {
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "datasets/evaluation/view_error.h"
+#include "base/canvas/canvas.h"
+#include "base/formats/svbrdf_file.h"
+#include "datasets/looks/view_error.h"
 #include "fitting/render/renderer.h"
-#include "pipeline/canvas/canvas.h"
-#include "pipeline/contract/svbrdf_file.h"
 
 namespace glint {
 namespace {

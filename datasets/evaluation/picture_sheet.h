@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/images/image.h"
 #include "datasets/evaluation/experiment.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 

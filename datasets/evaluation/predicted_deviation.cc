@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "base/errors/errors.h"
-#include "fitting/reflectance/log_radiance.h"
+#include "base/formats/manifest.h"
+#include "base/images/image.h"
+#include "base/reflectance/log_radiance.h"
 #include "fitting/view_correction/deviating_view.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

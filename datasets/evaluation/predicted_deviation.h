@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "datasets/evaluation/view_error.h"
-#include "pipeline/contract/rectified_set.h"
+#include "base/formats/rectified_set.h"
+#include "datasets/looks/view_error.h"
 
 namespace glint {
 

@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/images/image.h"
 #include "datasets/evaluation/held_out_views.h"
 #include "datasets/evaluation/light_interpolation.h"
-#include "datasets/evaluation/view_error.h"
-#include "pipeline/files/files.h"
-#include "pipeline/images/image.h"
+#include "datasets/looks/view_error.h"
 
 namespace glint {
 namespace {

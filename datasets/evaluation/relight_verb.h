@@ -1,7 +1,7 @@
 // glint-eval relight: maps against interpolation of the photographs.
 #pragma once
 
-#include "pipeline/contract/verbs.h"
+#include "base/programs/verbs.h"
 
 namespace glint {
 

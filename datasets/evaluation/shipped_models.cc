@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
+#include "base/files/hash.h"
+#include "base/formats/manifest.h"
 #include "fitting/weights/find_model.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/files/hash.h"
 
 namespace glint {
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 
 namespace glint {
 

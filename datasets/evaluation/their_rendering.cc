@@ -2,7 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "rectify/linearize/linear_photo.h"
+#include "base/linearize/linear_photo.h"
 
 namespace glint {
 

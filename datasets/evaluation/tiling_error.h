@@ -1,7 +1,7 @@
 // How much a tile differs from the sample that it was cut from: what `glint-eval tile` prints.
 #pragma once
 
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/tiling/tile_maps.h"
 
 namespace glint {

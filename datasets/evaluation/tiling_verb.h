@@ -1,7 +1,7 @@
 // The verb of glint-eval that compares tiles with the samples they were cut from.
 #pragma once
 
-#include "pipeline/contract/verbs.h"
+#include "base/programs/verbs.h"
 
 namespace glint {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/view.h"
 
 namespace glint {
 

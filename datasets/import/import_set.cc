@@ -7,10 +7,10 @@
 #include <stdexcept>
 
 #include "base/errors/errors.h"
+#include "base/linearize/light_guess.h"
+#include "base/programs/progress.h"
 #include "datasets/import/read_image.h"
 #include "datasets/import/register_set.h"
-#include "pipeline/contract/progress.h"
-#include "rectify/linearize/light_guess.h"
 #include "rectify/views/rectify_photo.h"
 
 namespace glint {

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <string>
 
+#include "base/formats/rectified_set.h"
+#include "base/programs/options.h"
+#include "base/programs/program.h"
+#include "base/programs/stage.h"
 #include "datasets/import/foreign_set.h"
-#include "pipeline/contract/options.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/contract/stage.h"
 
 namespace glint {
 

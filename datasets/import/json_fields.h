@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/files/json_file.h"
+#include "base/files/json_file.h"
 
 namespace glint {
 

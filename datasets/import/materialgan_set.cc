@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/photos/photo.h"
 #include "datasets/import/foreign_set.h"
 #include "datasets/import/json_fields.h"
 #include "datasets/import/number_file.h"
-#include "pipeline/files/files.h"
-#include "pipeline/photos/photo.h"
 
 namespace glint {
 namespace {

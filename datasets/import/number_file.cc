@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "base/errors/errors.h"
-#include "pipeline/files/files.h"
+#include "base/files/files.h"
 
 namespace glint {
 namespace {

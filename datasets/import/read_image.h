@@ -1,9 +1,9 @@
 // The images of a foreign set.
 #pragma once
 
+#include "base/linearize/linear_photo.h"
 #include "datasets/import/foreign_set.h"
 #include "datasets/import/import_set.h"
-#include "rectify/linearize/linear_photo.h"
 
 namespace glint {
 

@@ -3,9 +3,9 @@
 #include <stdexcept>
 
 #include "base/errors/errors.h"
+#include "base/linearize/encoding.h"
 #include "datasets/import/foreign_set.h"
 #include "datasets/import/json_fields.h"
-#include "rectify/linearize/encoding.h"
 
 namespace glint {
 namespace {

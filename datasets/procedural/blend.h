@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "base/reflectance/svbrdf_maps.h"
 #include "datasets/procedural/plane.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint::procedural {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/svbrdf_maps.h"
 
 namespace glint {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/reflectance/svbrdf_maps.h"
 #include "datasets/procedural/families/families.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint::procedural {
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/statistics/quantile.h"
 #include "datasets/statistics/distance.h"
 
 namespace glint {

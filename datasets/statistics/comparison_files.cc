@@ -4,10 +4,11 @@
 
 #include <cmath>
 
+#include "base/files/files.h"
+#include "base/images/image.h"
+#include "base/statistics/quantile.h"
 #include "datasets/statistics/comparison_picture.h"
 #include "datasets/statistics/distance.h"
-#include "pipeline/files/files.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
+#include "base/files/json.h"
 #include "datasets/statistics/comparison.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "base/canvas/canvas.h"
 #include "datasets/statistics/distance.h"
-#include "pipeline/canvas/canvas.h"
 
 namespace glint {
 namespace {

@@ -1,8 +1,8 @@
 // A comparison as one picture of small panels, real materials in orange, generated in blue.
 #pragma once
 
+#include "base/images/image.h"
 #include "datasets/statistics/comparison.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 

@@ -69,13 +69,4 @@ double ExpectedKolmogorovSmirnov(size_t m, size_t n) {
   return std::sqrt(M_PI / 2) * std::log(2.0) / std::sqrt(both);
 }
 
-double Quantile(std::vector<double> sample, double share) {
-  if (sample.empty()) return 0;
-  const double place = share * static_cast<double>(sample.size() - 1);
-  const auto low = sample.begin() + static_cast<ptrdiff_t>(place);
-  std::nth_element(sample.begin(), low, sample.end());
-  const double high = low + 1 < sample.end() ? *std::min_element(low + 1, sample.end()) : *low;
-  return *low + (place - std::floor(place)) * (high - *low);
-}
-
 }  // namespace glint

@@ -22,7 +22,4 @@ double HistogramWasserstein(std::span<const double> a, std::span<const double> b
 // average, by their finite number alone: √(π/2)·ln 2 / √(mn/(m+n)).
 double ExpectedKolmogorovSmirnov(size_t m, size_t n);
 
-// Value below which the given share of the sample lies, interpolated. 0 for an empty sample.
-double Quantile(std::vector<double> sample, double share);
-
 }  // namespace glint

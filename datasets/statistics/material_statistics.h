@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/reflectance/svbrdf_maps.h"
 #include "datasets/statistics/spectrum.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
 

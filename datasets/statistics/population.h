@@ -21,8 +21,8 @@ struct Population {
   std::vector<double> LogPower(SpectrumOf spectrum, int band) const;
 };
 
-// Materials named by `paths`: maps that datasets/formats reads, or folders of such folders, sorted
-// by name. Throws UserError for a path that holds none.
+// Materials named by `paths`: maps that datasets/map_formats reads, or folders of such folders,
+// sorted by name. Throws UserError for a path that holds none.
 std::vector<std::string> FindMaterials(const std::vector<std::string>& paths);
 
 // Measures each of `materials` (datasets/synth's LoadMaterial reads them) at side × side texels.

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "calib/board/board.h"
-#include "calib/camera/camera_model.h"
-#include "calib/camera/rigid3.h"
+#include "base/board/board.h"
+#include "base/camera/camera_model.h"
+#include "base/camera/rigid3.h"
 
 namespace glint {
 

@@ -7,17 +7,17 @@
 #include <cmath>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/formats/board_file.h"
+#include "base/formats/calibration.h"
+#include "base/formats/manifest.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/images/image.h"
 #include "base/parallel/parallel.h"
+#include "base/programs/progress.h"
 #include "datasets/procedural/random.h"
 #include "datasets/synth/photo_file.h"
 #include "datasets/synth/photo_renderer.h"
-#include "pipeline/contract/board_file.h"
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/contract/progress.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/files/files.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

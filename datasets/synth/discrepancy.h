@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fitting/reflectance/svbrdf_maps.h"
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/svbrdf_maps.h"
+#include "base/reflectance/view.h"
 #include "fitting/relief/height_field.h"
 
 namespace glint {

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/formats/rectified_set.h"
+#include "base/reflectance/view.h"
 #include "datasets/synth/environment_light.h"
 #include "fitting/photographs/picture_shift.h"
-#include "fitting/reflectance/view.h"
-#include "pipeline/contract/rectified_set.h"
 
 namespace glint {
 

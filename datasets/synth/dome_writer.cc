@@ -10,15 +10,15 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/files/json.h"
+#include "base/formats/svbrdf_file.h"
 #include "base/parallel/parallel.h"
 #include "datasets/procedural/random.h"
 #include "datasets/synth/photo_file.h"
 #include "datasets/synth/vec3.h"
 #include "fitting/relief/height_field.h"
 #include "fitting/render/render_lit.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 namespace {

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "base/errors/errors.h"
+#include "base/images/image.h"
+#include "base/photos/photo.h"
 #include "fitting/render/renderer.h"
-#include "pipeline/images/image.h"
-#include "pipeline/photos/photo.h"
 
 namespace glint {
 namespace {

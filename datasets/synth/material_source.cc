@@ -5,9 +5,9 @@
 #include <stdexcept>
 
 #include "base/errors/errors.h"
-#include "datasets/formats/read_maps.h"
+#include "base/formats/svbrdf_file.h"
+#include "datasets/map_formats/read_maps.h"
 #include "datasets/procedural/material.h"
-#include "pipeline/contract/svbrdf_file.h"
 
 namespace glint {
 namespace {

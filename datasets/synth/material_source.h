@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/convention.h"
+#include "base/reflectance/svbrdf_maps.h"
 
 namespace glint {
 
@@ -15,9 +15,8 @@ struct MaterialSource {
 };
 
 // `text` is "procedural:SEED", "procedural:FAMILY:SEED", or the path of svbrdf.exr, of a strip or
-// of a folder of maps (datasets/formats). The result is size × size texels when size > 0, else as
-// stored (procedural: 1024). The maps have diffuse weight 1.
-// Throws UserError.
+// of a folder of maps (datasets/map_formats). The result is size × size texels when size > 0, else
+// as stored (procedural: 1024). The maps have diffuse weight 1. Throws UserError.
 MaterialSource LoadMaterial(const std::string& text, int size);
 
 // "procedural:SEED" of the first `count` seeds that training never draws.

@@ -7,9 +7,9 @@
 
 #include "base/errors/errors.h"
 #include "base/parallel/parallel.h"
+#include "base/reflectance/brdf.h"
 #include "datasets/procedural/random.h"
 #include "datasets/synth/vec3.h"
-#include "fitting/reflectance/brdf.h"
 
 namespace glint {
 namespace {

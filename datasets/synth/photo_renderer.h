@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
+#include "base/reflectance/svbrdf_maps.h"
+#include "base/reflectance/view.h"
 #include "datasets/synth/capture_plan.h"
-#include "fitting/reflectance/svbrdf_maps.h"
-#include "fitting/reflectance/view.h"
 
 namespace glint {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "rectify/linearize/encoding.h"
+#include "base/linearize/encoding.h"
 
 namespace glint {
 

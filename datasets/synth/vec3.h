@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/view.h"
 
 namespace glint {
 

@@ -7,15 +7,15 @@
 #include <numbers>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/images/image.h"
+#include "base/programs/stage.h"
 #include "datasets/procedural/random.h"
 #include "datasets/synth/capture_plan.h"
 #include "datasets/synth/photo_file.h"
 #include "datasets/synth/vec3.h"
 #include "fitting/render/renderer.h"
-#include "pipeline/contract/stage.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/files/files.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

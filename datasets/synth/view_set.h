@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "base/formats/rectified_set.h"
+#include "base/programs/options.h"
+#include "base/programs/program.h"
+#include "base/reflectance/view.h"
 #include "datasets/synth/discrepancy.h"
 #include "datasets/synth/disturbance.h"
 #include "datasets/synth/material_source.h"
 #include "datasets/synth/sensor.h"
-#include "fitting/reflectance/view.h"
-#include "pipeline/contract/options.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/contract/rectified_set.h"
 
 namespace glint {
 

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/encoding/encoding.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
 

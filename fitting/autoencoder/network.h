@@ -3,7 +3,7 @@
 // Source: Gao et al. 2019 (DIR), Fig. 3 and its published code. Differences: the up-convolutions
 // are computed by ordinary ones (fitting/layers), and the code enters the decoder's first
 // convolution as it is, without a LeakyReLU, so that training can start from a linear auto-encoder
-// (fitting/training/principal_start.h).
+// (training/principal_start.h).
 #pragma once
 
 #include <torch/torch.h>

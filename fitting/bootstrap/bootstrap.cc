@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "base/parallel/parallel.h"
-#include "fitting/reflectance/brdf.h"
+#include "base/reflectance/brdf.h"
 
 namespace glint {
 namespace {

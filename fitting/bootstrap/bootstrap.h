@@ -8,9 +8,9 @@
 // Source of the need: Gao et al. 2019, section 4.3: latent fitting from a random code fails.
 #pragma once
 
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/bootstrap/lobes.h"
 #include "fitting/photographs/photographs.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "fitting/reflectance/brdf.h"
+#include "base/reflectance/brdf.h"
 
 namespace glint {
 namespace {

@@ -1,8 +1,8 @@
 // Standard deviations of maps from what is expected of their encoded values.
 #pragma once
 
+#include "base/reflectance/svbrdf_deviations.h"
 #include "fitting/encoding/encoding.h"
-#include "fitting/reflectance/svbrdf_deviations.h"
 
 namespace glint {
 

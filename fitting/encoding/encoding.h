@@ -15,7 +15,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/svbrdf_maps.h"
 
 namespace glint {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/svbrdf_maps.h"
 
 namespace glint {
 namespace {

@@ -9,10 +9,10 @@
 #include <memory>
 #include <vector>
 
+#include "base/reflectance/svbrdf_deviations.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/estimator/estimator_conditions.h"
 #include "fitting/photographs/photographs.h"
-#include "fitting/reflectance/svbrdf_deviations.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
 

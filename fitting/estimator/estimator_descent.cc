@@ -4,12 +4,12 @@
 #include <numbers>
 #include <string>
 
+#include "base/reflectance/brdf_constants.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/encoding/encoding.h"
 #include "fitting/encoding/encoding_torch.h"
 #include "fitting/estimator/photograph_features.h"
 #include "fitting/layers/layers.h"
-#include "fitting/reflectance/brdf_constants.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
 namespace {

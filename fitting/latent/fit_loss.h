@@ -5,9 +5,9 @@
 
 #include <vector>
 
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/encoding/encoding.h"
 #include "fitting/photographs/photographs.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
 

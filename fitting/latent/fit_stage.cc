@@ -9,6 +9,11 @@
 #include <utility>
 
 #include "base/errors/errors.h"
+#include "base/formats/deviation_rows.h"
+#include "base/formats/rectified_set.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/formats/svbrdf_rows.h"
+#include "base/programs/progress.h"
 #include "base/resampling/resampling.h"
 #include "fitting/bootstrap/bootstrap.h"
 #include "fitting/estimator/estimator.h"
@@ -17,11 +22,6 @@
 #include "fitting/latent/spread_views.h"
 #include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/weights/find_model.h"
-#include "pipeline/contract/deviation_rows.h"
-#include "pipeline/contract/progress.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/contract/svbrdf_rows.h"
 
 namespace glint {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/programs/stage.h"
 #include "fitting/latent/fit.h"
-#include "pipeline/contract/stage.h"
 
 namespace glint {
 

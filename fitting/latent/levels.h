@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/encoding/encoding.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 
 namespace glint {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pipeline/contract/rectified_set.h"
+#include "base/formats/rectified_set.h"
 
 namespace glint {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/environment_lighting.h"
-#include "fitting/reflectance/systematic_deviations.h"
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/convention.h"
+#include "base/reflectance/environment_lighting.h"
+#include "base/reflectance/systematic_deviations.h"
+#include "base/reflectance/view.h"
 
 namespace glint {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "base/formats/rectified_rows.h"
 #include "fitting/photographs/photographs.h"
-#include "pipeline/contract/rectified_rows.h"
 
 namespace glint {
 

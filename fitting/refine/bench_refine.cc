@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "base/cpu/instruction_set.h"
+#include "base/reflectance/log_radiance.h"
+#include "base/reflectance/texel_at.h"
 #include "fitting/refine/estimate_sample.h"
 #include "fitting/refine/refine.h"
 #include "fitting/refine/refine_rows.h"
-#include "fitting/reflectance/log_radiance.h"
-#include "fitting/reflectance/texel_at.h"
 #include "fitting/texel/texel_parameters.h"
 
 namespace glint {

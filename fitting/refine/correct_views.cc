@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/formats/svbrdf_file.h"
 #include "base/resampling/resampling.h"
 #include "fitting/refine/residual_model.h"
-#include "pipeline/contract/svbrdf_file.h"
 
 namespace glint {
 namespace {

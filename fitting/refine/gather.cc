@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "fitting/reflectance/texel_at.h"
+#include "base/reflectance/texel_at.h"
 
 namespace glint {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "base/parallel/parallel.h"
+#include "base/reflectance/brdf.h"
+#include "base/reflectance/log_radiance.h"
+#include "base/reflectance/texel_at.h"
 #include "base/statistics/median.h"
-#include "fitting/reflectance/brdf.h"
-#include "fitting/reflectance/log_radiance.h"
-#include "fitting/reflectance/texel_at.h"
 
 namespace glint {
 namespace {

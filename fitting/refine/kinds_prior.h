@@ -1,5 +1,5 @@
 // What physics knows of substances' specular albedos: each is a dielectric or a metal
-// (fitting/reflectance/material_kinds.h, docs/model.md "What is estimated of each capture").
+// (base/reflectance/material_kinds.h, docs/model.md "What is estimated of each capture").
 //
 // Which of the two a substance is follows from its specular albedo and from its channels'
 // departures from their mean: a dielectric's highlight has no colour. Where the light's power is
@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fitting/reflectance/material_kinds.h"
+#include "base/reflectance/material_kinds.h"
 
 namespace glint {
 

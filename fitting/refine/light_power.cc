@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fitting/reflectance/svbrdf_deviations.h"
+#include "base/reflectance/svbrdf_deviations.h"
 
 namespace glint {
 

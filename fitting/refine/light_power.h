@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/convention.h"
+#include "base/reflectance/svbrdf_maps.h"
 
 namespace glint {
 

@@ -1,11 +1,11 @@
-// Whether a sample has a second, narrow specular lobe (fitting/reflectance/convention.h): as
+// Whether a sample has a second, narrow specular lobe (base/reflectance/convention.h): as
 // photographs held out are predicted.
 #pragma once
 
 #include <functional>
 
+#include "base/reflectance/convention.h"
 #include "fitting/refine/held_out_errors.h"
-#include "fitting/reflectance/convention.h"
 
 namespace glint {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/reflectance/log_radiance.h"
 #include "base/resampling/resampling.h"
-#include "fitting/reflectance/log_radiance.h"
 #include "fitting/texel/texel_batch.h"
 
 namespace glint {

@@ -23,13 +23,13 @@
 #include <string>
 #include <vector>
 
+#include "base/reflectance/convention.h"
+#include "base/reflectance/environment_lighting.h"
+#include "base/reflectance/svbrdf_deviations.h"
+#include "base/reflectance/svbrdf_maps.h"
+#include "base/reflectance/systematic_deviations.h"
+#include "base/reflectance/view.h"
 #include "fitting/refine/kinds_prior.h"
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/environment_lighting.h"
-#include "fitting/reflectance/svbrdf_deviations.h"
-#include "fitting/reflectance/svbrdf_maps.h"
-#include "fitting/reflectance/systematic_deviations.h"
-#include "fitting/reflectance/view.h"
 #include "fitting/view_correction/shared_light.h"
 
 namespace glint {

@@ -6,7 +6,14 @@
 #include <memory>
 
 #include "base/errors/errors.h"
+#include "base/files/hash.h"
+#include "base/files/memory_limit.h"
+#include "base/formats/rectified_set.h"
+#include "base/formats/svbrdf_rows.h"
 #include "base/parallel/parallel.h"
+#include "base/programs/progress.h"
+#include "base/reflectance/brdf.h"
+#include "base/reflectance/material_kinds.h"
 #include "fitting/refine/estimate_sample.h"
 #include "fitting/refine/held_out_exposures.h"
 #include "fitting/refine/light_power.h"
@@ -14,15 +21,8 @@
 #include "fitting/refine/residual_model.h"
 #include "fitting/refine/sample_source.h"
 #include "fitting/refine/substances.h"
-#include "fitting/reflectance/brdf.h"
-#include "fitting/reflectance/material_kinds.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "fitting/view_correction/shared_light.h"
-#include "pipeline/contract/progress.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/contract/svbrdf_rows.h"
-#include "pipeline/files/hash.h"
-#include "pipeline/files/memory_limit.h"
 
 namespace glint {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "base/programs/stage.h"
 #include "fitting/refine/correct_views.h"
 #include "fitting/refine/refine.h"
 #include "fitting/refine/row_parts.h"
-#include "pipeline/contract/stage.h"
 
 namespace glint {
 

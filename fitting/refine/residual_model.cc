@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/reflectance/log_radiance.h"
+#include "base/reflectance/log_radiance.h"
 #include "fitting/texel/texel_batch.h"
 
 namespace glint {

@@ -6,9 +6,9 @@
 #include <regex>
 
 #include "base/errors/errors.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/json_file.h"
-#include "pipeline/images/exr_rows.h"
+#include "base/files/files.h"
+#include "base/files/json_file.h"
+#include "base/images/exr_rows.h"
 
 namespace glint {
 namespace {

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "base/parallel/parallel.h"
+#include "base/reflectance/brdf.h"
+#include "base/reflectance/log_radiance.h"
 #include "fitting/refine/lower_median.h"
-#include "fitting/reflectance/brdf.h"
-#include "fitting/reflectance/log_radiance.h"
 
 namespace glint {
 namespace {

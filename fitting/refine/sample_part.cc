@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "base/parallel/parallel.h"
+#include "base/reflectance/log_radiance.h"
 #include "fitting/refine/gather.h"
 #include "fitting/refine/lower_median.h"
-#include "fitting/reflectance/log_radiance.h"
 
 namespace glint {
 namespace {

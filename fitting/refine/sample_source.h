@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "base/formats/deviation_rows.h"
+#include "base/formats/svbrdf_rows.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/refine/refine.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/view_correction/view_correction.h"
-#include "pipeline/contract/deviation_rows.h"
-#include "pipeline/contract/svbrdf_rows.h"
 
 namespace glint {
 

@@ -10,8 +10,8 @@
 #include <limits>
 #include <vector>
 
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/refine/kinds_prior.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/texel/texel_prior.h"
 
 namespace glint {

@@ -5,8 +5,8 @@
 #include <new>
 
 #include "base/parallel/parallel.h"
-#include "fitting/reflectance/brdf.h"
-#include "fitting/reflectance/brdf_constants.h"
+#include "base/reflectance/brdf.h"
+#include "base/reflectance/brdf_constants.h"
 
 namespace glint::kernel {
 namespace {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/convention.h"
+#include "base/reflectance/view.h"
 #include "fitting/render/kernel.h"
 
 namespace glint::kernel {

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/render/fused_loss.h"
 #include "fitting/render/kernel.h"
 #include "fitting/render/render_autograd.h"

@@ -1,8 +1,8 @@
 // Inside of glint_render: sizes that must agree before a kernel reads memory by them.
 #pragma once
 
-#include "fitting/reflectance/svbrdf_maps.h"
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/svbrdf_maps.h"
+#include "base/reflectance/view.h"
 
 namespace glint::kernel {
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fitting/reflectance/brdf_constants.h"
+#include "base/reflectance/brdf_constants.h"
 #include "fitting/render/batch.h"
 #include "fitting/render/check_sizes.h"
 

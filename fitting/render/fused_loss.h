@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/svbrdf_maps.h"
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/convention.h"
+#include "base/reflectance/svbrdf_maps.h"
+#include "base/reflectance/view.h"
 
 namespace glint {
 

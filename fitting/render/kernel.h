@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "base/cpu/instruction_set.h"
-#include "fitting/reflectance/lobe_mix.h"
+#include "base/reflectance/lobe_mix.h"
 
 namespace glint::kernel {
 

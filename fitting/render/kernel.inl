@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-#include "fitting/reflectance/brdf_core.h"
+#include "base/reflectance/brdf_core.h"
 #include "fitting/render/kernel.h"
 
 namespace glint::kernel {
@@ -19,7 +19,7 @@ namespace {
 }  // namespace
 }  // namespace glint::kernel
 
-#include "fitting/reflectance/brdf_vectors.inl"
+#include "base/reflectance/brdf_vectors.inl"
 
 namespace glint::kernel {
 namespace {

@@ -1,4 +1,4 @@
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/render/kernel.h"
 
 namespace glint::kernel {

@@ -1,4 +1,4 @@
-// The reflectance model (fitting/reflectance/brdf_core.h) on vectors of texels. Included by
+// The reflectance model (base/reflectance/brdf_core.h) on vectors of texels. Included by
 // kernel.inl.
 
 template <class T>

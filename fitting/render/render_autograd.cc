@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/render/batch.h"
 #include "fitting/render/render_reference.h"
 

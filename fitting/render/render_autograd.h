@@ -10,8 +10,8 @@
 
 #include <vector>
 
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/convention.h"
+#include "base/reflectance/view.h"
 
 namespace at {
 class Tensor;

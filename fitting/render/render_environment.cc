@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "base/parallel/parallel.h"
-#include "fitting/reflectance/texel_at.h"
+#include "base/reflectance/texel_at.h"
 #include "fitting/render/check_sizes.h"
 
 namespace glint {

@@ -1,10 +1,10 @@
 // What maps reflect of environment lighting.
 #pragma once
 
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/environment_lighting.h"
-#include "fitting/reflectance/svbrdf_maps.h"
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/convention.h"
+#include "base/reflectance/environment_lighting.h"
+#include "base/reflectance/svbrdf_maps.h"
+#include "base/reflectance/view.h"
 
 namespace glint {
 

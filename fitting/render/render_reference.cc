@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "fitting/reflectance/brdf_constants.h"
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/brdf_constants.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/render/view_tensors.h"
 
 namespace glint {
@@ -31,7 +31,7 @@ Tensor LobeFactor(const Tensor& normal, const Tensor& half, const Tensor& n_dot_
   return ratio * ratio * (0.25 * kInversePi) / masking;
 }
 
-// Of the sample's lobes (fitting/reflectance/convention.h).
+// Of the sample's lobes (base/reflectance/convention.h).
 Tensor SpecularFactor(const SpecularLobes& lobes, const Tensor& normal, const Tensor& half,
                       const Tensor& n_dot_l, const Tensor& n_dot_v, const Tensor& roughness) {
   if (!lobes.two()) return LobeFactor(normal, half, n_dot_l, n_dot_v, roughness);

@@ -1,6 +1,6 @@
 // The renderer in plain torch operations, on any device and in any floating type, differentiable by
 // torch's autograd. It is the check of the fused kernel, and the renderer where that cannot run
-// (GPU). Shapes as in render_autograd.h; the model is written as fitting/reflectance/brdf.h states
+// (GPU). Shapes as in render_autograd.h; the model is written as base/reflectance/brdf.h states
 // it.
 #pragma once
 

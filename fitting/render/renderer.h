@@ -1,6 +1,6 @@
 // Renders SVBRDF maps as views see them: the plane z = 0 of texels under a camera and a near point
 // light, and the adjoint of that. Needs nothing but the standard library; fused, vectorised CPU
-// code chosen at run time (AVX-512, AVX2 or baseline). The model is in fitting/reflectance/brdf.h.
+// code chosen at run time (AVX-512, AVX2 or baseline). The model is in base/reflectance/brdf.h.
 //
 // Images are planar: three planes (R, G, B) of height×width, rows as in the maps (row 0 at +y),
 // linear. Convention: `plane.sampling` says where the texels lie, `convention` gives the diffuse
@@ -11,9 +11,9 @@
 
 #include <span>
 
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/svbrdf_maps.h"
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/convention.h"
+#include "base/reflectance/svbrdf_maps.h"
+#include "base/reflectance/view.h"
 
 namespace glint {
 

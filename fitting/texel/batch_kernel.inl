@@ -8,8 +8,8 @@
 #include <immintrin.h>
 #endif
 
-#include "fitting/reflectance/brdf_core.h"
-#include "fitting/reflectance/log_radiance.h"
+#include "base/reflectance/brdf_core.h"
+#include "base/reflectance/log_radiance.h"
 #include "fitting/texel/batch_kernel.h"
 #include "fitting/texel/texel_bounds.h"
 
@@ -21,7 +21,7 @@ namespace {
 }  // namespace
 }  // namespace glint::kernel
 
-#include "fitting/reflectance/brdf_vectors.inl"
+#include "base/reflectance/brdf_vectors.inl"
 
 namespace glint::kernel {
 namespace {

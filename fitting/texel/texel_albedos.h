@@ -1,7 +1,7 @@
 // The albedos of one texel in closed form, its normal and roughness given.
 #pragma once
 
-#include "fitting/reflectance/convention.h"
+#include "base/reflectance/convention.h"
 #include "fitting/texel/texel_parameters.h"
 
 namespace glint {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "fitting/reflectance/log_radiance.h"
+#include "base/reflectance/log_radiance.h"
 #include "fitting/texel/batch_kernel.h"
 
 namespace glint {

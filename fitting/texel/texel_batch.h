@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "fitting/reflectance/lobe_mix.h"
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/lobe_mix.h"
+#include "base/reflectance/view.h"
 #include "fitting/texel/texel_albedos.h"
 #include "fitting/texel/texel_parameters.h"
 #include "fitting/texel/texel_prior.h"

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 
-#include "fitting/reflectance/brdf.h"
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/brdf.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/texel/texel_bounds.h"
 
 namespace glint {

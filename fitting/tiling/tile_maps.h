@@ -17,7 +17,7 @@
 #include <array>
 #include <string>
 
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/tiling/period.h"
 
 namespace glint {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "base/formats/svbrdf_file.h"
+#include "base/images/image.h"
 #include "fitting/render/renderer.h"
 #include "fitting/tiling/tile_maps.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "base/errors/errors.h"
-#include "fitting/reflectance/border.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/reflectance/border.h"
 #include "fitting/tiling/tile_preview.h"
-#include "pipeline/contract/svbrdf_file.h"
 
 namespace glint {
 namespace {

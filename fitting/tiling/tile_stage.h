@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <string>
 
+#include "base/formats/capture.h"
+#include "base/programs/options.h"
+#include "base/programs/stage.h"
 #include "fitting/tiling/tile_maps.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/options.h"
-#include "pipeline/contract/stage.h"
 
 namespace glint {
 

@@ -6,9 +6,9 @@
 #include <map>
 #include <string>
 
+#include "base/formats/manifest.h"
 #include "fitting/view_correction/shared_light.h"
 #include "fitting/view_correction/view_correction.h"
-#include "pipeline/contract/manifest.h"
 
 namespace glint {
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/view.h"
 
 namespace glint {
 

@@ -6,7 +6,7 @@
 // single views (view_correction.h), the offset is known of photographs that were not fitted too.
 #pragma once
 
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/view.h"
 
 namespace glint {
 

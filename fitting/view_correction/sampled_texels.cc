@@ -12,8 +12,8 @@
 #include <span>
 
 #include "base/parallel/parallel.h"
-#include "fitting/reflectance/log_radiance.h"
-#include "fitting/reflectance/texel_at.h"
+#include "base/reflectance/log_radiance.h"
+#include "base/reflectance/texel_at.h"
 #include "fitting/texel/texel_parameters.h"
 #include "fitting/view_correction/residual_noise.h"
 

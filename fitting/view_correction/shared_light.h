@@ -6,7 +6,7 @@
 #include <array>
 #include <span>
 
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/view.h"
 #include "fitting/view_correction/deviating_view.h"
 
 namespace glint {

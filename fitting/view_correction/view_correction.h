@@ -21,11 +21,11 @@
 #include <string>
 #include <vector>
 
+#include "base/reflectance/environment_lighting.h"
+#include "base/reflectance/svbrdf_maps.h"
+#include "base/reflectance/systematic_deviations.h"
 #include "fitting/photographs/photographs.h"
 #include "fitting/photographs/picture_shift.h"
-#include "fitting/reflectance/environment_lighting.h"
-#include "fitting/reflectance/svbrdf_maps.h"
-#include "fitting/reflectance/systematic_deviations.h"
 
 namespace glint {
 

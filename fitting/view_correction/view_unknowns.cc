@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fitting/reflectance/brdf.h"
+#include "base/reflectance/brdf.h"
 
 namespace glint {
 namespace {}  // namespace

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "pipeline/contract/program.h"
+#include "base/programs/program.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/programs.h"
 

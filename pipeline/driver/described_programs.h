@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 
 namespace glint {
 

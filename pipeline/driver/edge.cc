@@ -13,9 +13,9 @@
 #include <sstream>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/options.h"
-#include "pipeline/contract/run_progress.h"
-#include "pipeline/contract/stages.h"
+#include "base/programs/options.h"
+#include "base/programs/run_progress.h"
+#include "base/stages/stages.h"
 #include "pipeline/driver/child_process.h"
 
 namespace glint {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "pipeline/contract/run_progress.h"
-#include "pipeline/contract/stages.h"
-#include "pipeline/files/memory_limit.h"
+#include "base/files/memory_limit.h"
+#include "base/programs/run_progress.h"
+#include "base/stages/stages.h"
 
 namespace glint {
 

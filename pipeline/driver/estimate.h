@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/cost_model.h"
+#include "base/programs/cost_model.h"
 #include "pipeline/driver/stage_graph.h"
 
 namespace glint {

@@ -9,14 +9,14 @@
 #include <set>
 #include <sstream>
 
+#include "base/board/board.h"
 #include "base/errors/errors.h"
-#include "calib/board/board.h"
-#include "pipeline/contract/board_file.h"
-#include "pipeline/files/files.h"
-#include "pipeline/images/image.h"
-#include "pipeline/images/image_format.h"
-#include "pipeline/photos/photo.h"
-#include "pipeline/photos/photo_name.h"
+#include "base/files/files.h"
+#include "base/formats/board_file.h"
+#include "base/images/image.h"
+#include "base/images/image_format.h"
+#include "base/photos/photo.h"
+#include "base/photos/photo_name.h"
 
 namespace glint {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "pipeline/files/json.h"
-#include "pipeline/files/toml_file.h"
+#include "base/files/json.h"
+#include "base/files/toml_file.h"
 
 namespace glint {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/capture.h"
+#include "base/formats/capture.h"
 #include "pipeline/driver/stage_graph.h"
 
 namespace glint {

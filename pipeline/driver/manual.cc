@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "pipeline/files/files.h"
+#include "base/files/files.h"
 
 namespace glint {
 namespace {

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "base/errors/errors.h"
+#include "base/files/hash.h"
 #include "pipeline/driver/edge.h"
-#include "pipeline/files/hash.h"
 
 namespace glint {
 namespace {

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/stages.h"
+#include "base/stages/stages.h"
 
 namespace glint {
 namespace {

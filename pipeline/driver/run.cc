@@ -15,18 +15,18 @@
 #include <thread>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/contract/run_progress.h"
-#include "pipeline/contract/stages.h"
+#include "base/files/files.h"
+#include "base/files/hash_cache.h"
+#include "base/formats/manifest.h"
+#include "base/photos/photo_name.h"
+#include "base/programs/cost_model.h"
+#include "base/programs/program.h"
+#include "base/programs/run_progress.h"
+#include "base/stages/stages.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/kept_options.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/programs.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/hash_cache.h"
-#include "pipeline/photos/photo_name.h"
 
 namespace glint {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/files/json.h"
 #include "pipeline/driver/edge.h"
 #include "pipeline/driver/stage_graph.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 

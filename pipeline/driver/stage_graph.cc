@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/stages.h"
-#include "pipeline/photos/photo_name.h"
+#include "base/photos/photo_name.h"
+#include "base/stages/stages.h"
 
 namespace glint {
 namespace {

@@ -1,13 +1,13 @@
 // Which stages a capture goes through, what each reads, and with which options it runs. To add a
-// stage: its name and cost in pipeline/contract/stages.cc, its step here, its program.
+// stage: its name and cost in base/stages/stages.cc, its step here, its program.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/capture.h"
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
+#include "base/formats/capture.h"
 
 namespace glint {
 

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/manifest.h"
+#include "base/formats/manifest.h"
 #include "pipeline/driver/child_process.h"
 #include "pipeline/driver/programs.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/files/json.h"
 #include "pipeline/driver/stage_graph.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 

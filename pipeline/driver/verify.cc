@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/files/hash.h"
+#include "base/files/hash.h"
+#include "base/formats/manifest.h"
 
 namespace glint {
 namespace {

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "base/cpu/vector_clones.h"
-#include "fitting/reflectance/brdf.h"
-#include "fitting/reflectance/log_radiance.h"
+#include "base/reflectance/brdf.h"
+#include "base/reflectance/log_radiance.h"
 
 namespace glint {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "fitting/reflectance/brdf.h"
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
+#include "base/reflectance/brdf.h"
 
 namespace glint {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "base/parallel/parallel.h"
-#include "fitting/reflectance/log_radiance.h"
+#include "base/reflectance/log_radiance.h"
 
 namespace glint {
 namespace {

@@ -6,9 +6,9 @@
 #include <functional>
 #include <vector>
 
-#include "fitting/reflectance/brdf.h"
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/brdf.h"
+#include "base/reflectance/convention.h"
+#include "base/reflectance/svbrdf_maps.h"
 
 namespace glint {
 
@@ -24,7 +24,7 @@ DirectionPair MakePair(const std::array<double, 3>& light, const std::array<doub
 // masking (Heitz, JCGT 2014) of α = roughness², and Schlick's (1 − VoH)⁵.
 double SmithSpecular(const DirectionPair& pair, double roughness);
 double SchlickWeight(double cosine);
-// The first of a mix of lobes (fitting/reflectance/convention.h), each with its own roughness.
+// The first of a mix of lobes (base/reflectance/convention.h), each with its own roughness.
 double SmithSpecular(const DirectionPair& pair, double roughness, const SpecularLobes& lobes);
 
 // Half of them on the highlight of that roughness (half vectors distributed as its normals are),

@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "base/colour/srgb.h"
+#include "base/images/exr_rows.h"
+#include "base/images/png_rows.h"
 #include "base/parallel/parallel.h"
-#include "fitting/reflectance/border.h"
+#include "base/reflectance/border.h"
 #include "pipeline/export/material_formats.h"
-#include "pipeline/images/exr_rows.h"
-#include "pipeline/images/png_rows.h"
 
 namespace glint {
 namespace {

@@ -18,14 +18,14 @@
 #include <string>
 #include <vector>
 
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/files/files.h"
+#include "base/files/json.h"
+#include "base/images/image.h"
+#include "base/programs/options.h"
+#include "base/programs/stage.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/relief/height_field.h"
-#include "pipeline/contract/options.h"
-#include "pipeline/contract/stage.h"
 #include "pipeline/export/metal_roughness.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/json.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 

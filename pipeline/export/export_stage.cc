@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/images/exr_rows.h"
+#include "base/programs/progress.h"
 #include "base/resampling/resampling.h"
 #include "fitting/relief/ambient_occlusion.h"
 #include "fitting/relief/height_field.h"
-#include "pipeline/contract/progress.h"
 #include "pipeline/export/material_rows.h"
-#include "pipeline/files/files.h"
-#include "pipeline/images/exr_rows.h"
 
 namespace glint {
 namespace {

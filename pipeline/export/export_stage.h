@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/stage.h"
+#include "base/files/json.h"
+#include "base/programs/stage.h"
 #include "pipeline/export/export_maps.h"
 #include "pipeline/export/material_formats.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 
@@ -19,7 +19,7 @@ struct ExportTask {
   std::array<double, 2> size_mm{0, 0};
   bool repeats = false;
   int rows_at_once = 0;         // in memory; 0: as memory allows; never changes a value
-  std::string metals = "rare";  // how the maps were found: fitting/reflectance/material_kinds.h
+  std::string metals = "rare";  // how the maps were found: base/reflectance/material_kinds.h
 };
 
 // Writes all files as outputs of `stage`; the manifest's data. Throws UserError, EnvironmentError.

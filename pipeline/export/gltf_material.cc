@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "base/colour/srgb.h"
+#include "base/files/json.h"
+#include "base/images/image.h"
 #include "base/parallel/parallel.h"
-#include "fitting/reflectance/brdf.h"
+#include "base/reflectance/brdf.h"
 #include "pipeline/export/export_maps.h"
-#include "pipeline/files/json.h"
-#include "pipeline/images/image.h"
 
 namespace glint {
 namespace {

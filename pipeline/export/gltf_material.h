@@ -6,7 +6,7 @@
 // lobe is weighted by 1 − max(F); where Glint's is not (convention "diffuse=one"), base colour is
 // divided by 1 − max(F0), so that both agree at normal incidence as far as base colour can reach 1.
 //
-// Of two specular lobes (fitting/reflectance/convention.h) the narrow one is a clear coat
+// Of two specular lobes (base/reflectance/convention.h) the narrow one is a clear coat
 // (KHR_materials_clearcoat), whose F0 is 0.04 times its strength: what a dielectric's narrow lobe
 // reflects; where it is more, or coloured, the rest stays with the wide one.
 #pragma once

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/reflectance/material_kinds.h"
+#include "base/reflectance/material_kinds.h"
 
 namespace glint {
 namespace {

@@ -21,7 +21,7 @@ KindLook KindLookOf(const std::array<float, 3>& diffuse, const std::array<float,
 // The negative logarithm of the prior times the likelihood of a look, up to a constant.
 //
 // Of metalness m a texel is a mixture by area: F0 = (1 − m)·F0 of a dielectric + m·F0 of a metal,
-// each log-normal (fitting/reflectance/material_kinds.h), its highlight is coloured if that is that
+// each log-normal (base/reflectance/material_kinds.h), its highlight is coloured if that is that
 // of a metal that is, as half of them are, and its diffuse light is the dielectric's.
 class KindCosts {
  public:

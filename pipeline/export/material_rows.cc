@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "fitting/reflectance/border.h"
+#include "base/reflectance/border.h"
 
 namespace glint {
 

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/svbrdf_maps.h"
-#include "pipeline/contract/svbrdf_rows.h"
+#include "base/formats/svbrdf_rows.h"
+#include "base/reflectance/convention.h"
+#include "base/reflectance/svbrdf_maps.h"
 
 namespace glint {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "fitting/reflectance/brdf.h"
+#include "base/reflectance/brdf.h"
 
 namespace glint {
 namespace {

@@ -15,9 +15,9 @@
 #include <memory>
 #include <vector>
 
-#include "fitting/reflectance/convention.h"
-#include "fitting/reflectance/material_kinds.h"
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/convention.h"
+#include "base/reflectance/material_kinds.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "pipeline/export/direction_pairs.h"
 
 namespace glint {

@@ -5,12 +5,12 @@
 #include <sstream>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/manifest.h"
+#include "base/files/hash.h"
+#include "base/files/json_file.h"
+#include "base/formats/capture.h"
+#include "base/formats/manifest.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/stage_graph.h"
-#include "pipeline/files/hash.h"
-#include "pipeline/files/json_file.h"
 
 namespace glint {
 namespace {

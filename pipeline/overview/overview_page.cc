@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "pipeline/contract/run_progress.h"
+#include "base/programs/run_progress.h"
 #include "pipeline/report/html.h"
 
 namespace glint {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pipeline/files/hash.h"
+#include "base/files/hash.h"
 #include "pipeline/report/html.h"
 
 namespace glint {

@@ -1,7 +1,7 @@
 #include "pipeline/report/guidance_section.h"
 
-#include "pipeline/files/files.h"
-#include "pipeline/photos/photo.h"
+#include "base/files/files.h"
+#include "base/photos/photo.h"
 #include "pipeline/report/figure.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/metrics_html.h"

@@ -1,9 +1,9 @@
-// How renderings look beside their photographs (datasets/evaluation/looks.h), on the page.
+// How renderings look beside their photographs (datasets/looks/looks.h), on the page.
 #pragma once
 
 #include <string>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "pipeline/report/figure.h"
 
 namespace glint {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "pipeline/report/figure.h"
 
 namespace glint {

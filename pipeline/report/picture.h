@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "pipeline/images/image.h"
+#include "base/images/image.h"
 
 namespace glint {
 

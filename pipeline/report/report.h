@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "datasets/evaluation/view_error.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/contract/options.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
+#include "base/formats/manifest.h"
+#include "base/formats/rectified_set.h"
+#include "base/programs/options.h"
+#include "datasets/looks/view_error.h"
 
 namespace glint {
 

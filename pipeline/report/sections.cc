@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/files/hash.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/images/exr_rows.h"
+#include "base/photos/photo.h"
 #include "base/resampling/resampling.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/files/hash.h"
-#include "pipeline/images/exr_rows.h"
-#include "pipeline/photos/photo.h"
 #include "pipeline/report/downloads_section.h"
 #include "pipeline/report/figure.h"
 #include "pipeline/report/guidance_section.h"

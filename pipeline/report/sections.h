@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/images/image.h"
+#include "base/images/image.h"
 #include "pipeline/report/report.h"
 #include "pipeline/report/shown_views.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/evaluation/looks.h"
-#include "datasets/evaluation/view_error.h"
+#include "datasets/looks/looks.h"
+#include "datasets/looks/view_error.h"
 #include "pipeline/report/report.h"
 
 namespace glint {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "base/formats/svbrdf_file.h"
 #include "base/resampling/resampling.h"
 #include "fitting/render/renderer.h"
-#include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/report/picture.h"
 
 namespace glint {

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "base/colour/srgb.h"
+#include "base/formats/svbrdf_file.h"
 #include "base/parallel/parallel.h"
+#include "base/reflectance/brdf.h"
 #include "base/resampling/resampling.h"
-#include "fitting/reflectance/brdf.h"
-#include "pipeline/contract/svbrdf_file.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/picture.h"
 #include "pipeline/report/sections.h"

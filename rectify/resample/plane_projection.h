@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "calib/camera/camera_model.h"
-#include "calib/camera/rigid3.h"
-#include "fitting/reflectance/view.h"
+#include "base/camera/camera_model.h"
+#include "base/camera/rigid3.h"
+#include "base/reflectance/view.h"
 
 namespace glint {
 

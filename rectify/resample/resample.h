@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "calib/camera/camera_model.h"
-#include "fitting/reflectance/view.h"
-#include "pipeline/contract/colour_correction.h"
-#include "rectify/linearize/linear_photo.h"
+#include "base/camera/camera_model.h"
+#include "base/formats/colour_correction.h"
+#include "base/linearize/linear_photo.h"
+#include "base/reflectance/view.h"
 #include "rectify/resample/filter_kernel.h"
 #include "rectify/resample/plane_projection.h"
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "calib/board/board.h"
-#include "fitting/reflectance/view.h"
+#include "base/board/board.h"
+#include "base/reflectance/view.h"
 #include "rectify/resample/resample.h"
 
 namespace glint {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "rectify/linearize/linear_photo.h"
+#include "base/linearize/linear_photo.h"
 
 namespace glint {
 

@@ -6,11 +6,11 @@
 #include <set>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/progress.h"
-#include "pipeline/contract/rectified_rows.h"
-#include "pipeline/files/hash.h"
-#include "pipeline/photos/photo_name.h"
-#include "rectify/linearize/light_guess.h"
+#include "base/files/hash.h"
+#include "base/formats/rectified_rows.h"
+#include "base/linearize/light_guess.h"
+#include "base/photos/photo_name.h"
+#include "base/programs/progress.h"
 #include "rectify/views/frame_mask.h"
 #include "rectify/views/photo_stream.h"
 #include "rectify/views/rectify_photo.h"

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <vector>
 
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/contract/stage.h"
+#include "base/formats/calibration.h"
+#include "base/formats/capture.h"
+#include "base/formats/rectified_set.h"
+#include "base/programs/program.h"
+#include "base/programs/stage.h"
 #include "rectify/views/rectify_options.h"
 
 namespace glint {

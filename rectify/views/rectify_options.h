@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "fitting/reflectance/view.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/options.h"
-#include "rectify/linearize/linear_photo.h"
+#include "base/formats/capture.h"
+#include "base/linearize/linear_photo.h"
+#include "base/programs/options.h"
+#include "base/reflectance/view.h"
 #include "rectify/resample/resample.h"
 
 namespace glint {

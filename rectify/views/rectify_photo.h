@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
+#include "base/formats/calibration.h"
+#include "base/formats/rectified_set.h"
 #include "rectify/resample/resample.h"
 #include "rectify/views/rectify_options.h"
 

@@ -3,9 +3,9 @@
 // kept.
 #include <gmock/gmock.h>
 
-#include "pipeline/files/json.h"
-#include "pipeline/images/image.h"
-#include "pipeline/photos/photo.h"
+#include "base/files/json.h"
+#include "base/images/image.h"
+#include "base/photos/photo.h"
 #include "tests/e2e/capture_fixture.h"
 
 namespace glint::test {

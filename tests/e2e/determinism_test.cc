@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
+#include "base/formats/svbrdf_file.h"
 #include "tests/e2e/capture_fixture.h"
 
 namespace glint::test {
@@ -79,8 +79,8 @@ TEST_F(DeterminismTest, OtherInstructionSetsGiveTheSameMapsWithinTheStatedTolera
 TEST_F(DeterminismTest, EveryManifestKeepsTheSchema) {
   const std::string root = GLINT_SOURCE_DIR;
   const std::vector<std::string> check{"/usr/bin/python3",
-                                       root + "/tests/pipeline/contract/check_manifests.py",
-                                       root + "/pipeline/contract/manifest.schema.json"};
+                                       root + "/tests/base/formats/check_manifests.py",
+                                       root + "/base/formats/manifest.schema.json"};
   const auto run = [&](const fs::path& what) {
     std::vector<std::string> words = check;
     words.push_back(what.string());

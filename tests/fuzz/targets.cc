@@ -4,19 +4,19 @@
 #include <stdexcept>
 
 #include "base/errors/errors.h"
+#include "base/files/hash_cache.h"
+#include "base/formats/board_file.h"
+#include "base/formats/calibration.h"
+#include "base/formats/capture.h"
+#include "base/formats/manifest.h"
+#include "base/formats/rectified_set.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/linearize/response_curve.h"
+#include "base/photos/photo.h"
 #include "calib/chart/chart.h"
 #include "calib/colmap/colmap_model.h"
 #include "datasets/import/foreign_set.h"
 #include "fitting/weights/safetensors.h"
-#include "pipeline/contract/board_file.h"
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/files/hash_cache.h"
-#include "pipeline/photos/photo.h"
-#include "rectify/linearize/response_curve.h"
 
 namespace glint::fuzz {
 namespace {

@@ -7,10 +7,10 @@
 #include <functional>
 #include <utility>
 
-#include "calib/camera/camera_model.h"
-#include "calib/camera/rigid3.h"
-#include "pipeline/images/image.h"
-#include "pipeline/photos/photo.h"
+#include "base/camera/camera_model.h"
+#include "base/camera/rigid3.h"
+#include "base/images/image.h"
+#include "base/photos/photo.h"
 
 namespace glint {
 

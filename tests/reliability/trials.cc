@@ -12,7 +12,7 @@
 #include <set>
 #include <thread>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "tests/e2e/capture_fixture.h"
 #include "tests/fuzz/targets.h"
 #include "tests/reliability/trials.h"

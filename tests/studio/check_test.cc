@@ -1,7 +1,7 @@
 // The check of a photograph against a capture whose truth is known.
 #include <gtest/gtest.h>
 
-#include "pipeline/files/json_file.h"
+#include "base/files/json_file.h"
 #include "pipeline/studio/photographs/photo_check.h"
 #include "tests/studio/synthetic.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 
 namespace glint::test {
 

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "tests/support/process.h"
 
 namespace glint {

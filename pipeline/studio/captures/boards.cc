@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/subprocess.h"
+#include "base/files/files.h"
+#include "base/programs/subprocess.h"
 #include "pipeline/driver/programs.h"
-#include "pipeline/files/files.h"
 #include "pipeline/studio/captures/capture_boards.h"
 #include "pipeline/studio/captures/program_message.h"
 #include "pipeline/studio/http/http_types.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/contract/board_file.h"
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
+#include "base/formats/board_file.h"
 #include "pipeline/studio/captures/library.h"
 
 namespace glint {

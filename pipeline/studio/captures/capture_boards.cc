@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/capture.h"
+#include "base/formats/capture.h"
 
 namespace glint {
 namespace {

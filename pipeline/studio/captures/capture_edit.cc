@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/files/files.h"
+#include "base/files/files.h"
 #include "pipeline/studio/captures/new_capture.h"
 #include "pipeline/studio/captures/toml_edit.h"
 #include "pipeline/studio/http/http_types.h"

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "pipeline/contract/capture.h"
+#include "base/formats/capture.h"
 
 namespace glint {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/contract/capture.h"
+#include "base/formats/capture.h"
 #include "pipeline/studio/captures/new_capture.h"
 #include "pipeline/studio/captures/program_message.h"
 

@@ -9,7 +9,7 @@
 #include <ctime>
 
 #include "base/errors/errors.h"
-#include "pipeline/files/hash.h"
+#include "base/files/hash.h"
 
 namespace glint {
 namespace {

@@ -9,9 +9,9 @@
 #include <cstring>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/files/json_file.h"
 #include "pipeline/driver/init.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/json_file.h"
 #include "pipeline/studio/access/token.h"
 #include "pipeline/studio/captures/library.h"
 #include "pipeline/studio/captures/toml_edit.h"

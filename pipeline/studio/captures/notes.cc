@@ -1,8 +1,8 @@
 #include "pipeline/studio/captures/notes.h"
 
 #include "base/errors/errors.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/json_file.h"
+#include "base/files/files.h"
+#include "base/files/json_file.h"
 #include "pipeline/studio/captures/library.h"
 
 namespace glint {

@@ -10,11 +10,11 @@
 #include <sstream>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/program.h"
-#include "pipeline/contract/stages.h"
-#include "pipeline/contract/subprocess.h"
+#include "base/files/toml_file.h"
+#include "base/programs/program.h"
+#include "base/programs/subprocess.h"
+#include "base/stages/stages.h"
 #include "pipeline/driver/programs.h"
-#include "pipeline/files/toml_file.h"
 #include "pipeline/studio/access/token.h"
 #include "pipeline/studio/captures/toml_edit.h"
 #include "pipeline/studio/http/http_types.h"

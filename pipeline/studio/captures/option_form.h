@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "pipeline/contract/capture.h"
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
+#include "base/formats/capture.h"
 
 namespace glint {
 

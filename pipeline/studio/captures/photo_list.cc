@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "pipeline/photos/photo_name.h"
+#include "base/photos/photo_name.h"
 #include "pipeline/studio/captures/library.h"
 
 namespace glint {

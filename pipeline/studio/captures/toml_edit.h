@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 
 namespace glint {
 

@@ -2,7 +2,7 @@
 
 #include <unistd.h>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 
 namespace glint {
 

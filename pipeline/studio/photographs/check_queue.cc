@@ -8,8 +8,8 @@
 #include <sstream>
 #include <utility>
 
-#include "pipeline/files/files.h"
-#include "pipeline/files/hash.h"
+#include "base/files/files.h"
+#include "base/files/hash.h"
 #include "pipeline/studio/photographs/thumbnail.h"
 
 namespace glint {

@@ -7,12 +7,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/errors/errors.h"
+#include "base/files/hash.h"
+#include "base/formats/board_file.h"
 #include "calib/capture/camera_groups.h"
 #include "calib/capture/reduced_photo.h"
 #include "calib/corners/detector.h"
 #include "calib/guidance/clipping.h"
-#include "pipeline/contract/board_file.h"
-#include "pipeline/files/hash.h"
 #include "pipeline/studio/photographs/thumbnail.h"
 
 namespace glint {

@@ -7,11 +7,11 @@
 #include <optional>
 #include <string>
 
-#include "calib/board/board.h"
+#include "base/board/board.h"
+#include "base/files/json.h"
+#include "base/formats/capture.h"
 #include "calib/guidance/coverage.h"
 #include "calib/triage/measure.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/files/json.h"
 
 namespace glint {
 

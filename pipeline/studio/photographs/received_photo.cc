@@ -11,10 +11,10 @@
 #include <cstring>
 
 #include "base/errors/errors.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/hash.h"
-#include "pipeline/photos/jpeg_end.h"
-#include "pipeline/photos/photo_header.h"
+#include "base/files/files.h"
+#include "base/files/hash.h"
+#include "base/photos/jpeg_end.h"
+#include "base/photos/photo_header.h"
 #include "pipeline/studio/access/token.h"
 #include "pipeline/studio/http/http_types.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "pipeline/photos/photo.h"
+#include "base/photos/photo.h"
 
 namespace glint {
 

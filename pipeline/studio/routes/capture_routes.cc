@@ -3,7 +3,7 @@
 #include <cmath>
 #include <thread>
 
-#include "pipeline/contract/subprocess.h"
+#include "base/programs/subprocess.h"
 #include "pipeline/studio/routes/phone_routes.h"
 #include "pipeline/studio/routes/replies.h"
 #include "pipeline/studio/routes/request_json.h"

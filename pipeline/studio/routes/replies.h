@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/errors/errors.h"
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "pipeline/studio/http/http_types.h"
 
 namespace glint {

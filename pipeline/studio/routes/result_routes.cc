@@ -1,6 +1,6 @@
 #include "pipeline/studio/routes/result_routes.h"
 
-#include "pipeline/files/files.h"
+#include "base/files/files.h"
 #include "pipeline/studio/access/token.h"
 #include "pipeline/studio/routes/replies.h"
 #include "pipeline/studio/runs/results.h"

@@ -14,9 +14,9 @@
 #include <cstring>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/manifest.h"
+#include "base/files/json_file.h"
+#include "base/formats/manifest.h"
 #include "pipeline/driver/ninja_file.h"
-#include "pipeline/files/json_file.h"
 #include "pipeline/studio/captures/library.h"
 
 namespace glint {

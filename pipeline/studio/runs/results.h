@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "pipeline/studio/http/http_types.h"
 
 namespace glint {

@@ -7,13 +7,13 @@
 #include <sstream>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/progress.h"
-#include "pipeline/contract/subprocess.h"
+#include "base/files/files.h"
+#include "base/files/json_file.h"
+#include "base/formats/capture.h"
+#include "base/programs/progress.h"
+#include "base/programs/subprocess.h"
 #include "pipeline/driver/programs.h"
 #include "pipeline/driver/stage_graph.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/json_file.h"
 #include "pipeline/studio/captures/library.h"
 #include "pipeline/studio/captures/program_message.h"
 #include "pipeline/studio/http/http_types.h"

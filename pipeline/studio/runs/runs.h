@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 
 namespace glint {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "pipeline/studio/captures/capture_state.h"
 #include "pipeline/studio/captures/library.h"
 #include "pipeline/studio/captures/photo_list.h"

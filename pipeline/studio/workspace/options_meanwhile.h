@@ -6,7 +6,7 @@
 #include <mutex>
 #include <thread>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 
 namespace glint {
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "pipeline/files/hash.h"
+#include "base/files/hash.h"
 #include "pipeline/studio/captures/capture_edit.h"
 #include "pipeline/studio/captures/notes.h"
 #include "pipeline/studio/captures/photo_list.h"

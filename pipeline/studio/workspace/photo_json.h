@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "pipeline/studio/captures/photo_list.h"
 #include "pipeline/studio/photographs/advise.h"
 #include "pipeline/studio/photographs/check_queue.h"

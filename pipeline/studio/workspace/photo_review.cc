@@ -1,6 +1,6 @@
 #include "pipeline/studio/workspace/photo_review.h"
 
-#include "pipeline/photos/photo_name.h"
+#include "base/photos/photo_name.h"
 #include "pipeline/studio/captures/library.h"
 #include "pipeline/studio/workspace/photo_json.h"
 

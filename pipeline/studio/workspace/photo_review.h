@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "pipeline/studio/captures/capture_state.h"
 #include "pipeline/studio/captures/photo_list.h"
 #include "pipeline/studio/photographs/advise.h"

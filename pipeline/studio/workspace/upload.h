@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "pipeline/studio/http/http_types.h"
 #include "pipeline/studio/photographs/received_photo.h"
 #include "pipeline/studio/workspace/photo_intake.h"

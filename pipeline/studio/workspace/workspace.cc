@@ -6,7 +6,7 @@
 #include <set>
 
 #include "base/errors/errors.h"
-#include "pipeline/photos/photo_name.h"
+#include "base/photos/photo_name.h"
 #include "pipeline/studio/captures/capture_edit.h"
 #include "pipeline/studio/captures/notes.h"
 #include "pipeline/studio/captures/option_form.h"

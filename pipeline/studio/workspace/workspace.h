@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/files/files.h"
+#include "base/files/files.h"
 #include "pipeline/studio/captures/boards.h"
 #include "pipeline/studio/captures/new_capture.h"
 #include "pipeline/studio/http/http_types.h"

@@ -1,4 +1,4 @@
-// The reflectance of fitting/reflectance/brdf.h, over the maps as textures.
+// The reflectance of base/reflectance/brdf.h, over the maps as textures.
 
 struct Texel {
   vec3 normal;    // tangent frame

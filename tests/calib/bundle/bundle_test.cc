@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "base/board/board.h"
 #include "base/errors/errors.h"
-#include "calib/board/board.h"
 #include "calib/bundle/residual_picture.h"
 #include "tests/calib/testing/board_scene.h"
 

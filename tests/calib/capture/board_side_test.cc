@@ -5,8 +5,8 @@
 
 #include <random>
 
+#include "base/formats/calibration.h"
 #include "calib/capture/board_side.h"
-#include "pipeline/contract/calibration.h"
 #include "tests/calib/testing/synthetic_capture.h"
 
 namespace glint {

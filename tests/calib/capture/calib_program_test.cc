@@ -12,10 +12,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/formats/calibration.h"
+#include "base/images/image.h"
 #include "calib/colmap/colmap_camera.h"
 #include "calib/colmap/colmap_model.h"
-#include "pipeline/contract/calibration.h"
-#include "pipeline/images/image.h"
 #include "tests/calib/testing/synthetic_photo.h"
 
 namespace glint {

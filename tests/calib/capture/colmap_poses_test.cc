@@ -7,13 +7,13 @@
 #include <cmath>
 #include <random>
 
-#include "calib/camera/orientation.h"
-#include "calib/camera/similarity3.h"
+#include "base/camera/orientation.h"
+#include "base/camera/similarity3.h"
+#include "base/formats/calibration.h"
+#include "base/formats/manifest.h"
+#include "base/images/image.h"
 #include "calib/colmap/colmap_camera.h"
 #include "calib/colmap/colmap_model.h"
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/images/image.h"
 #include "tests/calib/testing/synthetic_photo.h"
 #include "tests/support/process.h"
 

@@ -8,10 +8,10 @@
 #include <memory>
 #include <sstream>
 
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/files/json_file.h"
+#include "base/files/json_file.h"
+#include "base/formats/calibration.h"
+#include "base/formats/manifest.h"
+#include "base/formats/rectified_set.h"
 #include "tests/calib/testing/synthetic_capture.h"
 
 namespace glint {

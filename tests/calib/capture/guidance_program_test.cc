@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "pipeline/contract/manifest.h"
-#include "pipeline/images/image.h"
+#include "base/formats/manifest.h"
+#include "base/images/image.h"
 #include "tests/calib/testing/synthetic_photo.h"
 #include "tests/support/process.h"
 

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/manifest.h"
+#include "base/formats/calibration.h"
+#include "base/formats/manifest.h"
 #include "tests/calib/testing/synthetic_capture.h"
 
 namespace glint {

@@ -13,9 +13,9 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/manifest.h"
-#include "rectify/linearize/response_curve.h"
+#include "base/formats/calibration.h"
+#include "base/formats/manifest.h"
+#include "base/linearize/response_curve.h"
 #include "tests/calib/capture/write_dng.h"
 #include "tests/calib/testing/synthetic_photo.h"
 

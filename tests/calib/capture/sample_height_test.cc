@@ -6,9 +6,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "base/formats/calibration.h"
+#include "base/formats/manifest.h"
 #include "calib/registration/sample_place.h"
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/manifest.h"
 #include "tests/calib/testing/synthetic_capture.h"
 
 namespace glint {

@@ -8,13 +8,13 @@
 #include <cstdio>
 #include <functional>
 
+#include "base/formats/calibration.h"
+#include "base/formats/manifest.h"
+#include "base/formats/rectified_set.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/reflectance/svbrdf_maps.h"
 #include "calib/chart/cielab.h"
 #include "calib/chart/delta_e.h"
-#include "fitting/reflectance/svbrdf_maps.h"
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/contract/svbrdf_file.h"
 #include "tests/calib/chart/chart_scene.h"
 #include "tests/calib/testing/synthetic_capture.h"
 #include "tests/support/data_folder.h"

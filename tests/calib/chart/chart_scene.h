@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "base/photos/photo.h"
 #include "calib/chart/chart.h"
 #include "calib/chart/find_chart.h"
 #include "calib/chart/measure_chart.h"
-#include "pipeline/photos/photo.h"
 
 namespace glint::testing {
 

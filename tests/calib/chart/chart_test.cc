@@ -7,10 +7,10 @@
 #include <opencv2/mcc.hpp>
 
 #include "base/errors/errors.h"
+#include "base/formats/capture.h"
 #include "calib/chart/chart_kinds.h"
 #include "calib/chart/cielab.h"
 #include "calib/chart/delta_e.h"
-#include "pipeline/contract/capture.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "base/camera/similarity3.h"
 #include "base/errors/errors.h"
-#include "calib/camera/similarity3.h"
 #include "calib/colmap/colmap_camera.h"
 
 namespace glint {

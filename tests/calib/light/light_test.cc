@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "calib/camera/orientation.h"
+#include "base/camera/orientation.h"
 #include "tests/calib/testing/synthetic_photo.h"
 
 namespace glint {

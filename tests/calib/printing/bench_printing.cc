@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
+#include "base/files/files.h"
 #include "calib/printing/draw_sheet.h"
-#include "pipeline/files/files.h"
 #include "tests/calib/printing/raster_check.h"
 
 int main(int argc, char** argv) {

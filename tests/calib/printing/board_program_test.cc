@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdio>
 
-#include "pipeline/contract/board_file.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/files/files.h"
+#include "base/files/files.h"
+#include "base/formats/board_file.h"
+#include "base/formats/capture.h"
 #include "tests/support/process.h"
 
 namespace glint {
@@ -41,8 +41,8 @@ Result RunGlint(const std::string& verb, const std::string& arguments) {
 
 Result CheckSchema(const fs::path& file) {
   const std::string root = GLINT_SOURCE_DIR;
-  return RunCommand("python3 " + root + "/tests/pipeline/contract/check_manifests.py " + root +
-                    "/pipeline/contract/board.schema.json " + file.string());
+  return RunCommand("python3 " + root + "/tests/base/formats/check_manifests.py " + root +
+                    "/base/formats/board.schema.json " + file.string());
 }
 
 TEST(BoardProgram, PrintsABoardThatInitAndCalibTake) {

@@ -6,10 +6,10 @@
 #include <set>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
 #include "calib/printing/draw_sheet.h"
 #include "calib/printing/drawing.h"
 #include "calib/printing/sheet_plan.h"
-#include "pipeline/files/files.h"
 #include "tests/calib/printing/raster_check.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"

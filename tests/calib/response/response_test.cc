@@ -9,8 +9,8 @@
 #include <random>
 
 #include "base/errors/errors.h"
+#include "base/linearize/encoding.h"
 #include "calib/response/sample_photos.h"
-#include "rectify/linearize/encoding.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"

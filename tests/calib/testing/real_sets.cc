@@ -4,9 +4,9 @@
 
 #include <fstream>
 
-#include "calib/board/board.h"
+#include "base/board/board.h"
+#include "base/photos/photo.h"
 #include "calib/corners/detector.h"
-#include "pipeline/photos/photo.h"
 
 namespace glint::testing {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/images/image.h"
+#include "base/images/image.h"
 
 namespace glint::testing {
 namespace {

@@ -6,9 +6,9 @@
 #include <functional>
 #include <optional>
 
-#include "calib/board/board.h"
-#include "calib/camera/camera_model.h"
-#include "calib/camera/rigid3.h"
+#include "base/board/board.h"
+#include "base/camera/camera_model.h"
+#include "base/camera/rigid3.h"
 #include "calib/corners/gray_image.h"
 
 namespace glint::testing {

@@ -6,13 +6,13 @@
 #include <cstdlib>
 
 #include "base/errors/errors.h"
+#include "base/files/hash.h"
+#include "base/formats/svbrdf_file.h"
 #include "datasets/evaluation/capture_store.h"
 #include "datasets/evaluation/shipped_models.h"
 #include "datasets/evaluation/starts.h"
 #include "datasets/procedural/material.h"
 #include "fitting/latent/fit_stage.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/files/hash.h"
 #include "tests/support/process.h"
 
 namespace glint {

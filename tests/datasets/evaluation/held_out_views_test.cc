@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "base/errors/errors.h"
+#include "base/formats/manifest.h"
+#include "base/images/image.h"
 #include "datasets/evaluation/predicted_deviation.h"
 #include "datasets/procedural/material.h"
 #include "datasets/synth/view_set.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/images/image.h"
 #include "tests/support/process.h"
 
 namespace glint {

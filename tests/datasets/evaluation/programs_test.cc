@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "tests/support/process.h"
 
 namespace glint {

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "base/errors/errors.h"
+#include "base/files/json.h"
+#include "base/formats/capture.h"
+#include "base/formats/rectified_set.h"
+#include "base/images/image.h"
 #include "datasets/import/import_set.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/files/json.h"
-#include "pipeline/images/image.h"
 #include "tests/support/process.h"
 
 namespace glint {

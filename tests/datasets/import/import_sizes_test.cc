@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "base/files/json.h"
+#include "base/images/image.h"
 #include "datasets/import/import_set.h"
 #include "fitting/estimator/estimator.h"
 #include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/weights/find_model.h"
-#include "pipeline/files/json.h"
-#include "pipeline/images/image.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/process.h"
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "datasets/formats/read_maps.h"
+#include "base/images/image.h"
+#include "base/reflectance/texel_at.h"
 #include "datasets/import/import_set.h"
-#include "fitting/reflectance/texel_at.h"
-#include "pipeline/images/image.h"
+#include "datasets/map_formats/read_maps.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/process.h"
 

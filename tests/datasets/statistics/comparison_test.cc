@@ -6,9 +6,9 @@
 #include <iterator>
 
 #include "base/errors/errors.h"
+#include "base/formats/svbrdf_file.h"
 #include "datasets/procedural/material.h"
 #include "datasets/statistics/comparison_files.h"
-#include "pipeline/contract/svbrdf_file.h"
 
 namespace glint {
 namespace {

@@ -8,12 +8,12 @@
 #include <map>
 
 #include "base/errors/errors.h"
+#include "base/formats/calibration.h"
+#include "base/formats/capture.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/images/image.h"
+#include "base/photos/photo.h"
 #include "datasets/procedural/material.h"
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/images/image.h"
-#include "pipeline/photos/photo.h"
 #include "tests/support/process.h"
 
 namespace glint {

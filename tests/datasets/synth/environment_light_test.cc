@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "base/errors/errors.h"
+#include "base/images/image.h"
+#include "base/reflectance/brdf.h"
 #include "datasets/procedural/material.h"
-#include "fitting/reflectance/brdf.h"
-#include "pipeline/images/image.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/process.h"
 

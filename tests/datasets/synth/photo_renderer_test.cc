@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/reflectance/brdf.h"
 #include "datasets/procedural/material.h"
-#include "fitting/reflectance/brdf.h"
 
 namespace glint {
 namespace {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/formats/capture.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/photos/photo.h"
 #include "datasets/procedural/material.h"
 #include "fitting/render/renderer.h"
-#include "pipeline/contract/capture.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/photos/photo.h"
 #include "tests/support/process.h"
 
 namespace glint {

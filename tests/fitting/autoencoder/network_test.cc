@@ -6,8 +6,8 @@
 #include "fitting/encoding/encoding_torch.h"
 #include "fitting/layers/layers.h"
 #include "fitting/render/render_reference.h"
-#include "fitting/training/principal_start.h"
-#include "tests/fitting/training/toy_materials.h"
+#include "tests/training/toy_materials.h"
+#include "training/principal_start.h"
 
 namespace glint {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/reflectance/svbrdf_maps.h"
 #include "fitting/photographs/photographs.h"
-#include "fitting/reflectance/svbrdf_maps.h"
 #include "fitting/render/renderer.h"
 
 namespace glint::test {

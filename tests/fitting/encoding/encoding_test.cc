@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/fitting/training/toy_materials.h"
+#include "tests/training/toy_materials.h"
 
 namespace glint {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "fitting/estimator/estimator_file.h"
 #include "tests/fitting/bootstrap/synthetic_set.h"
-#include "tests/fitting/training/toy_materials.h"
 #include "tests/support/process.h"
+#include "tests/training/toy_materials.h"
 
 namespace glint {
 namespace {

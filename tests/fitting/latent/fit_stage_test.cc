@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "base/formats/rectified_set.h"
 #include "fitting/estimator/estimator.h"
 #include "fitting/weights/find_model.h"
-#include "pipeline/contract/rectified_set.h"
 #include "tests/fitting/bootstrap/synthetic_set.h"
 #include "tests/support/process.h"
 

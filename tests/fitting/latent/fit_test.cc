@@ -9,7 +9,7 @@
 #include "fitting/latent/fit_loss.h"
 #include "fitting/latent/levels.h"
 #include "tests/fitting/bootstrap/synthetic_set.h"
-#include "tests/fitting/training/toy_materials.h"
+#include "tests/training/toy_materials.h"
 
 namespace glint {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/fitting/bootstrap/synthetic_set.h"
-#include "tests/fitting/training/toy_materials.h"
+#include "tests/training/toy_materials.h"
 
 namespace glint {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <vector>
 
+#include "base/reflectance/brdf.h"
+#include "base/reflectance/svbrdf_deviations.h"
+#include "base/reflectance/texel_at.h"
 #include "fitting/refine/refine.h"
-#include "fitting/reflectance/brdf.h"
-#include "fitting/reflectance/svbrdf_deviations.h"
-#include "fitting/reflectance/texel_at.h"
 #include "tests/fitting/refine/synthetic_scene.h"
 
 namespace glint {

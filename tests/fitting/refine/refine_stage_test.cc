@@ -5,12 +5,12 @@
 #include <cmath>
 #include <optional>
 
+#include "base/formats/rectified_set.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/images/image.h"
 #include "fitting/refine/sample_source.h"
 #include "fitting/render/render_environment.h"
 #include "fitting/view_correction/corrections_json.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/images/image.h"
 #include "tests/fitting/refine/synthetic_scene.h"
 #include "tests/support/process.h"
 

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
+#include "base/reflectance/texel_at.h"
 #include "fitting/refine/refine.h"
-#include "fitting/reflectance/texel_at.h"
 
 namespace glint::test {
 

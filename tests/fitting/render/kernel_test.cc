@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fitting/render/batch.h"
-#include "tests/fitting/reflectance/texel_jacobian.h"
+#include "tests/base/reflectance/texel_jacobian.h"
 #include "tests/fitting/render/random_scene.h"
 
 namespace glint {

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "fitting/reflectance/texel_at.h"
-#include "fitting/reflectance/view.h"
+#include "base/reflectance/texel_at.h"
+#include "base/reflectance/view.h"
 
 namespace glint {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "fitting/reflectance/texel_at.h"
+#include "base/reflectance/texel_at.h"
 #include "tests/fitting/render/random_scene.h"
 
 namespace glint {

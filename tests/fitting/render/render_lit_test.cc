@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fitting/reflectance/brdf.h"
-#include "fitting/reflectance/texel_at.h"
+#include "base/reflectance/brdf.h"
+#include "base/reflectance/texel_at.h"
 #include "fitting/render/renderer.h"
 
 namespace glint {

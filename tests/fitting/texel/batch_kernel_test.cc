@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "fitting/reflectance/log_radiance.h"
-#include "fitting/reflectance/texel_at.h"
+#include "base/reflectance/log_radiance.h"
+#include "base/reflectance/texel_at.h"
 #include "fitting/texel/batch_kernel.h"
 #include "fitting/texel/texel_albedos.h"
 #include "tests/fitting/texel/random_lanes.h"

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "fitting/reflectance/brdf.h"
+#include "base/reflectance/brdf.h"
 #include "fitting/texel/batch_kernel.h"
 #include "fitting/texel/texel_parameters.h"
 

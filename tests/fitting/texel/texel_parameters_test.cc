@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fitting/reflectance/svbrdf_maps.h"
+#include "base/reflectance/svbrdf_maps.h"
 
 namespace glint {
 namespace {

@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <vector>
 
-#include "fitting/reflectance/brdf.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/reflectance/brdf.h"
 #include "fitting/render/renderer.h"
-#include "pipeline/contract/svbrdf_file.h"
 
 int main(int count, char** arguments) {
   using namespace glint;

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "pipeline/contract/cost_model.h"
-#include "pipeline/contract/run_progress.h"
+#include "base/programs/cost_model.h"
+#include "base/programs/run_progress.h"
 #include "pipeline/driver/completion.h"
 #include "pipeline/driver/edge.h"
 #include "pipeline/driver/manual.h"

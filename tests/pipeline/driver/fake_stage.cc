@@ -13,10 +13,10 @@
 #include <fstream>
 
 #include "base/errors/errors.h"
-#include "pipeline/contract/manifest.h"
-#include "pipeline/contract/options.h"
-#include "pipeline/files/files.h"
-#include "pipeline/files/hash.h"
+#include "base/files/files.h"
+#include "base/files/hash.h"
+#include "base/formats/manifest.h"
+#include "base/programs/options.h"
 
 namespace fs = std::filesystem;
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/images/image.h"
+#include "base/images/image.h"
 #include "tests/pipeline/driver/run_fixture.h"
 
 namespace glint {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/files/json.h"
+#include "base/files/json.h"
 #include "tests/support/process.h"
 
 namespace glint {

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "base/colour/srgb.h"
-#include "pipeline/photos/photo.h"
+#include "base/photos/photo.h"
 #include "tests/pipeline/export/exported_material.h"
 #include "tests/support/process.h"
 

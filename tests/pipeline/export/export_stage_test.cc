@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "fitting/reflectance/border.h"
-#include "pipeline/contract/svbrdf_file.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/photos/photo.h"
+#include "base/reflectance/border.h"
 #include "pipeline/export/material_rows.h"
-#include "pipeline/photos/photo.h"
 #include "tests/support/process.h"
 
 namespace glint {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "pipeline/files/json.h"
-#include "pipeline/photos/photo.h"
+#include "base/files/json.h"
+#include "base/photos/photo.h"
 #include "tests/pipeline/export/exported_material.h"
 #include "tests/support/process.h"
 

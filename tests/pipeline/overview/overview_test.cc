@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/files/files.h"
+#include "base/files/files.h"
 #include "tests/support/process.h"
 
 namespace glint {

@@ -8,12 +8,12 @@
 #include <fstream>
 
 #include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/formats/svbrdf_file.h"
+#include "base/images/image.h"
+#include "base/programs/stage.h"
 #include "fitting/render/renderer.h"
 #include "fitting/view_correction/corrections_json.h"
-#include "pipeline/contract/stage.h"
-#include "pipeline/contract/svbrdf_file.h"
-#include "pipeline/files/files.h"
-#include "pipeline/images/image.h"
 #include "pipeline/report/chart.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/metrics_html.h"

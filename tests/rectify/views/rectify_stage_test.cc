@@ -6,11 +6,11 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "pipeline/contract/calibration.h"
-#include "pipeline/contract/rectified_set.h"
-#include "pipeline/contract/stage.h"
-#include "pipeline/files/files.h"
-#include "rectify/linearize/encoding.h"
+#include "base/files/files.h"
+#include "base/formats/calibration.h"
+#include "base/formats/rectified_set.h"
+#include "base/linearize/encoding.h"
+#include "base/programs/stage.h"
 #include "tests/rectify/plane_photo.h"
 
 namespace glint {

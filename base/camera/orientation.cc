@@ -1,0 +1,77 @@
+#include "base/camera/orientation.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint {
+namespace {
+
+int Modulo4(int turns) { return ((turns % 4) + 4) % 4; }
+
+Camera OnceTurned(const Camera& camera) {
+  Camera turned = camera;
+  turned.width_px = camera.height_px;
+  turned.height_px = camera.width_px;
+  const bool one_focal = CameraParameterNames(camera.model)[0] == "f";
+  const size_t centre = one_focal ? 1 : 2;
+  if (!one_focal) std::swap(turned.parameters[0], turned.parameters[1]);
+  turned.parameters[centre] = camera.height_px - camera.parameters[centre + 1];
+  turned.parameters[centre + 1] = camera.parameters[centre];
+  const std::vector<std::string>& names = CameraParameterNames(camera.model);
+  const auto tangential = std::find(names.begin(), names.end(), "p1");
+  if (tangential != names.end()) {
+    const auto p1 = static_cast<size_t>(tangential - names.begin());
+    turned.parameters[p1] = camera.parameters[p1 + 1];
+    turned.parameters[p1 + 1] = -camera.parameters[p1];
+  }
+  return turned;
+}
+
+}  // namespace
+
+std::optional<int> QuarterTurns(int exif_orientation) {
+  switch (exif_orientation) {
+    case 1:
+      return 0;
+    case 6:
+      return 1;
+    case 3:
+      return 2;
+    case 8:
+      return 3;
+    default:
+      return std::nullopt;
+  }
+}
+
+Eigen::Vector2d TurnedImagePoint(Eigen::Vector2d point_px, int width_px, int height_px, int turns) {
+  for (int i = Modulo4(turns); i > 0; --i) {
+    point_px = Eigen::Vector2d(height_px - point_px.y(), point_px.x());
+    std::swap(width_px, height_px);
+  }
+  return point_px;
+}
+
+Eigen::Vector3d TurnedCameraPoint(Eigen::Vector3d p, int turns) {
+  for (int i = Modulo4(turns); i > 0; --i) p = Eigen::Vector3d(-p.y(), p.x(), p.z());
+  return p;
+}
+
+Rigid3 TurnedPose(const Rigid3& camera_from_sample, int turns) {
+  Rigid3 turned;
+  for (int i = 0; i < 3; ++i) {
+    turned.rotation.col(i) = TurnedCameraPoint(camera_from_sample.rotation.col(i), turns);
+  }
+  turned.translation = TurnedCameraPoint(camera_from_sample.translation, turns);
+  return turned;
+}
+
+Camera TurnedCamera(const Camera& camera, int turns) {
+  Camera turned = camera;
+  for (int i = Modulo4(turns); i > 0; --i) turned = OnceTurned(turned);
+  return turned;
+}
+
+}  // namespace glint

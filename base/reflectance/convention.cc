@@ -1,0 +1,95 @@
+#include "base/reflectance/convention.h"
+
+#include <array>
+#include <charconv>
+#include <sstream>
+#include <stdexcept>
+
+namespace glint {
+namespace {
+
+[[noreturn]] void Reject(std::string_view found) {
+  throw std::invalid_argument(
+      "reflectance convention: found '" + std::string(found) +
+      "'; use photograph, dir2019, materialgan, or words of diffuse=one|one_minus_specular, "
+      "light=none|inverse_square, sampling=pixel_centres|corner_to_corner, "
+      "narrow_lobe=SHARExRATIO (a share from 0 to below 1, a ratio of roughnesses up to 1)");
+}
+
+constexpr std::string_view kNarrowLobe = "narrow_lobe=";
+
+// The shortest digits that mean this number.
+std::string Shortest(double x) {
+  std::array<char, 32> digits;
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr};
+}
+
+// "0.5x0.4"
+SpecularLobes ParseLobes(std::string_view text) {
+  SpecularLobes lobes;
+  const char* const end = text.data() + text.size();
+  const auto share = std::from_chars(text.data(), end, lobes.narrow_share);
+  if (share.ec != std::errc() || share.ptr == end || *share.ptr != 'x') Reject(text);
+  const auto ratio = std::from_chars(share.ptr + 1, end, lobes.narrow_ratio);
+  if (ratio.ec != std::errc() || ratio.ptr != end) Reject(text);
+  const bool in_range = lobes.narrow_share >= 0 && lobes.narrow_share < 1 &&
+                        lobes.narrow_ratio > 0 && lobes.narrow_ratio <= 1;
+  if (!in_range) Reject(text);
+  return lobes;
+}
+
+void SetWord(const std::string& word, ReflectanceConvention* convention) {
+  if (word == "diffuse=one") {
+    convention->diffuse_weight = DiffuseWeight::kOne;
+  } else if (word == "diffuse=one_minus_specular") {
+    convention->diffuse_weight = DiffuseWeight::kOneMinusSpecular;
+  } else if (word == "light=none") {
+    convention->falloff = LightFalloff::kNone;
+  } else if (word == "light=inverse_square") {
+    convention->falloff = LightFalloff::kInverseSquare;
+  } else if (word == "sampling=pixel_centres") {
+    convention->sampling = TexelSampling::kPixelCentres;
+  } else if (word == "sampling=corner_to_corner") {
+    convention->sampling = TexelSampling::kCornerToCorner;
+  } else if (word.starts_with(kNarrowLobe)) {
+    convention->lobes = ParseLobes(std::string_view(word).substr(kNarrowLobe.size()));
+  } else {
+    Reject(word);
+  }
+}
+
+}  // namespace
+
+std::string ToString(const ReflectanceConvention& convention) {
+  std::string text = "diffuse=";
+  text += convention.diffuse_weight == DiffuseWeight::kOne ? "one" : "one_minus_specular";
+  text += " light=";
+  text += convention.falloff == LightFalloff::kNone ? "none" : "inverse_square";
+  text += " sampling=";
+  text +=
+      convention.sampling == TexelSampling::kPixelCentres ? "pixel_centres" : "corner_to_corner";
+  const SpecularLobes& lobes = convention.lobes;
+  if (lobes.two()) {
+    text += " " + std::string(kNarrowLobe) + Shortest(lobes.narrow_share) + "x" +
+            Shortest(lobes.narrow_ratio);
+  }
+  return text;
+}
+
+ReflectanceConvention ParseReflectanceConvention(std::string_view text) {
+  if (text == "photograph") return ReflectanceConvention::Photograph();
+  if (text == "dir2019") return ReflectanceConvention::Dir2019();
+  if (text == "materialgan") return ReflectanceConvention::MaterialGan();
+  ReflectanceConvention convention;
+  std::istringstream words{std::string(text)};
+  std::string word;
+  bool any = false;
+  while (words >> word) {
+    SetWord(word, &convention);
+    any = true;
+  }
+  if (!any) Reject(text);
+  return convention;
+}
+
+}  // namespace glint

@@ -1,0 +1,135 @@
+// Images that are read and written by rows are those that are read and written whole.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/errors/errors.h"
+#include "base/files/files.h"
+#include "base/files/memory_limit.h"
+#include "base/images/exr_rows.h"
+#include "base/images/png_rows.h"
+#include "tests/support/message_of.h"
+#include "tests/support/process.h"
+
+namespace glint {
+namespace {
+
+using ::testing::HasSubstr;
+
+Image Waves(int width, int height, const std::vector<std::string>& channels) {
+  Image image(width, height, channels);
+  for (size_t i = 0; i < image.samples.size(); ++i) {
+    image.samples[i] = 0.5f + 0.5f * std::sin(0.37f * static_cast<float>(i));
+  }
+  return image;
+}
+
+Image RowsOf(const Image& image, int first, int rows) {
+  Image part(image.width, rows, image.channels);
+  const auto begin = static_cast<std::ptrdiff_t>(first) * image.width;
+  for (int c = 0; c < static_cast<int>(image.channels.size()); ++c) {
+    const auto from = image.channel(c).begin() + begin;
+    std::copy(from, from + static_cast<std::ptrdiff_t>(part.pixels()), part.channel(c).begin());
+  }
+  return part;
+}
+
+template <class Writer>
+void WriteByRows(const Image& image, int at_once, Writer* writer) {
+  for (int first = 0; first < image.height; first += at_once) {
+    writer->Write(RowsOf(image, first, std::min(at_once, image.height - first)));
+  }
+  writer->Close();
+}
+
+TEST(ExrRows, HaveTheSameBytesHoweverTheyAreCut) {
+  const test::TemporaryFolder folder;
+  const Image image = Waves(33, 150, {"R", "G", "B", "mask.Y"});
+  WriteExr(folder / "whole.exr", image, {{"note", "value"}});
+  for (const int at_once : {1, 7, 16, 64, 149}) {
+    ExrWriter writer(folder / "rows.exr", 33, 150, image.channels, {{"note", "value"}});
+    WriteByRows(image, at_once, &writer);
+    EXPECT_EQ(ReadTextFile(folder / "rows.exr"), ReadTextFile(folder / "whole.exr")) << at_once;
+  }
+}
+
+TEST(ExrRows, AsHalfFloatsRoundByLessThanTwoToTheMinusEleven) {
+  const test::TemporaryFolder folder;
+  Image image(64, 20, {"R"});
+  for (size_t i = 0; i < image.pixels(); ++i) {
+    image.samples[i] = 6.2e-5f * std::pow(1.016f, static_cast<float>(i));  // to 4e4
+  }
+  image.samples.back() = 1e6f;
+  const auto written = [&](int at_once) {
+    ExrWriter writer(folder / "half.exr", 64, 20, {"R"}, {}, ExrPrecision::kHalf);
+    WriteByRows(image, at_once, &writer);
+    return ReadTextFile(folder / "half.exr");
+  };
+  EXPECT_EQ(written(7), written(20));
+  const Image half = ReadExr(folder / "half.exr");
+  for (size_t i = 0; i + 1 < image.pixels(); ++i) {
+    EXPECT_NEAR(half.samples[i], image.samples[i], image.samples[i] / 2048) << i;
+  }
+  EXPECT_EQ(half.samples.back(), 65504);
+}
+
+TEST(ExrRows, AreThoseOfTheWholeImageInAnyOrder) {
+  const test::TemporaryFolder folder;
+  const Image image = Waves(33, 150, {"R", "G", "B"});
+  WriteExr(folder / "a.exr", image);
+  ExrReader reader(folder / "a.exr");
+  for (const auto& [first, rows] : {std::pair{140, 10}, std::pair{0, 150}, std::pair{17, 70}}) {
+    EXPECT_EQ(reader.Read(first, rows).samples, RowsOf(image, first, rows).samples) << first;
+  }
+}
+
+TEST(ExrRows, NeedMemoryForThemselvesAlone) {
+  const test::TemporaryFolder folder;
+  WriteExr(folder / "a.exr", Image(1000, 1000, {"R", "G", "B"}));
+  SetMemoryLimit(2000000);
+  ExrReader reader(folder / "a.exr");
+  EXPECT_EQ(reader.Read(500, 100).height, 100);
+  const std::string message = test::MessageOf<UserError>([&] { reader.Read(0, 1000); });
+  SetMemoryLimit(0);
+  EXPECT_THAT(message, HasSubstr("a.exr: size: found 1000x1000 pixels of 3 channels"));
+}
+
+TEST(ExrRows, AreAveragedAsTheWholeIs) {
+  const test::TemporaryFolder folder;
+  const Image image = Waves(40, 1200, {"a", "b"});
+  WriteExr(folder / "a.exr", image);
+  const Image small = ReadExrAveraged(folder / "a.exr", {"b"}, 20, 3);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 20; ++column) {
+      double sum = 0;
+      for (int r = 400 * row; r < 400 * (row + 1); ++r) {
+        for (int c = 2 * column; c < 2 * column + 2; ++c) {
+          sum += image.channel(1)[size_t{40} * static_cast<size_t>(r) + static_cast<size_t>(c)];
+        }
+      }
+      EXPECT_NEAR(
+          small.channel(0)[size_t{20} * static_cast<size_t>(row) + static_cast<size_t>(column)],
+          sum / 800, 1e-4);
+    }
+  }
+  EXPECT_THROW(ReadExrAveraged(folder / "a.exr", {"c"}, 20, 3), UserError);
+}
+
+TEST(PngRows, HaveTheSameBytesHoweverTheyAreCut) {
+  const test::TemporaryFolder folder;
+  for (const int bits : {8, 16}) {
+    const Image image = Waves(33, 150, {"R", "G", "B"});
+    const PngTags tags{PngTransfer::kSrgb, 4000};
+    WritePng(folder / "whole.png", image, bits, tags);
+    EXPECT_EQ(EncodePng(image, bits, tags), ReadTextFile(folder / "whole.png"));
+    for (const int at_once : {1, 64}) {
+      PngWriter writer(folder / "rows.png", 33, 150, 3, bits, tags);
+      WriteByRows(image, at_once, &writer);
+      EXPECT_EQ(ReadTextFile(folder / "rows.png"), ReadTextFile(folder / "whole.png")) << at_once;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace glint
