@@ -12,7 +12,7 @@ The first form builds glint-train alone (GLINT_TRAINER_ONLY: libtorch, CLI11, nl
 is no pack yet, starts the training in a session of its own, and returns. When the loss jumps, the trainer returns to its
 last good weights and halves the learning rate (glint-train --supervise); when the trainer itself ends with an error it
 is started again from its checkpoint. Called again, the script goes on from the checkpoint. OPTIONS go to
-`glint-train bootstrap` after the script's own, so that they win.
+`glint-train estimator` after the script's own, so that they win.
 
 Environment (defaults in parentheses):
   OUT (training/run)     folder of everything that is written:
@@ -25,8 +25,8 @@ Environment (defaults in parentheses):
   PACK (OUT/materials.safetensors)   the pack; if it exists, MATERIALS is not read
   DEVICE (cuda)          or cpu, for small trials
   BATCH (128), PHOTOGRAPHS (256), CROPS (128,128,256)   samples and photographs a step; crop sizes in texels
-  NETWORK (pooled)       the network: pooled, attended or descent (glint-train bootstrap --network)
-  CHANNELS ()            the network's channels (glint-train bootstrap --channels)
+  NETWORK (pooled)       the network: pooled, attended or descent (glint-train estimator --network)
+  CHANNELS ()            the network's channels (glint-train estimator --channels)
   LR (3e-4)              peak learning rate
   POOL_THREADS (cores − 3)   threads that make materials
   TRAINER ()             a glint-train to use instead of building one; BUILD (build-trainer): where to build it
@@ -174,7 +174,7 @@ train() {
   [ -x "$trainer" ] || fail "$trainer: found no program; give TRAINER, or none to build it"
   pack_materials
   local threads=$(($(nproc) > 4 ? $(nproc) - 3 : 1))
-  local options=(bootstrap --out "$weights" --float32 "$float32" --resume --supervise --minutes "$minutes"
+  local options=(estimator --out "$weights" --float32 "$float32" --resume --supervise --minutes "$minutes"
     --device "${DEVICE:-cuda}" --network "${NETWORK:-pooled}" --batch "${BATCH:-128}" --batch-photographs "${PHOTOGRAPHS:-256}"
     --crop "${CROPS:-128,128,256}" --lr "${LR:-3e-4}" --warmup 500 --average-decay 0.9995 --normal-weight 1.5
     --glossy-dielectric-share 0.2 --one-substance-share 0.25 --metal-share 0.1 --varnish-share 0.5

@@ -305,11 +305,10 @@ int main(int argc, char** argv) {
   AddCommonOptions(autoencoder, &autoencoder_options, &files);
   AddAutoencoderOptions(autoencoder, &autoencoder_options);
   materials.AddTo(autoencoder);
-  CLI::App* bootstrap =
-      app.add_subcommand("bootstrap", "train the estimator that initialises glint-fit");
-  AddCommonOptions(bootstrap, &estimator_options, &files);
-  AddEstimatorOptions(bootstrap, &estimator_options);
-  materials.AddTo(bootstrap);
+  CLI::App* estimator = app.add_subcommand("estimator", "train the estimator of the initial maps");
+  AddCommonOptions(estimator, &estimator_options, &files);
+  AddEstimatorOptions(estimator, &estimator_options);
+  materials.AddTo(estimator);
   PackOptions pack_options;
   CLI::App* pack = app.add_subcommand(
       "pack", "pack folders of PNM pictures for --materials; glint-synth pack reads other formats");

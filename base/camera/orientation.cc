@@ -14,15 +14,16 @@ Camera OnceTurned(const Camera& camera) {
   Camera turned = camera;
   turned.width_px = camera.height_px;
   turned.height_px = camera.width_px;
-  const bool one_focal = CameraParameterNames(camera.model)[0] == "f";
-  const size_t centre = one_focal ? 1 : 2;
-  if (!one_focal) std::swap(turned.parameters[0], turned.parameters[1]);
+  const size_t centre = PrincipalPointIndex(camera.model);
+  if (centre == 2) std::swap(turned.parameters[0], turned.parameters[1]);
   turned.parameters[centre] = camera.height_px - camera.parameters[centre + 1];
   turned.parameters[centre + 1] = camera.parameters[centre];
-  const std::vector<std::string>& names = CameraParameterNames(camera.model);
-  const auto tangential = std::find(names.begin(), names.end(), "p1");
-  if (tangential != names.end()) {
-    const auto p1 = static_cast<size_t>(tangential - names.begin());
+  const auto& parameters = InfoOf(camera.model).parameters;
+  const auto tangential = std::find_if(parameters.begin(), parameters.end(), [](const auto& p) {
+    return p.kind == CameraParameter::kTangential;
+  });
+  if (tangential != parameters.end()) {
+    const auto p1 = static_cast<size_t>(tangential - parameters.begin());
     turned.parameters[p1] = camera.parameters[p1 + 1];
     turned.parameters[p1 + 1] = -camera.parameters[p1];
   }

@@ -12,18 +12,19 @@ namespace glint {
 // photographs of 2 and 12 megapixels at 256² to 2048², on two cores of an EPYC with AVX-512 and
 // bfloat16 (docs/experiments/run-time.md).
 struct StageCost {
-  double start_s;              // programs, weights, files
-  double photograph_pair_s;    // per pair of photographs, whatever their size and the maps'; beyond
-                               // 40 photographs no more: fewer texels are then taken for them
-  double network_s;            // in the networks; twice as long without bfloat16
-  double photograph_px_us;     // per pixel of every photograph
-  double texel_us;             // per texel
-  double photograph_texel_us;  // per texel of every photograph
-  double start_MB;
-  double decoded_px_bytes;        // per pixel of the photographs that are decoded at once
-  double texel_bytes;             // per texel
-  double photograph_texel_bytes;  // per texel of every photograph …
-  double most_MB;                 // … of both at most, where texels pass by rows; 0: no bound
+  double start_s = 0;  // programs, weights, files
+  // Per pair of photographs, whatever their size and the maps'; beyond 40 photographs no more:
+  // fewer texels are then taken for them.
+  double photograph_pair_s = 0;
+  double network_s = 0;            // in the networks; twice as long without bfloat16
+  double photograph_px_us = 0;     // per pixel of every photograph
+  double texel_us = 0;             // per texel
+  double photograph_texel_us = 0;  // per texel of every photograph
+  double start_MB = 0;
+  double decoded_px_bytes = 0;        // per pixel of the photographs that are decoded at once
+  double texel_bytes = 0;             // per texel
+  double photograph_texel_bytes = 0;  // per texel of every photograph …
+  double most_MB = 0;                 // … of both at most, where texels pass by rows; 0: no bound
 };
 
 // A stage's program is glint-NAME, its folder CAPTURE/glint/NAME, its options are the table [NAME]

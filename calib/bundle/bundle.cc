@@ -18,8 +18,9 @@ using bundle::State;
 void CheckOptions(const BundleOptions& options) {
   const auto& names = CameraParameterNames(options.model);
   for (const std::string& name : options.hold) {
-    const bool length = name[0] == 'f' || name[0] == 'c';
-    if (length || std::find(names.begin(), names.end(), name) == names.end()) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end() ||
+        IsLength(options.model, static_cast<size_t>(found - names.begin()))) {
       throw UserError(fmt::format(
           "option hold: found \"{}\"; name distortion parameters of {}: its parameters are {}",
           name, CameraModelName(options.model), fmt::join(names, ", ")));
@@ -165,7 +166,7 @@ std::string BundleResult::BriefReport() const {
                     estimate.camera.width_px, estimate.camera.height_px, estimate.photos);
     const auto& names = CameraParameterNames(estimate.camera.model);
     for (size_t i = 0; i < names.size(); ++i) {
-      const bool length = names[i][0] == 'f' || names[i][0] == 'c';
+      const bool length = IsLength(estimate.camera.model, i);
       const double value = estimate.camera.parameters[i];
       text += estimate.sigma[i] == 0 ? fmt::format("  {:<3} {:>12.6g}  held\n", names[i], value)
               : length

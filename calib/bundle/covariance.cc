@@ -213,10 +213,9 @@ double FocalSigma(const Camera& camera, const System::Part& part, const Eigen::M
                   double variance) {
   constexpr double kLeastResidual_px = 0.05;
   const double least = std::max(variance, kLeastResidual_px * kLeastResidual_px);
-  const auto& names = CameraParameterNames(camera.model);
   double sigma = 0;
   for (size_t i = 0; i < part.free.size(); ++i) {
-    if (names[part.free[i]][0] != 'f') continue;
+    if (part.free[i] >= static_cast<int>(FocalLengthCount(camera.model))) continue;
     const long at = part.first + static_cast<long>(i);
     sigma = std::max(sigma,
                      std::sqrt(unit(at, at) * least) / std::abs(camera.parameters[part.free[i]]));

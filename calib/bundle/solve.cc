@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <string>
 
@@ -31,7 +30,8 @@ void HoldParameters(const BundleProblem& problem, const BundleOptions& options, 
   std::vector<int> free = FreeParameters(problem, options, camera);
   const auto& names = CameraParameterNames(options.model);
   if (refine == Refine::kFocalAndPoses) {
-    std::erase_if(free, [&](int i) { return names[i][0] != 'f'; });
+    std::erase_if(free,
+                  [&](int i) { return i >= static_cast<int>(FocalLengthCount(options.model)); });
   }
   if (free.empty()) {
     solver->SetParameterBlockConstant(block);
@@ -133,10 +133,7 @@ std::vector<int> FreeParameters(const BundleProblem& problem, const BundleOption
 std::vector<std::pair<int, double>> DistortionPrior(const Camera& camera,
                                                     const std::vector<int>& free) {
   constexpr double kShare = 0.5;
-  // Exponent of r² that each radial term stands with.
-  static const std::map<std::string, int> powers = {{"k", 1},  {"k1", 1}, {"k2", 2}, {"k3", 3},
-                                                    {"k4", 1}, {"k5", 2}, {"k6", 3}};
-  const auto& names = CameraParameterNames(camera.model);
+  const auto& parameters = InfoOf(camera.model).parameters;
   const double focal = camera.focal_length_x();
   const double r2 = 0.25 *
                     (camera.width_px * static_cast<double>(camera.width_px) +
@@ -144,8 +141,10 @@ std::vector<std::pair<int, double>> DistortionPrior(const Camera& camera,
                     (focal * focal);
   std::vector<std::pair<int, double>> prior;
   for (const int i : free) {
-    const auto power = powers.find(names[i]);
-    if (power != powers.end()) prior.emplace_back(i, std::pow(r2, power->second) / kShare);
+    const CameraParameter& parameter = parameters[static_cast<size_t>(i)];
+    if (parameter.kind == CameraParameter::kRadial) {
+      prior.emplace_back(i, std::pow(r2, parameter.power) / kShare);
+    }
   }
   return prior;
 }

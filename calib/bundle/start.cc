@@ -99,11 +99,10 @@ Camera StartCamera(const BundleCamera& description, CameraModel model, double fo
   if (description.known) return *description.known;
   Camera camera{model, description.width_px, description.height_px, {}};
   camera.parameters.assign(CameraParameterNames(model).size(), 0.0);
-  const bool one_focal = CameraParameterNames(model)[0] == "f";
-  camera.parameters[0] = focal_px;
-  if (!one_focal) camera.parameters[1] = focal_px;
-  camera.parameters[one_focal ? 1 : 2] = 0.5 * description.width_px;
-  camera.parameters[one_focal ? 2 : 3] = 0.5 * description.height_px;
+  const size_t centre = PrincipalPointIndex(model);
+  std::fill_n(camera.parameters.begin(), FocalLengthCount(model), focal_px);
+  camera.parameters[centre] = 0.5 * description.width_px;
+  camera.parameters[centre + 1] = 0.5 * description.height_px;
   return camera;
 }
 

@@ -16,13 +16,10 @@ Camera AssumedCamera(const std::vector<DetectedPhoto>& photos, const CameraGroup
                                           : kPhoneFocal_mm / kFilmDiagonal_mm *
                                                 std::hypot(group.width_px, group.height_px);
   Camera camera{model, group.width_px, group.height_px, {}};
-  for (const std::string& name : CameraParameterNames(model)) {
-    const double value = name[0] == 'f' ? focal_px
-                         : name == "cx" ? 0.5 * group.width_px
-                         : name == "cy" ? 0.5 * group.height_px
-                                        : 0;
-    camera.parameters.push_back(value);
-  }
+  camera.parameters.assign(CameraParameterNames(model).size(), 0.0);
+  std::fill_n(camera.parameters.begin(), FocalLengthCount(model), focal_px);
+  camera.parameters[PrincipalPointIndex(model)] = 0.5 * group.width_px;
+  camera.parameters[PrincipalPointIndex(model) + 1] = 0.5 * group.height_px;
   return camera;
 }
 

@@ -58,7 +58,8 @@ namespace {
 
 std::vector<std::string> ModelChoices() {
   std::vector<std::string> names = {"auto"};
-  for (const CameraModel model : CalibratedModels()) names.emplace_back(CameraModelName(model));
+  for (const CameraModel model : CalibratedModels(Calibrated::kOnDemand))
+    names.emplace_back(CameraModelName(model));
   return names;
 }
 

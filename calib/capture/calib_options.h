@@ -13,7 +13,7 @@ namespace glint {
 
 struct CalibOptions {
   std::string poses = "board";  // board, colmap, colmap:DIR: see colmap_poses.h
-  // One of CalibratedModels(); auto: chosen, see validation/model_choice.h
+  // One of CalibratedModels(kOnDemand); auto: chosen, see validation/model_choice.h
   std::string model = "OPENCV";
   std::string cameras = "auto";          // auto, one, each: see camera_groups.h
   std::vector<std::string> hold;         // distortion parameters held at 0

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector2d;
 
 // COLMAP's numbers of the models that Glint does not have.
-enum Fisheye { kOpenCvFisheye = 5, kFov = 7, kSimpleRadialFisheye, kRadialFisheye, kThinPrism };
+enum Foreign { kFov = 7, kThinPrism = 10 };
 
 constexpr std::array<ColmapModelInfo, 11> kModels = {{{"SIMPLE_PINHOLE", 3, 1},
                                                       {"PINHOLE", 4, 2},
@@ -36,25 +36,11 @@ constexpr std::array<ColmapModelInfo, 11> kModels = {{{"SIMPLE_PINHOLE", 3, 1},
 constexpr int kGrid = 25;  // points a side of the picture
 constexpr double kWidestRay = 80 * std::numbers::pi / 180;
 
-// Distance from the centre, over the ray's, in focal lengths, of the models that are radial.
-double RadialScale(int model, const double* extra, double radius) {
-  const double theta = std::atan(radius), t2 = theta * theta;
-  switch (model) {
-    case kFov: {
-      const double omega = extra[0];
-      if (std::abs(omega) < 1e-6) return 1;
-      if (radius < 1e-9) return 2 * std::tan(omega / 2) / omega;
-      return std::atan(radius * 2 * std::tan(omega / 2)) / (radius * omega);
-    }
-    case kOpenCvFisheye: {
-      const double series = 1 + t2 * (extra[0] + t2 * (extra[1] + t2 * (extra[2] + t2 * extra[3])));
-      return radius < 1e-9 ? 1 : theta * series / radius;
-    }
-    default: {
-      const double k2 = model == kRadialFisheye ? extra[1] : 0;
-      return radius < 1e-9 ? 1 : theta * (1 + t2 * (extra[0] + t2 * k2)) / radius;
-    }
-  }
+// FOV's distance from the centre, over the ray's, in focal lengths.
+double FovScale(double omega, double radius) {
+  if (std::abs(omega) < 1e-6) return 1;
+  if (radius < 1e-9) return 2 * std::tan(omega / 2) / omega;
+  return std::atan(radius * 2 * std::tan(omega / 2)) / (radius * omega);
 }
 
 // The equidistant projection with OpenCV's and thin-prism terms: k1 k2 p1 p2 k3 k4 sx1 sy1.
@@ -146,7 +132,7 @@ std::vector<Ray> GridRays(const std::filesystem::path& file, const ColmapCamera&
 std::array<double, 4> LensOf(const ColmapCamera& camera) {
   const auto& p = camera.parameters;
   const size_t n = kModels[camera.model].focal_lengths;
-  const double scale = camera.model == kFov ? RadialScale(kFov, &p[4], 0) : 1;
+  const double scale = camera.model == kFov ? FovScale(p[4], 0) : 1;
   return {p[0] * scale, p[n - 1] * scale, p[n], p[n + 1]};
 }
 
@@ -194,9 +180,9 @@ Vector2d ColmapImagePoint(int model, std::span<const double> parameters, double 
   }
   const size_t n = info.focal_lengths;
   const double* extra = parameters.data() + n + 2;
-  const Vector2d bent =
-      model == kThinPrism ? ThinPrism(extra, u, v)
-                          : Vector2d(Vector2d(u, v) * RadialScale(model, extra, std::hypot(u, v)));
+  const Vector2d bent = model == kThinPrism
+                            ? ThinPrism(extra, u, v)
+                            : Vector2d(Vector2d(u, v) * FovScale(extra[0], std::hypot(u, v)));
   return {parameters[0] * bent.x() + parameters[n],
           parameters[n - 1] * bent.y() + parameters[n + 1]};
 }
@@ -206,6 +192,7 @@ ConvertedCamera ConvertCamera(const std::filesystem::path& file, const ColmapCam
   if (const auto own = CameraModelFromName(kModels[camera.model].name)) {
     converted.camera = {*own, static_cast<int>(camera.width_px), static_cast<int>(camera.height_px),
                         camera.parameters};
+    if (kModels[camera.model].name.ends_with("FISHEYE")) GridRays(file, camera);
     return converted;
   }
   const std::vector<Ray> rays = GridRays(file, camera);

@@ -1,8 +1,7 @@
 // COLMAP 3.8's camera models, and their conversion to ours.
 //
-// Six are the same here and there (camera/camera_model.h). The five fisheye-like ones bend rays by
-// their angle; over the picture they are replaced by a FULL_OPENCV camera that is fitted to a grid
-// of the picture's points.
+// Nine are the same here and there (base/camera/camera_model.h). FOV and THIN_PRISM_FISHEYE are
+// replaced by a FULL_OPENCV camera that is fitted to a grid of the picture's points.
 #pragma once
 
 #include <filesystem>
@@ -38,8 +37,8 @@ struct ConvertedCamera {
 // A fit farther off than this anywhere in the picture is refused.
 inline constexpr double kLargestConversion_px = 0.5;
 
-// `file` is named in errors. Throws UserError where no perspective camera comes near: rays beyond
-// 80° from the axis, or a fit that is off by more than kLargestConversion_px.
+// `file` is named in errors. Throws UserError for a lens that sees beyond 80° from its axis, and
+// for a fit that is off by more than kLargestConversion_px.
 ConvertedCamera ConvertCamera(const std::filesystem::path& file, const ColmapCamera& camera);
 
 ColmapCamera ToColmapCamera(const Camera& camera, std::uint32_t id);

@@ -17,7 +17,7 @@ namespace {
 BundleProblem SharedCorners(const BundleProblem& problem, const BundleOptions& options) {
   std::exception_ptr error;
   BundleResult best;
-  for (const CameraModel model : CalibratedModels()) {
+  for (const CameraModel model : CalibratedModels(Calibrated::kCompared)) {
     try {
       BundleResult result = AdjustBundle(problem, WithModel(options, model));
       if (result.inliers > best.inliers) best = std::move(result);
@@ -87,8 +87,9 @@ ModelChoice ChooseModel(const BundleProblem& problem, const BundleOptions& optio
   const BundleProblem shared = options.reject ? SharedCorners(problem, options) : problem;
   std::vector<Judged> judged;
   const Judged* best = nullptr;
-  judged.reserve(CalibratedModels().size());
-  for (const CameraModel model : CalibratedModels()) {
+  const std::vector<CameraModel> compared = CalibratedModels(Calibrated::kCompared);
+  judged.reserve(compared.size());
+  for (const CameraModel model : compared) {
     judged.push_back(Judge(shared, WithModel(fixed_corners, model)));
     const Judged& last = judged.back();
     if (!last.trial.problem.empty()) continue;

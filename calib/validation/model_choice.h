@@ -28,7 +28,7 @@ struct ModelChoice {
   std::string reason;
 };
 
-// Of CalibratedModels(); `options.model` where no model can be judged
+// Of CalibratedModels(kCompared); `options.model` where no model can be judged
 // (see CrossValidate). Terms of options.hold that a model has not are ignored for that model.
 // Throws what AdjustBundle throws when no model can be fitted.
 ModelChoice ChooseModel(const BundleProblem& problem, const BundleOptions& options);

@@ -62,9 +62,9 @@ Method WithStart(Method method, const std::string& start) {
   } else if (start == "rough") {
     method.start = RoughStart;
   } else if (start == "heuristic") {
-    method.fit_arguments.insert(method.fit_arguments.end(), {"--bootstrap", "heuristic"});
+    method.fit_arguments.insert(method.fit_arguments.end(), {"--initial-maps", "rules"});
   } else if (start == "network") {
-    method.fit_arguments.insert(method.fit_arguments.end(), {"--bootstrap", "estimator"});
+    method.fit_arguments.insert(method.fit_arguments.end(), {"--initial-maps", "estimator"});
   } else {
     throw UserError("starts: found \"" + start +
                     "\"; use random, heuristic, network, truth, rough");

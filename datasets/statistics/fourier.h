@@ -1,4 +1,4 @@
-// Fourier transform of square planes whose side is a power of two.
+// Fourier transform of square planes.
 #pragma once
 
 #include <complex>
@@ -10,7 +10,7 @@ namespace glint {
 using Complex = std::complex<double>;
 
 // In place, side × side, row-major; e^(−2πi…), no scaling. The inverse divides by side². Throws
-// std::invalid_argument when the side is no power of two or the plane has another size.
+// std::invalid_argument when the plane has another size.
 void Fourier2d(std::vector<Complex>* plane, int side);
 void InverseFourier2d(std::vector<Complex>* plane, int side);
 

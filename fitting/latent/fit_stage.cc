@@ -15,8 +15,8 @@
 #include "base/formats/svbrdf_rows.h"
 #include "base/programs/progress.h"
 #include "base/resampling/resampling.h"
-#include "fitting/bootstrap/bootstrap.h"
 #include "fitting/estimator/estimator.h"
+#include "fitting/initial_maps/rules.h"
 #include "fitting/latent/levels.h"
 #include "fitting/latent/light_power.h"
 #include "fitting/latent/spread_views.h"
@@ -66,7 +66,7 @@ auto AsUserError(const Action& action) {
 }
 
 bool Estimates(const FitStageOptions& options) {
-  return options.start.empty() && options.bootstrap == "estimator";
+  return options.start.empty() && options.initial_maps == "estimator";
 }
 
 using Size = std::pair<int, int>;  // width, height
@@ -233,8 +233,8 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
                  "explained better by the initial maps, unless --iterations is given; classic: the "
                  "maps themselves, texel by texel; start: the initial maps, unfitted");
   set->AddChoice(
-      "bootstrap", &options->bootstrap, {"estimator", "heuristic"},
-      "how the initial maps are estimated; estimator: a trained network; heuristic: lobes fitted "
+      "initial-maps", &options->initial_maps, {"estimator", "rules"},
+      "how the initial maps are estimated; estimator: a trained network; rules: lobes fitted "
       "to the whole sample");
   set->AddChoice("metals", &options->metals, {"rare", "possible"},
                  "how dark, glossy areas are interpreted, by the estimator, in refinement and in "

@@ -16,9 +16,9 @@ inline constexpr int kFitVersion = 11;
 struct FitStageOptions {
   // latent: in the learned space; classic: texel by texel; start: no fitting, the start as it is
   std::string method = "latent";
-  std::string bootstrap = "estimator";  // estimator: the trained network; heuristic: bootstrap.h
+  std::string initial_maps = "estimator";  // estimator: the trained network; rules: rules.h
   // rare or possible: what the estimator is told of dark, glossy texels (estimator_conditions.h).
-  // Without effect where `start` is given, and on heuristics.
+  // Without effect where `start` is given, and on rules.
   std::string metals = "rare";
   // Texels along the longer side of what the estimator is shown, at most; 0: by the number of
   // photographs.

@@ -278,7 +278,7 @@ TEST_F(BadInputTest, ATruncatedEstimatorFile) {
   WriteAll(weights, std::string("\x00\x10\x00\x00\x00\x00\x00\x00{\"w\":", 13));
   ExpectRefusal(
       {weights.string()}, 2,
-      {"fit", capture().string(), "--bootstrap", "estimator", "--estimator", weights.string()});
+      {"fit", capture().string(), "--initial-maps", "estimator", "--estimator", weights.string()});
 }
 
 TEST_F(BadInputTest, WeightsOfTheOtherNetwork) {

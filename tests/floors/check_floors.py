@@ -18,7 +18,7 @@ FLOORS = {
     "triage colmap guidance capture",
     "rectify": "resample views",
     "fitting": "encoding weights photographs layers render autoencoder estimator rectified_photographs relief "
-    "bootstrap latent texel view_correction refine tiling",
+    "initial_maps latent texel view_correction refine tiling",
     "datasets": "procedural material_pack map_formats import synth statistics looks evaluation",
     "training": "",
     "pipeline": "driver export viewer report overview studio",

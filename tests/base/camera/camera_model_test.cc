@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/camera/camera_model.h"
 
 namespace glint {
@@ -20,9 +22,8 @@ Camera Phone(CameraModel model) {
 }
 
 TEST(CameraModel, UndistortionInvertsDistortionOverTheWholeImage) {
-  for (const CameraModel model :
-       {CameraModel::kSimplePinhole, CameraModel::kPinhole, CameraModel::kSimpleRadial,
-        CameraModel::kRadial, CameraModel::kOpenCv, CameraModel::kFullOpenCv}) {
+  for (const CameraModelInfo& info : kCameraModels) {
+    const CameraModel model = info.model;
     const Camera camera = Phone(model);
     for (double x = 0; x <= 4000; x += 500) {
       for (double y = 0; y <= 3000; y += 500) {
@@ -43,11 +44,45 @@ TEST(CameraModel, FoldedDistortionHasNoInverse) {
 }
 
 TEST(CameraModel, NamesRoundTrip) {
-  for (const char* name :
-       {"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV"}) {
-    EXPECT_EQ(CameraModelName(*CameraModelFromName(name)), name);
+  for (const CameraModelInfo& info : kCameraModels) {
+    EXPECT_EQ(CameraModelName(info.model), info.name);
+    EXPECT_EQ(CameraModelFromName(info.name), info.model);
   }
   EXPECT_FALSE(CameraModelFromName("FISHEYE"));
+}
+
+TEST(CameraModel, FocalLengthsAndThePrincipalPointComeFirst) {
+  for (const CameraModelInfo& info : kCameraModels) {
+    const size_t centre = PrincipalPointIndex(info.model);
+    for (size_t i = 0; i < info.parameters.size(); ++i) {
+      const auto kind = info.parameters[i].kind;
+      EXPECT_EQ(kind == CameraParameter::kFocalLength, i < centre) << info.name;
+      EXPECT_EQ(kind == CameraParameter::kPrincipalPoint, i == centre || i == centre + 1);
+    }
+  }
+}
+
+// θ = 45° at u = 1: the equidistant projection puts it at f·π/4.
+TEST(CameraModel, FisheyesBendByTheAngle) {
+  const double theta = std::atan(1.0);
+  const Camera simple{CameraModel::kSimpleRadialFisheye, 10, 10, {100, 5, 6, 0.05}};
+  EXPECT_NEAR(ImageFromCamera(simple, {2, 0, 2}).x(), 5 + 100 * theta * (1 + 0.05 * theta * theta),
+              1e-9);
+  const Camera opencv{CameraModel::kOpenCvFisheye, 10, 10, {100, 200, 5, 6, 0, 0, 0, 0.5}};
+  EXPECT_NEAR(ImageFromCamera(opencv, {0, 2, 2}).y(),
+              6 + 200 * theta * (1 + 0.5 * std::pow(theta, 8)), 1e-9);
+}
+
+// Where the closed form has no derivative the series takes over: value and slope go on.
+TEST(CameraModel, FisheyesAreSmoothAtTheAxis) {
+  const double k[] = {0.05};
+  const auto bent = [&](double u) {
+    double x, y;
+    Distorted(CameraModel::kSimpleRadialFisheye, k, u, 0.0, &x, &y);
+    return x;
+  };
+  EXPECT_EQ(bent(0), 0);
+  EXPECT_NEAR(bent(1.0001e-4) - bent(0.9999e-4), 0.0002e-4, 1e-15);
 }
 
 TEST(CameraModel, ScalingTheImageScalesItsPoints) {

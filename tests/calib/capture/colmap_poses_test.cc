@@ -210,13 +210,13 @@ TEST_F(ColmapPoses, TheModelIsKeptInTheSamplesFrameAndExported) {
   EXPECT_EQ(exported.points.size(), 600u);
 }
 
-TEST_F(ColmapPoses, FisheyeLensesAreConvertedWithTheirErrorStated) {
+TEST_F(ColmapPoses, ForeignLensesAreConvertedWithTheirErrorStated) {
   ColmapModel fisheye = ModelOf();
   fisheye.cameras[0] = {1,
-                        *ColmapModelFromName("OPENCV_FISHEYE"),
+                        *ColmapModelFromName("THIN_PRISM_FISHEYE"),
                         640,
                         480,
-                        {560, 560, 323.3, 237.1, 0.3, 0.1, 0, 0}};
+                        {560, 560, 323.3, 237.1, 0.3, 0.1, 0, 0, 0, 0, 0, 0}};
   WriteColmapModel(model(), fisheye, ColmapFormat::kBinary);
   ASSERT_EQ(Calibrate(Toml(Corners(2))).code, 0);
   EXPECT_EQ(Result().cameras[0].model, CameraModel::kFullOpenCv);

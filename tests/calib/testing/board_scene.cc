@@ -41,6 +41,12 @@ Camera PhoneCamera(CameraModel model) {
       return {model, 4000, 3000, {3100, 2011, 1489, 0.06, -0.09}};
     case CameraModel::kOpenCv:
       return {model, 4000, 3000, {3100, 3105, 2011, 1489, 0.06, -0.09, 4e-4, -6e-4}};
+    case CameraModel::kOpenCvFisheye:
+      return {model, 4000, 3000, {3100, 3105, 2011, 1489, 0.06, -0.09, 0.03, -0.01}};
+    case CameraModel::kSimpleRadialFisheye:
+      return {model, 4000, 3000, {3100, 2011, 1489, 0.04}};
+    case CameraModel::kRadialFisheye:
+      return {model, 4000, 3000, {3100, 2011, 1489, 0.06, -0.09}};
     default:
       return {CameraModel::kFullOpenCv,
               4000,

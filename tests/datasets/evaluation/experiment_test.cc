@@ -185,7 +185,7 @@ TEST(WithStart, StartsAreWhatTheyAreCalled) {
   const Method network = WithStart(NamedMethod("latent", {"--a"}, {}), "network");
   EXPECT_EQ(network.name, "network-latent");
   EXPECT_EQ(network.capture, "network-latent");
-  EXPECT_THAT(network.fit_arguments, ElementsAre("--a", "--bootstrap", "estimator"));
+  EXPECT_THAT(network.fit_arguments, ElementsAre("--a", "--initial-maps", "estimator"));
   EXPECT_EQ(WithStart(NamedMethod("refined", {}, {}), "truth").capture, "truth-latent");
 }
 

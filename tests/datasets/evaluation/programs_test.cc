@@ -219,7 +219,7 @@ TEST_F(ExperimentTest, EveryVerbWritesTableFiguresPlotAndPictures) {
   const std::string calls = Calls();
   EXPECT_THAT(calls, HasSubstr("all-latent --method latent"));
   EXPECT_THAT(calls, HasSubstr("--start " + Path("work/procedural_1000000001/n01/rough-latent")));
-  EXPECT_THAT(calls, HasSubstr("--bootstrap heuristic"));
+  EXPECT_THAT(calls, HasSubstr("--initial-maps rules"));
 }
 
 // With the programs themselves: small, but whole.
@@ -227,7 +227,7 @@ TEST_F(ProgramsTest, ATinyTableEndToEnd) {
   const Outcome outcome =
       Eval({"table1", "procedural:1000000101", "--counts", "2", "--methods",
             "start,classic,latent,refined", "--size", "32", "--threads", "1",
-            "--fit-args=--bootstrap,heuristic,--iterations,5", "--work", Path("work"), "--json"});
+            "--fit-args=--initial-maps,rules,--iterations,5", "--work", Path("work"), "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Json means = Json::parse(outcome.out)["means"];
   ASSERT_EQ(means.size(), 4u);

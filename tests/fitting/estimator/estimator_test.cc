@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "fitting/estimator/estimator_file.h"
-#include "tests/fitting/bootstrap/synthetic_set.h"
+#include "tests/fitting/initial_maps/synthetic_set.h"
 #include "tests/support/process.h"
 #include "tests/training/toy_materials.h"
 

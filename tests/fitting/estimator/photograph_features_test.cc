@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fitting/estimator/photograph_features_torch.h"
-#include "tests/fitting/bootstrap/synthetic_set.h"
+#include "tests/fitting/initial_maps/synthetic_set.h"
 
 namespace glint {
 namespace {

@@ -5,7 +5,7 @@
 #include "base/formats/rectified_set.h"
 #include "fitting/estimator/estimator.h"
 #include "fitting/weights/find_model.h"
-#include "tests/fitting/bootstrap/synthetic_set.h"
+#include "tests/fitting/initial_maps/synthetic_set.h"
 #include "tests/support/process.h"
 
 namespace glint {
@@ -27,9 +27,9 @@ TEST(FitInputs, AreTheEstimatorUnlessInitialMapsComeFromElsewhere) {
   };
   EXPECT_EQ(name(WithMetals("possible")), kEstimatorModel);
   EXPECT_EQ(name(WithMetals("rare")), kEstimatorModel);
-  FitStageOptions heuristic = WithMetals("rare");
-  heuristic.bootstrap = "heuristic";
-  EXPECT_EQ(name(heuristic), "");
+  FitStageOptions rules = WithMetals("rare");
+  rules.initial_maps = "rules";
+  EXPECT_EQ(name(rules), "");
 }
 
 TEST(FitInputs, OfAnEstimatorThatIsGivenAreThatOne) {

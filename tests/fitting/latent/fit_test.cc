@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "fitting/bootstrap/bootstrap.h"
+#include "fitting/initial_maps/rules.h"
 #include "fitting/latent/descent.h"
 #include "fitting/latent/fit_loss.h"
 #include "fitting/latent/levels.h"
-#include "tests/fitting/bootstrap/synthetic_set.h"
+#include "tests/fitting/initial_maps/synthetic_set.h"
 #include "tests/training/toy_materials.h"
 
 namespace glint {

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "tests/fitting/bootstrap/synthetic_set.h"
+#include "tests/fitting/initial_maps/synthetic_set.h"
 #include "tests/training/toy_materials.h"
 
 namespace glint {

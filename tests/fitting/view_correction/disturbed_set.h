@@ -7,7 +7,7 @@
 #include "fitting/render/render_environment.h"
 #include "fitting/render/renderer.h"
 #include "fitting/view_correction/view_correction.h"
-#include "tests/fitting/bootstrap/synthetic_set.h"
+#include "tests/fitting/initial_maps/synthetic_set.h"
 
 namespace glint::test {
 

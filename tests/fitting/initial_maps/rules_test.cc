@@ -1,11 +1,11 @@
-#include "fitting/bootstrap/bootstrap.h"
+#include "fitting/initial_maps/rules.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <numeric>
 
-#include "tests/fitting/bootstrap/synthetic_set.h"
+#include "tests/fitting/initial_maps/synthetic_set.h"
 #include "tests/training/toy_materials.h"
 
 namespace glint {
@@ -61,7 +61,7 @@ TEST(Lobes, OfAPolishedUnevenSampleAreSharp) {
   }
 }
 
-TEST(Bootstrap, DiffuseTextureIsFound) {
+TEST(RuleBasedMaps, DiffuseTextureIsFound) {
   SvbrdfMaps truth = UniformMaps(64, 0.3f, 0.04f, 0.5f);
   for (int row = 0; row < 64; ++row) {
     for (int column = 0; column < 32; ++column) truth.at(kDiffuseR, row, column) = 0.1f;
@@ -72,7 +72,7 @@ TEST(Bootstrap, DiffuseTextureIsFound) {
   }
 }
 
-TEST(Bootstrap, NormalsOfAMattSampleComeFromManyPhotographs) {
+TEST(RuleBasedMaps, NormalsOfAMattSampleComeFromManyPhotographs) {
   SvbrdfMaps truth = UniformMaps(32, 0.4f, 0.02f, 0.8f);
   for (int row = 0; row < 32; ++row) {
     for (int column = 0; column < 32; ++column) {
@@ -87,7 +87,7 @@ TEST(Bootstrap, NormalsOfAMattSampleComeFromManyPhotographs) {
   EXPECT_NEAR(MeanError(EstimateMaps(PhotographMaps(truth, 2), 1), truth, kNormalX), flat, 1e-6);
 }
 
-TEST(Bootstrap, IsCloserToTheTruthThanADefault) {
+TEST(RuleBasedMaps, IsCloserToTheTruthThanADefault) {
   double estimate = 0, plain = 0;
   for (std::uint64_t k = 0; k < 6; ++k) {
     const SvbrdfMaps truth = ToyMaterial(k, 48, 48);
@@ -101,7 +101,7 @@ TEST(Bootstrap, IsCloserToTheTruthThanADefault) {
   EXPECT_LT(estimate, 0.7 * plain);
 }
 
-TEST(Bootstrap, DoesNotDependOnTheOrderOfPhotographsOrThreads) {
+TEST(RuleBasedMaps, DoesNotDependOnTheOrderOfPhotographsOrThreads) {
   PhotographSet set = PhotographMaps(ToyMaterial(3, 40, 24), 5);
   const SvbrdfMaps maps = EstimateMaps(set, 1);
   EXPECT_EQ(maps.planes, EstimateMaps(set, 2).planes);
@@ -112,7 +112,7 @@ TEST(Bootstrap, DoesNotDependOnTheOrderOfPhotographsOrThreads) {
   }
 }
 
-TEST(Bootstrap, MaskedTexelsMayHoldAnything) {
+TEST(RuleBasedMaps, MaskedTexelsMayHoldAnything) {
   PhotographSet set = PhotographMaps(ToyMaterial(3, 40, 24), 2);
   PhotographSet spoilt = set;
   for (PhotographSet* s : {&set, &spoilt}) {

@@ -1,4 +1,4 @@
-#include "fitting/bootstrap/lobes.h"
+#include "fitting/initial_maps/lobes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fitting/bootstrap/bootstrap.h"
+#include "fitting/initial_maps/rules.h"
 
 #include <algorithm>
 #include <cmath>

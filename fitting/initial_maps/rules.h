@@ -9,7 +9,7 @@
 #pragma once
 
 #include "base/reflectance/svbrdf_maps.h"
-#include "fitting/bootstrap/lobes.h"
+#include "fitting/initial_maps/lobes.h"
 #include "fitting/photographs/photographs.h"
 
 namespace glint {
