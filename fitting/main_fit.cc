@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/formats/capture.h"
+#include "base/formats/rectified_set.h"
 #include "base/programs/cost_model.h"
 #include "base/programs/program.h"
 #include "fitting/latent/fit_stage.h"
@@ -30,16 +31,15 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, FitStageO
                   const CommonOptions& common) {
   const Capture capture = ReadCapture(folder);
   set->LoadToml(capture.file, "fit");
-  const auto rectify_manifest = capture.work() / "rectify" / "manifest.json";
-  VerifyOutputs(rectify_manifest, ReadManifest(rectify_manifest, "rectify"));
-  ResolveFitOptions(rectify_manifest, options);
-  std::vector<std::filesystem::path> inputs = {rectify_manifest};
+  const auto views_manifest = ViewsManifest(capture.work());
+  ResolveFitOptions(views_manifest, options);
+  std::vector<std::filesystem::path> inputs = {views_manifest};
   for (const auto& input : FitInputs(*options)) inputs.push_back(input);
   Stage stage(capture.work() / "fit", {"fit", kFitVersion}, *set, common, inputs);
   if (stage.UpToDate()) return stage.UpToDateResult();
   RequireMemoryForStage("fit", capture, common.threads);
   return Summarise(stage, *options,
-                   RunFitStage(rectify_manifest, *options, common.threads, &stage));
+                   RunFitStage(views_manifest, *options, common.threads, &stage));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "base/errors/errors.h"
 #include "base/formats/capture.h"
+#include "base/formats/rectified_set.h"
 #include "base/programs/cost_model.h"
 #include "base/programs/program.h"
 #include "fitting/refine/refine_stage.h"
@@ -54,18 +55,18 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined, in
 
 // What every result of refinement depends on.
 struct Sources {
-  std::filesystem::path work, rectify_manifest;
+  std::filesystem::path work, views_manifest;
   RefineStart start;
   std::vector<std::filesystem::path> inputs;
 };
 
 Sources ReadSources(const Capture& capture, const RefineStageOptions& options) {
   Sources sources{capture.work(),
-                  capture.work() / "rectify" / "manifest.json",
+                  ViewsManifest(capture.work()),
                   ResolveRefineStart(capture.work(), options),
                   {}};
-  const std::filesystem::path& manifest = sources.rectify_manifest;
-  VerifyOutputs(manifest, ReadManifest(manifest, "rectify"));
+  const std::filesystem::path& manifest = sources.views_manifest;
+  ReadRectifiedSet(manifest);  // checks it and its images
   const RefineStart& start = sources.start;
   sources.inputs = {manifest, start.manifest_file.empty() ? start.maps_file : start.manifest_file};
   return sources;
@@ -101,7 +102,7 @@ ProgramResult RunPart(const Capture& capture, const Sources& sources, const Opti
   if (stage.UpToDate()) return stage.UpToDateResult();
   RequireMemoryForStage("refine", capture, common.threads);
   const RowRange rows =
-      RunRefinePart(sources.rectify_manifest, sources.start, options, part, common.threads, &stage);
+      RunRefinePart(sources.views_manifest, sources.start, options, part, common.threads, &stage);
   ProgramResult result;
   result.text = fmt::format("refine: part {} of {}, rows {} to {} of {}\n", part.part, part.of,
                             rows.first + 1, rows.first + rows.rows, rows.of);
@@ -154,7 +155,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RefineSta
   std::vector<std::filesystem::path> folders;
   folders.reserve(parts.size());
   for (const Stage& part : parts) folders.push_back(part.folder());
-  const RefineStageResult result = RunRefineStage(sources.rectify_manifest, sources.start, *options,
+  const RefineStageResult result = RunRefineStage(sources.views_manifest, sources.start, *options,
                                                   folders, common.threads, &stage);
   RemoveParts(sources.work);
   return Summarise(stage, result, options->join);

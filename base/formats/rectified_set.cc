@@ -7,6 +7,7 @@
 
 #include "base/errors/errors.h"
 #include "base/formats/rectified_rows.h"
+#include "base/stages/stages.h"
 #include "base/photos/photo_name.h"
 
 namespace glint {
@@ -117,8 +118,16 @@ Json ToJson(const RectifiedSet& set) {
   return data;
 }
 
+std::filesystem::path ViewsManifest(const std::filesystem::path& work) {
+  return work / LastGiving(Gives::kViews).name / "manifest.json";
+}
+
 RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file) {
-  const Manifest manifest = ReadManifest(manifest_file, "rectify");
+  Manifest manifest = ReadManifest(manifest_file);
+  const StageKind* stage = FindStage(manifest.stage);
+  if (stage == nullptr || stage->gives != Gives::kViews) {
+    manifest = ReadManifest(manifest_file, std::string(LastGiving(Gives::kViews).name));
+  }
   VerifyOutputs(manifest_file, manifest);
   const Json& data = manifest.data;
   RectifiedSet set;

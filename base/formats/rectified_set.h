@@ -49,7 +49,10 @@ struct RectifiedImage {
 // The "data" object of the rectify manifest.
 Json ToJson(const RectifiedSet& set);
 
-// Reads and checks manifest (stage "rectify") without its images. Throws UserError.
+// The manifest of the views that fitting reads; `work`: CAPTURE/glint.
+std::filesystem::path ViewsManifest(const std::filesystem::path& work);
+
+// Reads and checks the manifest of a stage that gives views, without its images. Throws UserError.
 RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file);
 
 // Throws UserError when size or channels do not fit the set.

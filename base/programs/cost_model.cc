@@ -40,7 +40,7 @@ CaptureSize SizeOf(const Capture& capture) {
   size.native_bfloat16 = NativeBfloat16();
   try {
     if (capture.imported()) {
-      const fs::path manifest = capture.work() / "rectify" / "manifest.json";
+      const fs::path manifest = ViewsManifest(capture.work());
       if (!fs::exists(manifest)) return size;
       const RectifiedSet set = ReadRectifiedSet(manifest);
       size.texels = static_cast<double>(set.plane.width) * set.plane.height;

@@ -1,6 +1,7 @@
 #include "base/stages/stages.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace glint {
 namespace {
@@ -8,9 +9,11 @@ namespace {
 constexpr StageKind kStages[] = {
     {.name = "calib",
      .summary = "cameras, poses and lights from the board",
+     .gives = Gives::kCalibration,
      .cost = {.start_s = 1.5, .photograph_px_us = 0.025, .start_MB = 200, .decoded_px_bytes = 15}},
     {.name = "rectify",
      .summary = "rectified top views of the sample in linear radiance",
+     .gives = Gives::kViews,
      .cost = {.start_s = 0.4,
               .photograph_px_us = 0.012,
               .photograph_texel_us = 0.13,
@@ -20,6 +23,7 @@ constexpr StageKind kStages[] = {
               .most_MB = 70}},
     {.name = "fit",
      .summary = "material maps by latent or classic fitting",
+     .gives = Gives::kMaps,
      .cost = {.start_s = 1,
               .network_s = 7,
               .texel_us = 1,
@@ -28,6 +32,7 @@ constexpr StageKind kStages[] = {
               .most_MB = 190}},
     {.name = "refine",
      .summary = "material maps per texel",
+     .gives = Gives::kMaps,
      .cost = {.start_s = 0.2,
               .photograph_pair_s = 0.026,
               .texel_us = 3,
@@ -39,6 +44,7 @@ constexpr StageKind kStages[] = {
      .by_parts = true},
     {.name = "tile",
      .summary = "seamlessly tiling maps ([tile] section in capture.toml)",
+     .gives = Gives::kMaps,
      .cost = {.start_s = 0.2, .texel_us = 3.2, .start_MB = 140, .texel_bytes = 300}},
     {.name = "export",
      .summary = "maps and materials for other programs",
@@ -63,6 +69,11 @@ const StageKind* FindStage(std::string_view name) {
   const auto found = std::find_if(std::begin(kStages), std::end(kStages),
                                   [&](const StageKind& stage) { return stage.name == name; });
   return found == std::end(kStages) ? nullptr : found;
+}
+
+const StageKind& LastGiving(Gives what) {
+  return *std::find_if(std::rbegin(kStages), std::rend(kStages),
+                       [&](const StageKind& stage) { return stage.gives == what; });
 }
 
 std::string ManifestPath(std::string_view stage) {

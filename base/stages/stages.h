@@ -27,11 +27,15 @@ struct StageCost {
   double most_MB = 0;                 // … of both at most, where texels pass by rows; 0: no bound
 };
 
+// What a stage's result is for those that read it.
+enum class Gives { kCalibration, kViews, kMaps, kFiles };
+
 // A stage's program is glint-NAME, its folder CAPTURE/glint/NAME, its options are the table [NAME]
 // of capture.toml.
 struct StageKind {
   std::string_view name;
   std::string_view summary;  // one line, for lists of commands
+  Gives gives = Gives::kFiles;
   StageCost cost;
   bool by_parts = false;  // whether several jobs can share it: --part K/N, then --join N
 };
@@ -41,6 +45,9 @@ std::span<const StageKind> Stages();
 
 // Null for a name that is no stage's.
 const StageKind* FindStage(std::string_view name);
+
+// The last of the stages that give views, say: what later stages read.
+const StageKind& LastGiving(Gives what);
 
 // Relative to the capture's folder: "glint/<stage>/manifest.json".
 std::string ManifestPath(std::string_view stage);

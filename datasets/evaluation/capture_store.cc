@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/errors/errors.h"
+#include "base/formats/rectified_set.h"
 #include "datasets/evaluation/link_files.h"
 
 namespace glint {
@@ -11,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // What a set of views consists of; the last makes it complete.
-const fs::path kParts[] = {"photos", "truth", "capture.toml", fs::path("glint") / "rectify"};
+const fs::path kParts[] = {"photos", "truth", "capture.toml", ViewsManifest("glint").parent_path()};
 
 // Files that other captures may share must not be written over in place.
 void RemoveViews(const fs::path& capture) {

@@ -9,6 +9,7 @@
 
 #include "base/errors/errors.h"
 #include "base/files/files.h"
+#include "base/formats/rectified_set.h"
 #include "base/images/image.h"
 #include "base/programs/subprocess.h"
 #include "datasets/evaluation/experiment.h"
@@ -101,7 +102,7 @@ HoldoutFigures FiguresOf(const FittedMaps& fit, const std::optional<StatedDeviat
 }
 
 bool HasRectifiedViews(const fs::path& set) {
-  return fs::exists(set / "glint" / "rectify" / "manifest.json");
+  return fs::exists(ViewsManifest(set / "glint"));
 }
 
 // One set's runs.
@@ -183,7 +184,7 @@ class SetRuns {
 
   // Folder of the rectified views: the capture's own, or those of an import.
   fs::path Rectified() const {
-    const fs::path part = fs::path("glint") / "rectify";
+    const fs::path part = ViewsManifest("glint").parent_path();
     if (HasRectifiedViews(source_)) return source_ / part;
     const fs::path capture = folder_ / "capture";
     std::vector<std::string> arguments{source_.string(), capture.string()};
@@ -202,8 +203,9 @@ class SetRuns {
     const std::string prefix = programs.name.empty() ? "" : programs.name + "_";
     const fs::path capture = folder_ / split.folder / (prefix + method.capture);
     const fs::path log = folder_ / split.folder / (prefix + method.name + ".log");
-    if (!fs::exists(capture / "glint" / "rectify" / "manifest.json")) {
-      LinkFolder(rectified_, capture / "glint" / "rectify");
+    const fs::path views_manifest = ViewsManifest(capture / "glint");
+    if (!fs::exists(views_manifest)) {
+      LinkFolder(rectified_, views_manifest.parent_path());
       // Neither photographs nor board: its work begins at fit, with the programs' own options.
       WriteFileAtomically(
           capture / "capture.toml",

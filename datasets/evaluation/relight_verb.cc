@@ -8,7 +8,9 @@
 
 #include "base/errors/errors.h"
 #include "base/files/files.h"
+#include "base/formats/rectified_set.h"
 #include "base/images/image.h"
+#include "base/stages/stages.h"
 #include "datasets/evaluation/held_out_views.h"
 #include "datasets/evaluation/light_interpolation.h"
 #include "datasets/looks/view_error.h"
@@ -196,10 +198,11 @@ Json JsonOf(const std::vector<RelightRow>& rows) {
 
 // Photographs of the set's rectified views.
 size_t PhotographsOf(const fs::path& set) {
-  const fs::path file = set / "glint" / "rectify" / "manifest.json";
+  const fs::path file = ViewsManifest(set / "glint");
   if (!fs::exists(file)) {
     throw UserError(set, "", "no rectified views",
-                    "run first: glint run " + set.string() + " --until rectify");
+                    fmt::format("run first: glint run {} --until {}", set.string(),
+                                LastGiving(Gives::kViews).name));
   }
   return ReadRectifiedSet(file).views.size();
 }

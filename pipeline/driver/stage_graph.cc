@@ -106,7 +106,8 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
     steps.push_back(Step("calib", calib_files, {}));
     steps.push_back(Step("rectify", rectify_files, {"calib"}));
   }
-  steps.push_back(Step("fit", {}, {"rectify"}));
+  const std::string views(LastGiving(Gives::kViews).name);
+  steps.push_back(Step("fit", {}, {views}));
   const std::string& method = choices.method;
   if (!method.empty()) {
     steps.back().arguments = {"--method", method == "refined" ? "latent" : method};
@@ -117,7 +118,7 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
   }
   AddSelection(choices, &steps.back());
   if (choices.refines()) {
-    steps.push_back(Step("refine", {}, {"rectify", "fit"}));
+    steps.push_back(Step("refine", {}, {views, "fit"}));
     AddSelection(choices, &steps.back());
   }
   const std::string last = choices.refines() ? "refine" : "fit";

@@ -9,6 +9,7 @@
 #include "base/files/json_file.h"
 #include "base/formats/capture.h"
 #include "base/formats/manifest.h"
+#include "base/formats/rectified_set.h"
 #include "pipeline/driver/ninja_file.h"
 #include "pipeline/driver/stage_graph.h"
 
@@ -93,11 +94,11 @@ void AddFigures(const Capture& capture, const std::vector<StageStep>& steps,
   const Json::json_pointer verdict("/metrics/guidance/verdict");
   if (calib.contains(verdict) && calib[verdict].is_string()) summary->verdict = calib[verdict];
   summary->reprojection_px = NumberAt(calib, "/metrics/rms_px");
-  const Json rectify = JsonIn(work / "rectify" / "manifest.json");
-  summary->texels_across = NumberAt(rectify, "/data/width");
-  summary->texels_down = NumberAt(rectify, "/data/height");
-  summary->width_mm = NumberAt(rectify, "/data/width_mm");
-  summary->height_mm = NumberAt(rectify, "/data/height_mm");
+  const Json views = JsonIn(ViewsManifest(work));
+  summary->texels_across = NumberAt(views, "/data/width");
+  summary->texels_down = NumberAt(views, "/data/height");
+  summary->width_mm = NumberAt(views, "/data/width_mm");
+  summary->height_mm = NumberAt(views, "/data/height_mm");
   const Json report = JsonIn(work / "report" / "manifest.json");
   summary->photographs = NumberAt(report, "/metrics/fitted/photographs");
   summary->log_l1 = NumberAt(report, "/metrics/fitted/log_l1");

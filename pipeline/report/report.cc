@@ -3,7 +3,9 @@
 #include <tuple>
 
 #include "base/errors/errors.h"
+#include "base/formats/rectified_set.h"
 #include "base/resampling/resampling.h"
+#include "base/stages/stages.h"
 #include "pipeline/report/corrections_section.h"
 #include "pipeline/report/downloads_section.h"
 #include "pipeline/report/guidance_section.h"
@@ -19,9 +21,11 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<std::string> StagesShown(const std::string& from) {
-  std::vector<std::string> stages = {"calib", "rectify", "fit"};
-  if (from == "refine") stages.push_back("refine");
-  stages.push_back("tile");
+  std::vector<std::string> stages;
+  for (const StageKind& stage : Stages()) {
+    const bool unused = stage.name == "refine" && from != "refine";
+    if (stage.gives != Gives::kFiles && !unused) stages.emplace_back(stage.name);
+  }
   return stages;
 }
 
@@ -70,13 +74,13 @@ ReportInput ReadReportInput(const fs::path& work, const std::string& from, int m
   input.work = work;
   for (const std::string& stage : StagesRead(from)) {
     const fs::path file = work / stage / "manifest.json";
-    const bool needed = stage == "rectify" || stage == from;
+    const bool needed = stage == LastGiving(Gives::kViews).name || stage == from;
     if (!needed && !fs::exists(file)) continue;
     const Manifest manifest = ReadManifest(file, stage);
     VerifyOutputs(file, manifest);
     input.manifests.emplace(stage, manifest);
   }
-  input.set = ReadRectifiedSet(work / "rectify" / "manifest.json");
+  input.set = ReadRectifiedSet(ViewsManifest(work));
   input.fit = ReadFittedMaps(work / from / "manifest.json", most_side);
   input.shown = input.set;
   SamplePlane& plane = input.shown.plane;

@@ -9,6 +9,7 @@
 #include "base/images/exr_rows.h"
 #include "base/photos/photo.h"
 #include "base/resampling/resampling.h"
+#include "base/stages/stages.h"
 #include "pipeline/report/downloads_section.h"
 #include "pipeline/report/figure.h"
 #include "pipeline/report/guidance_section.h"
@@ -26,6 +27,8 @@ constexpr char kOwnManifest[] = "manifest.json";
 constexpr int kStagePicture_px = 1200;
 
 std::string ManifestLink(const std::string& stage) { return "../" + stage + "/manifest.json"; }
+
+std::string ViewsLink() { return ManifestLink(std::string(LastGiving(Gives::kViews).name)); }
 
 std::string Section(const std::string& title, const std::string& source, const std::string& body) {
   return "<section>\n" + (source.empty() ? "" : SourceLink(source)) + "<h2>" + HtmlText(title) +
@@ -92,13 +95,13 @@ Image RoughnessConfidence(const ReportInput& input, const fs::path& confidence_e
 
 std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
   const Trace own{kOwnManifest, "metrics"};
-  const Trace rectify{ManifestLink("rectify"), "data"};
+  const Trace views{ViewsLink(), "data"};
   std::string figures = "<div class=\"figures\">\n";
   figures += HeadFigure("photographs fitted", input.used_views.size(), own.Field("views[].fitted"));
   figures +=
-      HeadFigure("width of the maps", input.set.plane.width, rectify.Field("width"), "texels");
+      HeadFigure("width of the maps", input.set.plane.width, views.Field("width"), "texels");
   figures += HeadFigure("a texel", input.set.plane.width_mm / input.set.plane.width,
-                        rectify.Field("width_mm"), "mm");
+                        views.Field("width_mm"), "mm");
   if (input.Has("calib")) {
     const Json& metrics = input.manifests.at("calib").metrics;
     for (const char* name : {"rms_px", "reprojection_rms_px"}) {
@@ -141,12 +144,12 @@ std::string FirstLookNote(const ReportInput& input) {
 }
 
 std::string TitleSection(const ReportInput& input) {
-  const Trace rectify{ManifestLink("rectify"), "data"};
+  const Trace views{ViewsLink(), "data"};
   return "<h1>" + HtmlText(MaterialName(input)) + "</h1>\n<p>" +
-         FigureHtml(input.set.plane.width_mm, rectify.Field("width_mm")) + " × " +
-         FigureHtml(input.set.plane.height_mm, rectify.Field("height_mm")) + " mm, " +
-         FigureHtml(input.set.plane.width, rectify.Field("width")) + " × " +
-         FigureHtml(input.set.plane.height, rectify.Field("height")) + " texels, from " +
+         FigureHtml(input.set.plane.width_mm, views.Field("width_mm")) + " × " +
+         FigureHtml(input.set.plane.height_mm, views.Field("height_mm")) + " mm, " +
+         FigureHtml(input.set.plane.width, views.Field("width")) + " × " +
+         FigureHtml(input.set.plane.height, views.Field("height")) + " texels, from " +
          std::to_string(input.used_views.size()) +
          (input.used_views.size() == 1 ? " photograph" : " photographs") + ".</p>\n" +
          FirstLookNote(input);
@@ -263,7 +266,7 @@ std::string ViewsSection(const ReportInput& input, const std::vector<ShownView>&
 }
 
 std::string GeometrySection(const ReportInput& input) {
-  const Trace trace{ManifestLink("rectify"), "data.views"};
+  const Trace trace{ViewsLink(), "data.views"};
   std::string rows;
   for (size_t i = 0; i < input.set.views.size(); ++i) {
     const View& view = input.set.views[i].view;
@@ -299,7 +302,7 @@ std::string GeometrySection(const ReportInput& input) {
           FigureHtml(scale, {ManifestLink(from), "data.light_scale_rgb"}) +
           ". Reflectance convention: <code>" + HtmlText(ToString(input.fit.convention)) +
           "</code>.</p>\n";
-  return Section("Cameras and lights", ManifestLink("rectify"), body);
+  return Section("Cameras and lights", ViewsLink(), body);
 }
 
 std::string StageSection(const ReportInput& input, const std::string& stage) {

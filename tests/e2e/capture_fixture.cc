@@ -48,7 +48,7 @@ void MakeFinished() {
   // A checkout whose weights are not trained yet still tests all the rest.
   if (!HasWeights())
     options.replace(options.find("[fit]"), 5,
-                    "[fit]\nmethod = \"classic\"\ninitial_maps = \"rules\"");
+                    "[fit]\nmethod = \"classic\"\ninitial-maps = \"rules\"");
   std::ofstream(finished_capture->capture / "capture.toml", std::ios::app) << options;
   const auto start = std::chrono::steady_clock::now();
   const Outcome run = RunProgram({Program("glint"), "run", capture});

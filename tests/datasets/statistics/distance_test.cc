@@ -4,6 +4,8 @@
 
 #include <random>
 
+#include "base/statistics/quantile.h"
+
 namespace glint {
 namespace {
 
