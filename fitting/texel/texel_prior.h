@@ -3,9 +3,9 @@
 // Several sources of knowledge (the initialisation, the texel's substance, its neighbours)
 // multiply: precisions add, means are weighted by them. Normals are judged by n_x and n_y, all else
 // by the values themselves (logarithms of specular albedo let what no highlight reaches turn
-// glossy: docs/experiments/refinement.md). As residuals: scale · √precision · (value − mean), with
-// `scale` the standard deviation of the photographs' residuals, so that both kinds of squares add
-// up to twice the negative log posterior in units of scale².
+// glossy: docs/experiments/statistical-model.md). As residuals: scale · √precision · (value −
+// mean), with `scale` the standard deviation of the photographs' residuals, so that both kinds of
+// squares add up to twice the negative log posterior in units of scale².
 #pragma once
 
 #include <array>

@@ -33,7 +33,7 @@ RectifiedImage Constant(float value, int width = 64, int height = 48) {
 }
 
 // Fine and coarse waves, and a highlight that clips.
-RectifiedImage Photograph(int width, int height) {
+RectifiedImage PhotographOf(int width, int height) {
   return Picture(width, height, [=](int x, int y, int c) {
     const double across = x - 0.6 * width, down = y - 0.4 * height;
     return 0.3 + 0.12 * std::sin(0.9 * x + 0.4 * y) + 0.1 * std::sin(0.21 * x - 0.17 * y + c) +
@@ -85,7 +85,7 @@ Looks Compare(const RectifiedImage& rendered, const RectifiedImage& photograph) 
 }
 
 TEST(CompareLooks, OnePictureLooksLikeItself) {
-  const Looks looks = Compare(Photograph(256, 200), Photograph(256, 200));
+  const Looks looks = Compare(PhotographOf(256, 200), PhotographOf(256, 200));
   EXPECT_EQ(looks.free, 0);
   for (const double contrast : looks.contrast) EXPECT_NEAR(contrast, 1, 1e-12);
   for (const double correlation : looks.correlation) EXPECT_NEAR(correlation, 1, 1e-4);
@@ -105,8 +105,8 @@ TEST(CompareLooks, AgreesWithAnotherProgram) {
       {256, 64, {.1476, .8230, .8388, 1.2576, 1.1782, .9763, .9752, .9457, .8812, .6445}},
       {1101, 200, {.1369, .9061, 1.4119, .7373, .8960, .9529, .9748, .9551, .9154, .7324}}};
   for (const Case& said : cases) {
-    const auto figures =
-        LooksList(Compare(Rendering(said.width, said.height), Photograph(said.width, said.height)));
+    const auto figures = LooksList(
+        Compare(Rendering(said.width, said.height), PhotographOf(said.width, said.height)));
     for (size_t i = 0; i < kLooksFigures; ++i) {
       EXPECT_NEAR(figures[i], said.figures[i], 0.005) << kLooksNames[i] << " " << said.width;
     }

@@ -21,13 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-RectifiedImage Constant(float value, int width = 4, int height = 3) {
+RectifiedImage Uniform(float value, int width = 4, int height = 3) {
   const size_t texels = static_cast<size_t>(width) * height;
   return {width, height, std::vector<float>(3 * texels, value), std::vector<float>(texels, 1.0f)};
 }
 
 TEST(CompareView, KnownDifference) {
-  const ViewError error = CompareView(Constant(0.3f).rgb, Constant(0.5f), true);
+  const ViewError error = CompareView(Uniform(0.3f).rgb, Uniform(0.5f), true);
   EXPECT_NEAR(error.mse, 0.04, 1e-7);
   EXPECT_NEAR(error.rmse, 0.2, 1e-7);
   EXPECT_NEAR(error.log_l1, std::log(0.51 / 0.31), 1e-6);
@@ -35,12 +35,12 @@ TEST(CompareView, KnownDifference) {
 }
 
 TEST(CompareView, ClipsForLdrOnly) {
-  EXPECT_EQ(CompareView(Constant(3).rgb, Constant(1), true).mse, 0);
-  EXPECT_NEAR(CompareView(Constant(3).rgb, Constant(1), false).mse, 4, 1e-6);
+  EXPECT_EQ(CompareView(Uniform(3).rgb, Uniform(1), true).mse, 0);
+  EXPECT_NEAR(CompareView(Uniform(3).rgb, Uniform(1), false).mse, 4, 1e-6);
 }
 
 TEST(CompareView, MaskedTexelsDoNotCount) {
-  RectifiedImage photograph = Constant(0.5f);
+  RectifiedImage photograph = Uniform(0.5f);
   std::vector<float> rendered = photograph.rgb;
   photograph.mask[5] = 0;
   for (size_t c = 0; c < 3; ++c) rendered[c * 12 + 5] = 100;
@@ -51,7 +51,7 @@ TEST(CompareView, MaskedTexelsDoNotCount) {
 }
 
 TEST(CompareView, SizesMustAgree) {
-  EXPECT_THROW(CompareView(Constant(1, 2, 2).rgb, Constant(1), true), std::invalid_argument);
+  EXPECT_THROW(CompareView(Uniform(1, 2, 2).rgb, Uniform(1), true), std::invalid_argument);
 }
 
 class FittedMapsTest : public testing::Test {
