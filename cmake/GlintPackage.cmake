@@ -59,8 +59,8 @@ function(glint_install_libraries)
       PATTERN render_reference.h EXCLUDE)  # the kernel's inside; torch's
   endforeach()
 endfunction()
-glint_install_libraries(glint_cpu glint_memory glint_parallel glint_resampling glint_reflectance
-  glint_render glint_camera glint_board glint_files glint_images glint_photos glint_stages
+glint_install_libraries(glint_cpu glint_memory glint_parallel glint_resampling glint_model
+  glint_reflectance glint_render glint_camera glint_board glint_files glint_images glint_photos glint_stages
   glint_formats glint_programs)
 set_target_properties(glint_compile_options PROPERTIES EXPORT_NAME compile_options)
 install(EXPORT GlintTargets NAMESPACE Glint:: DESTINATION lib/cmake/Glint COMPONENT development)

@@ -7,6 +7,7 @@
 
 #include "base/errors/errors.h"
 #include "base/formats/rectified_rows.h"
+#include "base/model/constants.h"
 #include "base/stages/stages.h"
 #include "base/photos/photo_name.h"
 
@@ -167,7 +168,7 @@ RectifiedImage ReadRectifiedImage(const RectifiedSet& set, const RectifiedView& 
 
 void AdmitClippedTexels(const RectifiedView& view, RectifiedImage* image) {
   if (!view.ldr) return;
-  constexpr float kClipped = 0.99f;
+  constexpr auto kClipped = static_cast<float>(constants::kClippedRadiance);
   const size_t texels = image->mask.size();
   for (size_t i = 0; i < texels; ++i) {
     const float brightest =

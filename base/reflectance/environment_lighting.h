@@ -18,11 +18,12 @@
 #include <span>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "base/reflectance/brdf.h"
 
 namespace glint {
 
-inline constexpr int kEnvironmentDegree = 8;  // the highest
+using constants::kEnvironmentDegree;  // the highest
 inline constexpr int kEnvironmentTerms = (kEnvironmentDegree + 1) * (kEnvironmentDegree + 1);
 
 // Whether so many terms are all of some degrees, or none.

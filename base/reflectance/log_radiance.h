@@ -1,9 +1,11 @@
 // Radiances are compared by their logarithms.
 #pragma once
 
+#include "base/model/constants.h"
+
 namespace glint {
 
 // Of the loss |log(I + 0.01) − log(R + 0.01)| (Gao et al. 2019, eq. 2).
-inline constexpr double kLogOffset = 0.01;
+using constants::kLogOffset;
 
 }  // namespace glint

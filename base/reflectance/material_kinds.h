@@ -4,6 +4,8 @@
 
 #include <string_view>
 
+#include "base/model/constants.h"
+
 namespace glint {
 
 // A log-normal distribution of F0.
@@ -16,17 +18,19 @@ struct MaterialKind {
 // Indices of refraction of 1.33 to 1.8: two standard deviations.
 // Highlights take the colour of what lies beneath where light from there is not diffuse, as in
 // wood.
-inline constexpr MaterialKind kDielectric{0.04, 0.35, 0.05};
+inline constexpr MaterialKind kDielectric{constants::kDielectricF0, constants::kDielectricLogSd,
+                                          constants::kDielectricColouredShare};
 // Iron and nickel .5, rusty or tarnished metals a third, silver .95.
-inline constexpr MaterialKind kMetal{0.5, 0.5, 0.5};
+inline constexpr MaterialKind kMetal{constants::kMetalF0, constants::kMetalLogSd,
+                                     constants::kMetalColouredShare};
 
 // Half of what dielectrics reflect at least: what is nearer to 0 is black to all photographs.
-inline constexpr double kSpecularOffset = 0.02;
+using constants::kSpecularOffset;
 
 // Prior share of metals among the substances that people photograph ("rare"), and where there may
 // be metal ("possible").
 inline constexpr double MetalShareOf(std::string_view metals) {
-  return metals == "possible" ? 0.5 : 0.1;
+  return metals == "possible" ? constants::kPossibleMetalShare : constants::kRareMetalShare;
 }
 
 }  // namespace glint

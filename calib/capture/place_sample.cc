@@ -7,20 +7,12 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 #include "calib/capture/pose_source.h"
 
 namespace glint {
 namespace {
-
-// Of a sample whose height nobody measured: in the board's window or under its frame, up to some
-// 25 mm. Where it was measured it is so to a tenth, or half a millimetre.
-constexpr double kHeightSpread_mm = 10;
-constexpr double kMeasuredShare = 0.1, kMeasured_mm = 0.5;
-// A plane through a COLMAP model's points, by the sample's longer side.
-constexpr double kPlaneThroughPoints = 0.005;
-// What calibrated poses and lenses leave, by the sample's longer side: 0.2 texels of 1024.
-constexpr double kPlaceSpread = 2e-4;
 
 double Longest_mm(const Capture& capture) {
   return std::max(capture.sample_size_mm[0], capture.sample_size_mm[1]);
@@ -93,15 +85,17 @@ TopView TopViewOf(const CalibSummary& summary, const CalibratedPhoto& photo, con
 }
 
 void FillPriors(const Capture& capture, const CalibOptions& options, RegistrationProblem* problem) {
-  problem->homography_sd_mm = kPlaceSpread * Longest_mm(capture);
+  problem->homography_sd_mm = constants::kCalibratedPlaceSd * Longest_mm(capture);
   const bool board = PoseSourceOf(capture, options) == PoseSource::kBoard;
-  problem->height_sd_mm = board ? kHeightSpread_mm : kPlaneThroughPoints * Longest_mm(capture);
+  problem->height_sd_mm =
+      board ? constants::kSampleHeightSd_mm : constants::kFittedPlaneSd * Longest_mm(capture);
   if (!capture.sample_height_mm) return;
   problem->height_mm = *capture.sample_height_mm;
   problem->height_sd_mm =
       problem->height_mm == 0
           ? 0
-          : std::max(kMeasured_mm, kMeasuredShare * std::abs(problem->height_mm));
+          : std::max(constants::kMeasuredHeightSd_mm,
+                     constants::kMeasuredHeightShare * std::abs(problem->height_mm));
 }
 
 void MoveToSample(const SampleRegistration& registration, Calibration* calibration) {
@@ -128,7 +122,7 @@ void PlaceSample(const Capture& capture, const CalibOptions& options, int thread
   problem.sample_height_mm = capture.sample_size_mm[1];
   problem.margin = kSampleMargin;
   const std::vector<CalibratedPhoto>& photos = summary->calibration.photos;
-  const double pixel_mm = Longest_mm(capture) / kRegistrationSide_px;
+  const double pixel_mm = Longest_mm(capture) / constants::kRegistrationSide_px;
   const cv::Size size(
       static_cast<int>(std::lround(kSampleMargin * problem.sample_width_mm / pixel_mm)),
       static_cast<int>(std::lround(kSampleMargin * problem.sample_height_mm / pixel_mm)));

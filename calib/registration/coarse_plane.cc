@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "calib/registration/place_fit.h"
 #include "calib/registration/window_heights.h"
 #include "calib/registration/window_textures.h"
@@ -11,17 +12,13 @@
 namespace glint {
 namespace {
 
-constexpr int kSide_px = 256;    // of the pictures compared
-constexpr int kEveryOther = 2;   // windows along each axis
-constexpr double kReach_sd = 3;  // of the prior
-constexpr int kMostEachWay = 100;
-
 std::vector<cv::Rect> SomeWindows(const DetailPictures& pictures, const cv::Size& size) {
   const int width =
-      static_cast<int>(std::lround(kTextureWindow * std::max(size.width, size.height)));
+      static_cast<int>(std::lround(constants::kTextureWindow * std::max(size.width, size.height)));
   std::vector<cv::Rect> some;
   for (const cv::Rect& window : WindowsOf(pictures, size, width, width)) {
-    const bool inside = window.x / width % kEveryOther == 0 && window.y / width % kEveryOther == 0;
+    const bool inside = window.x / width % constants::kCoarseEveryOther == 0 &&
+                        window.y / width % constants::kCoarseEveryOther == 0;
     if (inside) some.push_back(window);
   }
   return some;
@@ -32,19 +29,20 @@ std::vector<cv::Rect> SomeWindows(const DetailPictures& pictures, const cv::Size
 PlaneValues CoarsePlane(const RegistrationProblem& problem, const DetailPictures& pictures,
                         int threads) {
   const PlaneValues expected = {problem.height_mm, 0, 0};
-  const cv::Size size = pictures.SizeOf(kSide_px);
+  const cv::Size size = pictures.SizeOf(constants::kCoarseSide_px);
   const std::vector<cv::Rect> windows = SomeWindows(pictures, size);
   const double parallax = LargestParallax(pictures);
   if (problem.height_sd_mm <= 0 || windows.empty() || !(parallax > 0)) return expected;
   const double step_mm = pictures.PixelSide_mm(size) / parallax;
   const int each_way =
-      std::min(kMostEachWay, static_cast<int>(kReach_sd * problem.height_sd_mm / step_mm));
+      std::min(constants::kCoarseMostEachWay,
+               static_cast<int>(constants::kCoarseReach_sd * problem.height_sd_mm / step_mm));
   std::vector<double> heights;
   for (int i = -each_way; i <= each_way; ++i) heights.push_back(i * step_mm);
   SamplePlaces places;
   places.plane = expected;
   places.homographies.resize(static_cast<size_t>(pictures.views()));
-  const double samples = windows[0].area() / kPixelsPerSample;
+  const double samples = windows[0].area() / constants::kPixelsPerSample;
   const Eigen::MatrixXd misfits =
       samples * HeightMisfits(pictures, places, size, windows, heights, threads);
   Eigen::VectorXd together = misfits.rowwise().sum();
@@ -60,17 +58,17 @@ PlaneValues CoarsePlane(const RegistrationProblem& problem, const DetailPictures
     const cv::Rect& window = windows[w];
     const Eigen::Vector2d centre =
         pictures.SamplePoint(size, window.x + 0.5 * window.width, window.y + 0.5 * window.height);
-    const auto reach =
-        static_cast<Eigen::Index>(1 + kReach_sd * problem.slope_sd * centre.norm() / step_mm);
+    const auto reach = static_cast<Eigen::Index>(1 + constants::kCoarseReach_sd * problem.slope_sd *
+                                                         centre.norm() / step_mm);
     const Eigen::Index from = std::max<Eigen::Index>(best - reach, 0);
     const Eigen::Index count = std::min(best + reach + 1, misfits.rows()) - from;
     const auto near = misfits.col(static_cast<Eigen::Index>(w)).segment(from, count);
     Eigen::Index at = 0;
     const double least = near.minCoeff(&at);
-    if (0.5 * (near.maxCoeff() - least) < kTelling) continue;
+    if (0.5 * (near.maxCoeff() - least) < constants::kTellingLogLikelihood) continue;
     found.push_back({centre, static_cast<double>(from + at - best) * step_mm});
   }
-  if (found.size() < 3) return places.plane;
+  if (std::ssize(found) < constants::kLeastHeights) return places.plane;
   return FitPlane(problem, places, {}, found).places.plane;
 }
 

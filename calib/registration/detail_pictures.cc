@@ -5,18 +5,19 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "base/model/constants.h"
+
 namespace glint {
 namespace {
 
-// Of log(radiance + offset), as eq. 2 of Gao et al. 2019 compares photographs.
-constexpr float kLogOffset = 0.01f;
-constexpr int kLevels = 3;  // down to a quarter of the size
+// As photographs are compared (base/reflectance/log_radiance.h).
+constexpr auto kOffset = static_cast<float>(constants::kLogOffset);
 
 cv::Mat DetailOf(const TopView& view, double coarse_px) {
   cv::Mat detail(view.height, view.width, CV_32F);
   const auto texels = static_cast<size_t>(view.width) * view.height;
   for (size_t i = 0; i < texels; ++i) {
-    detail.ptr<float>()[i] = std::log(std::max(view.radiance[i], 0.0f) + kLogOffset);
+    detail.ptr<float>()[i] = std::log(std::max(view.radiance[i], 0.0f) + kOffset);
   }
   cv::Mat coarse;
   cv::GaussianBlur(detail, coarse, {0, 0}, coarse_px);
@@ -26,7 +27,7 @@ cv::Mat DetailOf(const TopView& view, double coarse_px) {
 // Itself, then each of half the size of the one before.
 std::vector<cv::Mat> PyramidOf(const cv::Mat& detail) {
   std::vector<cv::Mat> levels = {detail};
-  while (std::ssize(levels) < kLevels) {
+  while (std::ssize(levels) < constants::kDetailLevels) {
     const cv::Mat& last = levels.back();
     cv::Mat half;
     cv::resize(last, half, {std::max(1, last.cols / 2), std::max(1, last.rows / 2)}, 0, 0,

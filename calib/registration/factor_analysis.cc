@@ -5,18 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
+
 namespace glint {
-namespace {
-
-constexpr int kMostFactors = 3;  // albedo and two slopes
-constexpr int kSteps = 10;       // misfits change by less than theirs from place to place after it
-constexpr double kLeastNoise = 0.003;  // of a view's variance: JPEG and resampling
-constexpr double kFirstNoise = 0.5;
-
-}  // namespace
 
 int FactorsOf(int views) {
-  int factors = kMostFactors;
+  int factors = constants::kMostFactors;
   while (factors > 0 && (views - factors) * (views - factors) <= views + factors) --factors;
   return factors;
 }
@@ -37,22 +31,22 @@ Eigen::MatrixXd CorrelationOf(const Eigen::MatrixXd& sample) {
 }  // namespace
 
 int FactorsOf(const Eigen::MatrixXd& sample) {
-  constexpr double kLeastTexture = 1e-4;  // of the largest variance
-  const double least = kLeastTexture * sample.diagonal().maxCoeff();
+  const double least = constants::kLeastTexture * sample.diagonal().maxCoeff();
   return FactorsOf(static_cast<int>((sample.diagonal().array() > least).count()));
 }
 
 FactorModel FitFactors(const Eigen::MatrixXd& sample, int factors) {
   const Eigen::MatrixXd correlation = CorrelationOf(sample);
-  Eigen::VectorXd noise = Eigen::VectorXd::Constant(sample.rows(), kFirstNoise);
+  Eigen::VectorXd noise = Eigen::VectorXd::Constant(sample.rows(), constants::kFirstTextureNoise);
   Eigen::MatrixXd loadings;
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < constants::kFactorSteps; ++step) {
     const Eigen::VectorXd root = noise.cwiseSqrt(), inverse_root = root.cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
         inverse_root.asDiagonal() * correlation * inverse_root.asDiagonal());
     loadings = root.asDiagonal() * eigen.eigenvectors().rightCols(factors) *
                (eigen.eigenvalues().tail(factors).array() - 1).max(0).sqrt().matrix().asDiagonal();
-    noise = (1 - loadings.rowwise().squaredNorm().array()).max(kLeastNoise).min(1);
+    noise =
+        (1 - loadings.rowwise().squaredNorm().array()).max(constants::kLeastTextureNoise).min(1);
   }
   Eigen::MatrixXd model = loadings * loadings.transpose();
   model.diagonal() += noise;

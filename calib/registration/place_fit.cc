@@ -5,30 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "base/model/constants.h"
 #include "calib/registration/robust_fit.h"
 
 namespace glint {
 namespace {
 
-// Heights of windows are no nearer than this, in parts of the sample's longer side: what is left of
-// poses and lens.
-constexpr double kLeastHeightSigma = 5e-5;
-// What is common to all windows and so no scatter of theirs: shading that three factors do not
-// express, and the poses' own errors. Synthetic captures of leather, wood and blown-out metal, flat
-// and raised, are off by up to .0007 of the longer side.
-constexpr double kCommonHeight = 3e-4;
-// And as much as they scatter by: where shading is more than three factors express, windows are
-// wrong by different amounts, but not about 0 (synthetic grass: off by .16 mm, scatter .1 mm).
-constexpr double kCommonShare = 1;
-// And of a view's homography, in its own units: .15 texels of 1024. The same captures, whose
-// photographs are in place, seem displaced by .0002.
-constexpr double kCommonShift = 3e-4;
-// Windows overlap by half along both axes, so that a place is counted four times.
-constexpr double kTimesCounted = 4;
 constexpr double kMedianOfNormal = 0.6745;      // of |x|, by σ
 constexpr double kMedianOfSquaredPair = 1.386;  // of x² + y², by σ²
-// Views that the expected spread of homographies is worth when it is estimated.
-constexpr double kExpectedViews = 2;
 
 struct HeightAt {
   Eigen::Vector2d point_mm;
@@ -85,10 +69,11 @@ HomographySpreads LearnedSpreads(const RegistrationProblem& problem, const Sampl
     if (std::find(held.begin(), held.end(), i) != held.end()) continue;
     const auto value = static_cast<size_t>(i);
     const size_t kind = kSpreadOfValue[value];
-    squares[kind] += kExpectedViews * expected * expected;
-    count[kind] += kExpectedViews;
+    squares[kind] += constants::kHomographySdViews * expected * expected;
+    count[kind] += constants::kHomographySdViews;
     for (const HomographyValues& values : places.homographies) {
-      squares[kind] += values[value] * values[value] - kCommonShift * kCommonShift;
+      squares[kind] +=
+          values[value] * values[value] - constants::kCommonShiftSd * constants::kCommonShiftSd;
       ++count[kind];
     }
   }
@@ -102,12 +87,12 @@ HomographySpreads LearnedSpreads(const RegistrationProblem& problem, const Sampl
 PlaceSolution FitPlane(const RegistrationProblem& problem, const SamplePlaces& start,
                        const HomographySpreads& spreads, const std::vector<WindowHeight>& heights) {
   PlaceSolution solution{start, spreads, {}};
-  const double least_mm = kLeastHeightSigma * Longest_mm(problem);
+  const double least_mm = constants::kLeastHeightSd * Longest_mm(problem);
   double sigma_mm = 0;
   std::vector<double> off;
   off.reserve(heights.size());
   for (const WindowHeight& window : heights) off.push_back(std::abs(window.height_mm));
-  for (int pass = 0; pass < 3; ++pass) {
+  for (int pass = 0; pass < constants::kHeightPasses; ++pass) {
     sigma_mm = std::max(least_mm, Median(off) / kMedianOfNormal);
     const auto loss = RobustLoss(1);
     ceres::Problem fit(SharingLosses());
@@ -133,8 +118,8 @@ PlaceSolution FitPlane(const RegistrationProblem& problem, const SamplePlaces& s
     solution.plane_covariance = CovarianceOfBlock(plane, &fit);
   }
   const double displaced_mm = spreads[0] * start.unit_mm * HeightOfDisplacement(problem);
-  const double common_mm =
-      std::hypot(kCommonHeight * Longest_mm(problem), displaced_mm, kCommonShare * sigma_mm);
+  const double common_mm = std::hypot(constants::kCommonHeightSd * Longest_mm(problem),
+                                      displaced_mm, constants::kCommonScatter * sigma_mm);
   const double common_slope = common_mm / Longest_mm(problem);
   const Eigen::Vector3d common(common_mm, common_slope, common_slope);
   solution.plane_covariance.diagonal() += common.cwiseAbs2();
@@ -165,7 +150,7 @@ PlaceSolution FitHomographies(const RegistrationProblem& problem, const DetailPi
                             at.seen_mm.data());
     seen.push_back(at);
   }
-  for (int pass = 0; pass < 2; ++pass) {
+  for (int pass = 0; pass < constants::kHomographyPasses; ++pass) {
     auto homography = [&](size_t i) {
       return solution.places.homographies[static_cast<size_t>(shifts[i].view)].data();
     };
@@ -177,7 +162,7 @@ PlaceSolution FitHomographies(const RegistrationProblem& problem, const DetailPi
     }
     const double scale = std::sqrt(
         std::max(Median(squares) / kMedianOfSquaredPair, std::numeric_limits<double>::min()));
-    const auto loss = RobustLoss(1 / kTimesCounted);
+    const auto loss = RobustLoss(1 / constants::kTimesCounted);
     ceres::Problem fit(SharingLosses());
     for (size_t i = 0; i < seen.size(); ++i) {
       SeenAt* at = new SeenAt(seen[i]);

@@ -4,15 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "base/model/constants.h"
 #include "calib/registration/robust_fit.h"
 
 namespace glint {
 namespace {
-
-// Least standard deviation of a displacement in a window, pixels: phase correlation's own.
-constexpr double kLeastSigma_px = 0.05;
-// Windows overlap by half along both axes, so that a place is counted four times.
-constexpr double kOverlap = 4;
 
 // Two points of the assumed plane, one in each of two views, that show one point of the sample.
 class SamePoint {
@@ -110,16 +106,16 @@ class PlaceProblem {
     }
     // Of the pairs' displacements of a window only those of views − 1 are independent.
     const double pairs = static_cast<double>(PairsOf(pictures.views()).size());
-    share_ = (pictures.views() - 1) / (pairs * kOverlap);
+    share_ = (pictures.views() - 1) / (pairs * constants::kTimesCounted);
   }
 
   PlaceSolution Solve() {
     // How wide residuals and homographies scatter is theirs to tell: a first solution does, a
     // second uses it.
-    double sigma_mm = kFirstSigma_px * pictures_.PixelSide_mm(size_);
+    double sigma_mm = constants::kFirstShiftSd_px * pictures_.PixelSide_mm(size_);
     for (int pass = 0; pass < 2; ++pass) {
       Run(sigma_mm, pass == 1);
-      sigma_mm = std::max(kLeastSigma_px * pictures_.PixelSide_mm(size_),
+      sigma_mm = std::max(constants::kLeastShiftSd_px * pictures_.PixelSide_mm(size_),
                           std::sqrt(Median(Squares())) / kMedianOfLength);
       if (expected_spread_ > 0 && unknown_ != UnknownPlaces::kPlane) {
         spreads_ = LearnedSpreads(problem_, places_, spreads_, Held());
@@ -129,7 +125,6 @@ class PlaceProblem {
   }
 
  private:
-  static constexpr double kFirstSigma_px = 0.5;
   static constexpr double kMedianOfLength = 1.177;  // of two normal numbers' length, by their σ
 
   SamePoint::Sight SightOf(int view, double x_px, double y_px) const {

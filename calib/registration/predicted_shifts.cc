@@ -4,15 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 #include "calib/registration/factor_analysis.h"
 #include "calib/registration/window_textures.h"
 
 namespace glint {
 namespace {
-
-// A Gauss-Newton step is believed as far as texture of this size is linear.
-constexpr double kLongestStep_px = 2;
 
 // Derivatives by column and row of a window's picture; 0 at its rim, where a Hann window is.
 struct Gradient {
@@ -58,11 +56,12 @@ class Window {
     normal(0, 0) = column.dot(gradient.by_column);
     normal(1, 1) = row.dot(gradient.by_row);
     normal(0, 1) = normal(1, 0) = column.dot(gradient.by_row);
-    if (!(normal.determinant() > 1e-3 * normal(0, 0) * normal(1, 1))) return false;
+    const double of_diagonal = normal(0, 0) * normal(1, 1);
+    if (!(normal.determinant() > constants::kLeastGradient * of_diagonal)) return false;
     const Eigen::Vector2d right(column.dot(left), row.dot(left));
     // predicted(p + step) = seen(p): this view shows at p what the others have at p + step.
     const Eigen::Vector2d step = normal.ldlt().solve(right);
-    if (!(step.norm() < kLongestStep_px)) return false;
+    if (!(step.norm() < constants::kLongestStep_px)) return false;
     found->view = view;
     found->point_mm = centre_mm_;
     found->shift_mm = pixel_mm_ * Eigen::Vector2d(-step.x(), step.y());
@@ -85,8 +84,8 @@ std::vector<PredictedShift> PredictedShifts(const DetailPictures& pictures,
                                             const SamplePlaces& places, const cv::Size& size,
                                             int threads) {
   if (FactorsOf(pictures.views()) == 0) return {};
-  const int width =
-      2 * static_cast<int>(std::lround(0.5 * kTextureWindow * std::max(size.width, size.height)));
+  const int width = 2 * static_cast<int>(std::lround(0.5 * constants::kTextureWindow *
+                                                     std::max(size.width, size.height)));
   const std::vector<cv::Rect> rects = WindowsOf(pictures, size, width, width / 2);
   std::vector<std::vector<PredictedShift>> by_window(rects.size());
   ForEachPiece(static_cast<int>(rects.size()), threads, [&](int piece) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 #include "calib/registration/coarse_plane.h"
 #include "calib/registration/detail_pictures.h"
@@ -18,34 +19,22 @@ struct Round {
   double window;
   UnknownPlaces unknown;
 };
-constexpr Round kPairRounds[] = {{1.0 / 4, UnknownPlaces::kPlane},
-                                 {1.0 / 4, UnknownPlaces::kTranslations},
-                                 {3.0 / 16, UnknownPlaces::kPlaneAndAffine},
-                                 {1.0 / 8, UnknownPlaces::kPlaneAndHomographies}};
-// Photographs that are expected to be nearer their places than this, in parts of the longer side,
-// need no pairs: what views have in common reaches as far, a pixel of 512.
-constexpr double kNeedsPairs = 1.0 / 512;
-// What shading that moves with the light makes pairs say of a plane, by the longer side: synthetic
-// leather seems to lie so much too low.
-constexpr double kPairsHeight = 0.005;
-// Then by what all views have in common.
-constexpr int kCommonRounds = 3;  // or until nothing moves any more
-constexpr double kStill_px = 0.1;
-constexpr int kLeastHeights = 3;  // of windows, that tell a plane
+constexpr Round kPairRounds[] = {
+    {constants::kPairWindows[0], UnknownPlaces::kPlane},
+    {constants::kPairWindows[1], UnknownPlaces::kTranslations},
+    {constants::kPairWindows[2], UnknownPlaces::kPlaneAndAffine},
+    {constants::kPairWindows[3], UnknownPlaces::kPlaneAndHomographies}};
 
-// Coarser structure than this is shading and highlights, in parts of the sample's longer side: 8
-// and 3 pixels of 512. The finer one tells more, of photographs that are nearly in place.
-constexpr double kCoarse = 1.0 / 64, kFine = 3.0 / 512;
-
-constexpr double kJudged = 1.0 / 4;  // windows by which photographs are said to be displaced
-
-// Further than this, in parts of the longer side, no displacement is believed: 10 of 512 pixels.
-constexpr double kLongestShift = 0.02;
+// Windows by which metrics report how far photographs are displaced.
+constexpr double kJudged = 1.0 / 4;
 
 class Registration {
  public:
   Registration(const RegistrationProblem& problem, int threads)
-      : problem_(problem), pictures_(problem, kCoarse), fine_(problem, kFine), threads_(threads) {}
+      : problem_(problem),
+        pictures_(problem, constants::kCoarseDetail),
+        fine_(problem, constants::kFineDetail),
+        threads_(threads) {}
 
   SampleRegistration Register() {
     SampleRegistration result = Unregistered(problem_);
@@ -57,15 +46,16 @@ class Registration {
     spreads_.fill(problem_.homography_sd_mm / places_.unit_mm);
     result.displaced_before_mm = Displaced_mm(&result);
     places_.plane = CoarsePlane(problem_, fine_, threads_);
-    const double reach_mm = kNeedsPairs * 2 * places_.unit_mm;
+    const double reach_mm = constants::kNeedsPairs * 2 * places_.unit_mm;
     const bool few = FactorsOf(pictures_.views()) == 0;
     const bool loose = problem_.homography_sd_mm > reach_mm;
     if (few && loose) return result;  // of two or three, all could be displaced by anything
     if (few || loose) ComparePairs(few, &result);
-    for (int round = 0; round < kCommonRounds && !few; ++round) {
+    for (int round = 0; round < constants::kCommonRounds && !few; ++round) {
       const SamplePlaces before = places_;
       CompareInCommon(round > 0, &result);
-      if (Moved_mm(before) < kStill_px * pictures_.PixelSide_mm(pictures_.OwnSize())) break;
+      const double pixel_mm = pictures_.PixelSide_mm(pictures_.OwnSize());
+      if (Moved_mm(before) < constants::kStill_px * pixel_mm) break;
     }
     if (!result.told) return Unregistered(problem_);
     result.displaced_after_mm = Displaced_mm(&result);
@@ -91,7 +81,8 @@ class Registration {
     }
     if (!few || problem_.height_sd_mm <= 0) return;
     const double longest_mm = std::max(problem_.sample_width_mm, problem_.sample_height_mm);
-    const Eigen::Vector3d shading(kPairsHeight * longest_mm, kPairsHeight, kPairsHeight);
+    const Eigen::Vector3d shading(constants::kPairsHeightSd * longest_mm, constants::kPairsHeightSd,
+                                  constants::kPairsHeightSd);
     result->plane_covariance.diagonal() += shading.cwiseAbs2();
     if (LiesAsSaid(problem_, {places_, spreads_, result->plane_covariance})) {
       places_.plane = {problem_.height_mm, 0, 0};
@@ -103,7 +94,7 @@ class Registration {
     const cv::Size size = fine_.OwnSize();
     if (problem_.height_sd_mm > 0) {
       const std::vector<WindowHeight> heights = WindowHeights(fine_, places_, size, near, threads_);
-      result->told = std::ssize(heights) >= kLeastHeights;
+      result->told = std::ssize(heights) >= constants::kLeastHeights;
       if (result->told) {
         const PlaceSolution plane = FitPlane(problem_, places_, spreads_, heights);
         Take(plane, result);
@@ -150,7 +141,8 @@ class Registration {
     });
     const int longest_px = std::max(size.width, size.height);
     const int window_px = 2 * static_cast<int>(std::lround(0.5 * window * longest_px));
-    return WindowShifts(looked_up, pairs, window_px, kLongestShift * longest_px, threads_, windows);
+    return WindowShifts(looked_up, pairs, window_px, constants::kLongestShift * longest_px,
+                        threads_, windows);
   }
 
   // Median over windows and neighbouring views; counts them.

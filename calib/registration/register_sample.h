@@ -15,11 +15,14 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "calib/registration/sample_place.h"
 
 namespace glint {
 
-// A photograph as it looks on the assumed plane z = 0, from the top, rows from +y on.
+// A photograph as it looks on the assumed plane z = 0, from the top, rows from +y on. Best
+// constants::kRegistrationSide_px pixels along the sample's longer side (times the margin); fewer
+// are right where the photograph has no more.
 struct TopView {
   int width = 0, height = 0;
   std::vector<float> radiance;  // [H·W], linear, 1 where an 8-bit photograph clips
@@ -34,7 +37,7 @@ struct RegistrationProblem {
 
   // Gaussian priors. `height_sd_mm` 0: the plane is held at `height_mm`, without slopes.
   double height_mm = 0, height_sd_mm = 1;
-  double slope_sd = 0.02;
+  double slope_sd = constants::kPlaneSlopeSd;
   // Whether samples that lie exactly in the plane z = height_mm are as usual as all others: those
   // on a board are, pictures that somebody rectified are not.
   bool often_as_said = true;
@@ -58,10 +61,6 @@ struct SampleRegistration {
 
   double height_sd_mm() const;
 };
-
-// What the views best have in pixels along the sample's longer side (times the margin): more tells
-// no more, fewer are right where the photographs have no more.
-inline constexpr int kRegistrationSide_px = 512;
 
 // Nothing but the prior: the photographs as they are, on its plane.
 SampleRegistration Unregistered(const RegistrationProblem& problem);

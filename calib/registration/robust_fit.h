@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "base/statistics/median.h"
 
 namespace glint {
@@ -47,8 +48,8 @@ inline void SolveRobustly(ceres::Problem* problem) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   options.num_threads = 1;  // the same bits for the same input
-  options.max_num_iterations = 30;
-  options.function_tolerance = 1e-7;
+  options.max_num_iterations = constants::kRobustIterations;
+  options.function_tolerance = constants::kRobustTolerance;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, problem, &summary);

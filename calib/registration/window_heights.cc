@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 #include "calib/registration/factor_analysis.h"
 #include "calib/registration/window_textures.h"
 
 namespace glint {
 namespace {
-
-// Heights that are tried, in pixels of the largest parallax: every one within kFar, then finer ones
-// about the best.
-constexpr int kFar = 5;
-constexpr int kFineEachWay = 4;
-constexpr double kFineStep = 0.25;
 
 std::vector<double> Steps(double centre, double step, int each_way) {
   std::vector<double> heights;
@@ -61,7 +56,7 @@ std::vector<WindowHeight> WindowHeights(const DetailPictures& pictures, const Sa
   const double parallax = LargestParallax(pictures);
   if (FactorsOf(pictures.views()) == 0 || !(parallax > 0)) return {};
   const int width =
-      static_cast<int>(std::lround(kTextureWindow * std::max(size.width, size.height)));
+      static_cast<int>(std::lround(constants::kTextureWindow * std::max(size.width, size.height)));
   std::vector<cv::Rect> windows;
   for (const cv::Rect& window : WindowsOf(pictures, size, width, width)) {
     // Every other one, like a chessboard's white squares.
@@ -71,14 +66,15 @@ std::vector<WindowHeight> WindowHeights(const DetailPictures& pictures, const Sa
   const double step_mm = pictures.PixelSide_mm(size) / parallax;
   double best_mm = 0;
   if (!near) {
-    const std::vector<double> far = Steps(0, step_mm, kFar);
+    const std::vector<double> far = Steps(0, step_mm, constants::kFarHeights);
     Eigen::Index best = 0;
     HeightMisfits(pictures, places, size, windows, far, threads).rowwise().sum().minCoeff(&best);
     best_mm = far[static_cast<size_t>(best)];
   }
-  const std::vector<double> heights = Steps(best_mm, kFineStep * step_mm, kFineEachWay);
+  const std::vector<double> heights =
+      Steps(best_mm, constants::kFineHeightStep_px * step_mm, constants::kFineHeights);
   const Eigen::MatrixXd misfits = HeightMisfits(pictures, places, size, windows, heights, threads);
-  const double samples = windows[0].area() / kPixelsPerSample;
+  const double samples = windows[0].area() / constants::kPixelsPerSample;
   std::vector<WindowHeight> found;
   for (size_t w = 0; w < windows.size(); ++w) {
     const auto column = misfits.col(static_cast<Eigen::Index>(w));
@@ -88,11 +84,11 @@ std::vector<WindowHeight> WindowHeights(const DetailPictures& pictures, const Sa
     const double before = column[at - 1], here = column[at], after = column[at + 1];
     const double bend = before - 2 * here + after;
     if (!(bend > 0)) continue;
-    if (0.5 * samples * (column.maxCoeff() - here) < kTelling) continue;
+    if (0.5 * samples * (column.maxCoeff() - here) < constants::kTellingLogLikelihood) continue;
     const cv::Rect& window = windows[w];
-    found.push_back(
-        {pictures.SamplePoint(size, window.x + 0.5 * width, window.y + 0.5 * width),
-         heights[static_cast<size_t>(at)] + 0.5 * kFineStep * step_mm * (before - after) / bend});
+    found.push_back({pictures.SamplePoint(size, window.x + 0.5 * width, window.y + 0.5 * width),
+                     heights[static_cast<size_t>(at)] +
+                         0.5 * constants::kFineHeightStep_px * step_mm * (before - after) / bend});
   }
   return found;
 }

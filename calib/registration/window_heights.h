@@ -16,14 +16,11 @@ struct WindowHeight {
 // with the light is no displacement to it, and neither is it mistaken for one, as it is where
 // textures are compared by pairs. Empty with too few views for it, or without texture. The same for
 // any number of threads.
-// Of windows that tell: a gain of kTelling in log likelihood over the heights about it is more than
-// noise makes of itself. `near`: the places are right to a pixel, which takes half as long.
-inline constexpr double kTelling = 10;
+// Of windows that tell: a gain of constants::kTellingLogLikelihood over the heights about it is
+// more than noise makes of itself. `near`: the places are right to a pixel, which takes half as
+// long.
 std::vector<WindowHeight> WindowHeights(const DetailPictures& pictures, const SamplePlaces& places,
                                         const cv::Size& size, bool near, int threads);
-
-// Texture as fine as what is compared varies from one such area to the next, in pixels.
-inline constexpr double kPixelsPerSample = 8;
 
 // How little likely what is seen in windows (columns) is at heights (rows) above the places' plane:
 // −2 log likelihood of a texel, up to a constant, by factor analysis with as many factors as the

@@ -4,16 +4,11 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 
 namespace glint {
 namespace {
-
-constexpr int kAllPairsUpTo = 12;
-constexpr int kPartners[] = {1, 2, 3, 5, 8};  // further on in the list, of each picture of many
-
-// Of the peak, in which its place is the centre of mass.
-constexpr int kPeakReach = 2;
 
 struct Peak {
   double dx = 0, dy = 0, response = 0;
@@ -24,8 +19,8 @@ Peak PeakOf(const cv::Mat& surface) {
   cv::Point top;
   cv::minMaxLoc(surface, nullptr, nullptr, nullptr, &top);
   double sum = 0, x = 0, y = 0;
-  for (int j = -kPeakReach; j <= kPeakReach; ++j) {
-    for (int i = -kPeakReach; i <= kPeakReach; ++i) {
+  for (int j = -constants::kPeakReach_px; j <= constants::kPeakReach_px; ++j) {
+    for (int i = -constants::kPeakReach_px; i <= constants::kPeakReach_px; ++i) {
       const float value = surface.at<float>((top.y + j + surface.rows) % surface.rows,
                                             (top.x + i + surface.cols) % surface.cols);
       sum += value;
@@ -75,10 +70,12 @@ std::vector<Window> WindowsOf(const cv::Size& size, int width) {
 std::vector<std::pair<int, int>> PairsOf(int pictures) {
   std::vector<std::pair<int, int>> pairs;
   for (int i = 0; i < pictures; ++i) {
-    if (pictures <= kAllPairsUpTo) {
+    if (pictures <= constants::kAllPairsUpTo) {
       for (int j = i + 1; j < pictures; ++j) pairs.emplace_back(i, j);
     } else {
-      for (const int further : kPartners) pairs.emplace_back(i, (i + further) % pictures);
+      for (const int further : constants::kPairPartners) {
+        pairs.emplace_back(i, (i + further) % pictures);
+      }
     }
   }
   return pairs;
@@ -99,7 +96,7 @@ std::vector<WindowShift> WindowShifts(const std::vector<cv::Mat>& pictures,
     for (const auto& [first, second] : pairs) {
       const Peak peak =
           Correlate(spectra[static_cast<size_t>(first)], spectra[static_cast<size_t>(second)]);
-      if (peak.response < kLeastResponse) continue;
+      if (peak.response < constants::kLeastResponse) continue;
       if (std::hypot(peak.dx, peak.dy) > longest_px) continue;
       window.shifts.push_back({first, second, window.place.x + width / 2.0,
                                window.place.y + width / 2.0, peak.dx, peak.dy, peak.response});

@@ -22,9 +22,8 @@ std::vector<std::pair<int, int>> PairsOf(int pictures);
 
 // Windows of `width` pixels a side that overlap by half, of pictures of one size (CV_32F). Phase
 // correlation (Kuglin & Hines 1975), its peak's centre of mass between the pixels. Only shifts with
-// a response of kLeastResponse and up to `longest_px` long, in the order of the windows.
+// a response of constants::kLeastResponse and up to `longest_px` long, in the order of the windows.
 // `windows` (may be null) returns how many were compared. The same for any number of threads.
-inline constexpr double kLeastResponse = 0.08;
 std::vector<WindowShift> WindowShifts(const std::vector<cv::Mat>& pictures,
                                       const std::vector<std::pair<int, int>>& pairs, int width,
                                       double longest_px, int threads, int* windows);

@@ -4,18 +4,15 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "base/model/constants.h"
+
 namespace glint {
-namespace {
-
-constexpr double kRim = 1.0 / 32;  // of the sample's longer side: 16 pixels of 512
-
-}  // namespace
-
 std::vector<cv::Rect> WindowsOf(const DetailPictures& pictures, const cv::Size& size, int width,
                                 int step) {
   std::vector<cv::Rect> windows;
   const int rim = pictures.surrounded()
-                      ? static_cast<int>(std::lround(kRim * std::max(size.width, size.height)))
+                      ? static_cast<int>(
+                            std::lround(constants::kTextureRim * std::max(size.width, size.height)))
                       : 0;
   for (int y = rim; y + width + rim <= size.height; y += step) {
     for (int x = rim; x + width + rim <= size.width; x += step) {

@@ -8,9 +8,6 @@
 
 namespace glint {
 
-// Of windows in which textures are compared, in parts of the sample's longer side.
-inline constexpr double kTextureWindow = 1.0 / 8;
-
 // Windows of `width` pixels every `step` of them, of pictures of `size`; away from the rim where
 // views show what is beside the sample, which reaches a little into its high-passed detail.
 std::vector<cv::Rect> WindowsOf(const DetailPictures& pictures, const cv::Size& size, int width,

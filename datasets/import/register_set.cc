@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 #include "datasets/import/read_image.h"
 #include "rectify/views/rectify_photo.h"
@@ -12,25 +13,17 @@
 namespace glint {
 namespace {
 
-// What nobody measured, in parts of the sample's longer side: published sets lie up to 1.4 % above
-// or below the plane that they were rectified for, and photographs are up to .5 % out of place
-// beside that.
-constexpr double kHeightSpread = 0.02;
-constexpr double kPlaceSpread = 0.004;
-// What is beside the sample in a framed picture may be in it where the sample lies higher.
-constexpr double kLargestMargin = 1.2;
-
 double MarginOf(const LinearPhoto& photo, PixelSize sample) {
   return std::clamp(std::min(static_cast<double>(photo.width()) / sample.width,
                              static_cast<double>(photo.height()) / sample.height),
-                    1.0, kLargestMargin);
+                    1.0, constants::kLargestImportMargin);
 }
 
 // The picture from the top, the sample and a margin, small.
 TopView SmallView(const LinearPhoto& photo, const SamplePlane& plane, PixelSize sample,
                   double margin) {
   const double longest = std::max(sample.width, sample.height);
-  const double scale = margin * std::min(1.0, kRegistrationSide_px / longest);
+  const double scale = margin * std::min(1.0, constants::kRegistrationSide_px / longest);
   SamplePlane small;
   small.width = static_cast<int>(std::lround(sample.width * scale));
   small.height = static_cast<int>(std::lround(sample.height * scale));
@@ -65,9 +58,9 @@ SampleRegistration RegisterSet(const ForeignSet& set, const ImportOptions& optio
   const double longest_mm = std::max(plane.width_mm, plane.height_mm);
   const bool wanted = options.registration == "auto" && set.photographs() && set.views.size() > 1;
   problem.height_mm = set.plane_mm.value_or(0);
-  problem.height_sd_mm = !wanted || set.plane_mm ? 0 : kHeightSpread * longest_mm;
+  problem.height_sd_mm = !wanted || set.plane_mm ? 0 : constants::kImportedHeightSd * longest_mm;
   problem.often_as_said = false;
-  problem.homography_sd_mm = wanted ? kPlaceSpread * longest_mm : 0;
+  problem.homography_sd_mm = wanted ? constants::kImportedPlaceSd * longest_mm : 0;
   if (!wanted) return Unregistered(problem);
   const PixelSize sample = SampleSize(set);
   problem.margin = MarginOf(ReadLinear(set.views[0], set.encoding, options), sample);

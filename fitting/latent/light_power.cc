@@ -2,18 +2,12 @@
 
 #include <cmath>
 
+#include "base/model/constants.h"
 #include "base/resampling/resampling.h"
 #include "fitting/encoding/encoding.h"
 #include "fitting/latent/fit_loss.h"
 
 namespace glint {
-namespace {
-
-constexpr int kMostOctaves = 3;     // either way of the power given
-constexpr double kStepOctaves = 1;  // then half of it, about the best
-
-}  // namespace
-
 PhotographSet WithPower(PhotographSet set, double factor) {
   for (Photograph& photograph : set.photographs) {
     for (double& power : photograph.view.light_rgb) power *= factor;
@@ -40,11 +34,11 @@ PowerEstimate EstimatePower(const Estimator& estimator, const PhotographSet& set
     power.log_l1 = here;
     best = octaves;
   };
-  for (int step = 1; step <= kMostOctaves; ++step) {
-    for (const int way : {-1, 1}) offer(way * step * kStepOctaves);
+  for (int step = 1; step <= constants::kPowerReach_octaves; ++step) {
+    for (const int way : {-1, 1}) offer(way * step * constants::kPowerStep_octaves);
   }
   const double coarse = best;
-  for (const int way : {-1, 1}) offer(coarse + 0.5 * way * kStepOctaves);
+  for (const int way : {-1, 1}) offer(coarse + 0.5 * way * constants::kPowerStep_octaves);
   power.factor = std::exp2(best);
   return power;
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/cpu/instruction_set.h"
+#include "base/model/constants.h"
 #include "base/reflectance/log_radiance.h"
 #include "base/reflectance/texel_at.h"
 #include "fitting/refine/estimate_sample.h"
@@ -184,7 +185,7 @@ void AddViewBlocks(const Scene& scene, size_t t, const KernelOptions& options,
     for (int c = 0; c < 3; ++c) {
       const double radiance = view.rgb[c * scene.start.texels() + t];
       residuals->log_target[c] = std::log(radiance + kLogOffset);
-      residuals->clipped[c] = radiance >= kClipped;
+      residuals->clipped[c] = radiance >= constants::kClippedRadiance;
     }
     residuals->options = options;
     problem->AddResidualBlock(

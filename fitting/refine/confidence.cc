@@ -3,20 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
+
 namespace glint {
-namespace {
-
-// Widest a standard deviation is said to be: a value in [0, 1] of which nothing is known.
-constexpr double kWidest = 1.0;
-
-}  // namespace
-
 void TexelCovariance::operator+=(const TexelCovariance& other) {
   for (size_t i = 0; i < variances.size(); ++i) variances[i] += other.variances[i];
   slopes += other.slopes;
 }
 
-double LeastInformation(double scale) { return scale * scale / (kWidest * kWidest); }
+double LeastInformation(double scale) {
+  return scale * scale / (constants::kWidestSd * constants::kWidestSd);
+}
 
 TexelCovariance PosteriorCovariance(const BatchInverse& inverse, int lane, double scale) {
   const double variance = scale * scale;
@@ -61,7 +58,8 @@ std::array<float, kConfidencePlanes> TexelConfidence(const TexelCovariance& cova
 
   // A variance that rounding made negative, or no number, is one of which nothing is known.
   const auto deviation = [](double v) {
-    return static_cast<float>(v > 0 ? std::min(std::sqrt(v), kWidest) : kWidest);
+    return static_cast<float>(v > 0 ? std::min(std::sqrt(v), constants::kWidestSd)
+                                    : constants::kWidestSd);
   };
   std::array<float, kConfidencePlanes> planes;
   planes[kSigmaNormalX] = deviation(normal_variance(0));

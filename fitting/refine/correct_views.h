@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "fitting/photographs/photographs.h"
 #include "fitting/refine/refine.h"
 #include "fitting/view_correction/view_correction.h"
@@ -16,19 +17,21 @@ namespace glint {
 
 struct CorrectionOptions {
   std::string when = "auto";  // auto: with views enough; always; never
-  double distinct_views = 5;  // of the set (residual_model.h) from which on "auto" looks
+  // Of the set (residual_model.h), from which on "auto" looks.
+  double distinct_views = constants::kLeastDistinctViews;
   // ViewCorrectionResult::GainOver() up to which nothing is taken: views that are right stay
   // untouched.
-  double least_gain = 0.02;
+  double least_gain = constants::kLeastGain;
   // Terms of environment lighting where that is all that is corrected: polished samples mirror it.
   int environment_terms = kEnvironmentTerms;
   // Lights, exposures and registration are corrected only where that explains so much more than
   // environment lighting alone does: what remains of it is a little like lights that are off.
-  double least_views_gain = 0.05;
+  double least_views_gain = constants::kLeastViewsGain;
   // Corrections and refinements in turn, at most: texels in wrong minima keep views from their
   // correct values, and leave these minima once they are refined with views that are nearly right.
-  int rounds = 3;
-  int working_size = 256;  // texels along the longer side; larger sets are averaged down
+  int rounds = constants::kCorrectionRounds;
+  // Texels along the longer side; larger sets are averaged down.
+  int working_size = constants::kCorrectionSize_texel;
   ViewCorrectionOptions view;
 
   bool Wanted(double distinct_views_of_set) const;

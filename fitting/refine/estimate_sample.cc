@@ -7,6 +7,7 @@
 #include <optional>
 #include <tuple>
 
+#include "base/model/constants.h"
 #include "fitting/refine/gather.h"
 #include "fitting/refine/refine_worker.h"
 #include "fitting/texel/texel_parameters.h"
@@ -41,9 +42,6 @@ std::vector<View> ViewsOf(const RefineProblem& problem) {
   return views;
 }
 
-// What nothing is known of, without a prior.
-constexpr double kUnknownInformation = 1e-9;
-
 using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
 // By Cholesky's factor and its inverse; Eigen's solver takes five times as long for so few.
@@ -71,7 +69,7 @@ Matrix9 InverseOf(const TexelGram& gram) {
     for (int j = i; j < kTexelParameters; ++j) {
       information(i, j) = information(j, i) = gram[static_cast<size_t>(i)][static_cast<size_t>(j)];
     }
-    information(i, i) += kUnknownInformation;
+    information(i, i) += constants::kUnknownInformation;
   }
   return InverseOfPositive(information);
 }
@@ -250,7 +248,7 @@ void Estimator::SetViews(const ViewDeviations& deviations) {
     set(v, deviations.values()[v], &problem_);
     for (size_t i = 0; i < nudged_.size(); ++i) {
       DeviationValues further = deviations.values()[v];
-      further[i] += kDeviationStep;
+      further[i] += constants::kDeviationStep;
       set(v, further, &nudged_[i]);
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/model/constants.h"
 #include "base/reflectance/texel_at.h"
 
 namespace glint {
@@ -20,7 +21,8 @@ bool See(const RefineView& view, size_t texels, size_t texel, Seen* seen) {
   const std::span<const float> target = view.deblurred.empty() ? view.rgb : view.deblurred;
   for (size_t c = 0; c < 3; ++c) {
     seen->radiance[c] = std::max(target[c * texels + texel], 0.0f);
-    seen->clipped[c] = view.ldr && static_cast<double>(view.rgb[c * texels + texel]) >= kClipped;
+    seen->clipped[c] = view.ldr && static_cast<double>(view.rgb[c * texels + texel]) >=
+                                       constants::kClippedRadiance;
   }
   return true;
 }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/model/constants.h"
+
 namespace glint {
 namespace {
 
@@ -25,9 +27,8 @@ double RootOf(double difference, double robust_scale) {
 // The logarithm that all differences of a view are less by at their least sum of squares: a mean by
 // the weights that these squares give (iteratively reweighted least squares).
 double CommonDifference(std::span<const ViewDifferences> texels, size_t view, double robust_scale) {
-  constexpr int kIterations = 12;
   double common = 0;
-  for (int i = 0; i < kIterations; ++i) {
+  for (int i = 0; i < constants::kExposureIterations; ++i) {
     double sum = 0, weights = 0;
     for (const ViewDifferences& texel : texels) {
       if (!texel[view]) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 #include "base/reflectance/brdf.h"
 #include "base/reflectance/log_radiance.h"
@@ -11,8 +12,6 @@
 
 namespace glint {
 namespace {
-
-constexpr int kSide = 128;  // texels along the longer side: 16,384 pin a median to a thousandth
 
 double ExposureOf(const RefineProblem& problem, const SvbrdfMaps& maps, const RefineView& view) {
   const SamplePlane& plane = problem.plane;
@@ -27,7 +26,7 @@ double ExposureOf(const RefineProblem& problem, const SvbrdfMaps& maps, const Re
     ShadeRadiance(TexelAt(maps, i), geometry, problem.convention, radiance);
     for (size_t c = 0; c < 3; ++c) {
       const double seen = view.rgb[c * texels + i];
-      if (view.ldr && seen >= 0.99) continue;
+      if (view.ldr && seen >= constants::kClippedRadiance) continue;
       // Below it rounding decides, and the loss does not look.
       if (!(seen > kLogOffset) || !(radiance[c] > 0)) continue;
       ratios.push_back(seen / radiance[c]);
@@ -41,7 +40,7 @@ double ExposureOf(const RefineProblem& problem, const SvbrdfMaps& maps, const Re
 std::vector<double> HeldOutExposures(SampleSource* source, int threads) {
   const SamplePlane& plane = source->plane();
   int stride = 1;
-  while (std::max(plane.width, plane.height) > stride * kSide) stride += 2;
+  while (std::max(plane.width, plane.height) > stride * constants::kHeldOutSide_texel) stride += 2;
   const SampleSource::Part part = source->Every(stride, threads);
   const RefineProblem problem = part.Problem();
   std::vector<double> exposures(problem.views.size(), 1.0);

@@ -3,20 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
+
 namespace glint {
 namespace {
 
-// Standard deviation of channels about their mean, relative to that and half of what dielectrics
-// reflect at least: of what has no colour and of what has one.
-constexpr double kGreyChroma = 0.05, kColouredChroma = 0.6;
-constexpr double kBlack = 0.001;  // what no photograph tells from a specular albedo of 0
+using constants::kBlackSpecular;
+using constants::kColouredChromaSd;
+using constants::kGreyChromaSd;
+
 constexpr double kCertain = 500;  // of a logarithm, that its exponential is finite
-constexpr int kRounds = 8;        // of kinds and the light's power, each given the other
 
 struct Look {
   explicit Look(const SpecularMean& mean)
       : grey(mean.mean()),
-        log_grey(std::log(grey + kBlack)),
+        log_grey(std::log(grey + kBlackSpecular)),
         size(grey + kSpecularOffset),
         departures((mean.array() - grey).square().sum() / (size * size)) {}
 
@@ -38,8 +39,9 @@ double OfChroma(double spread, double departures) {  // of which two are free
 struct Probabilities {
   Probabilities(const Look& look, double log_power, double metal_share) {
     // Relative to a grey dielectric.
-    const double colour = std::exp(std::min(kCertain, OfChroma(kColouredChroma, look.departures) -
-                                                          OfChroma(kGreyChroma, look.departures)));
+    const double colour =
+        std::exp(std::min(kCertain, OfChroma(kColouredChromaSd, look.departures) -
+                                        OfChroma(kGreyChromaSd, look.departures)));
     const double dielectric_coloured =
         kDielectric.coloured_share / (1 - kDielectric.coloured_share) * colour;
     const double log_grey = look.log_grey - log_power;
@@ -64,7 +66,7 @@ double PrecisionOf(double first_share, double first_spread, double second_spread
 struct Expected {
   explicit Expected(const Probabilities& is)
       : log_precision(PrecisionOf(is.of_dielectric, kDielectric.log_spread, kMetal.log_spread)),
-        chroma_precision(PrecisionOf(is.of_coloured, kColouredChroma, kGreyChroma)) {
+        chroma_precision(PrecisionOf(is.of_coloured, kColouredChromaSd, kGreyChromaSd)) {
     const double dielectric =
         is.of_dielectric / (kDielectric.log_spread * kDielectric.log_spread) / log_precision;
     log_grey = dielectric * std::log(kDielectric.f0) + (1 - dielectric) * std::log(kMetal.f0);
@@ -81,7 +83,7 @@ KindsPrior PriorOfKinds(const std::vector<SpecularMean>& means, const KindsPrior
   const auto count = static_cast<Eigen::Index>(looks.size());
   Eigen::VectorXd off(count), precision(count), by_chroma(count);
   double log_power = 0;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < constants::kKindsRounds; ++round) {
     for (Eigen::Index k = 0; k < count; ++k) {
       const Look& look = looks[static_cast<size_t>(k)];
       const Expected expected(Probabilities(look, log_power, options.metal_share));
@@ -99,7 +101,7 @@ KindsPrior PriorOfKinds(const std::vector<SpecularMean>& means, const KindsPrior
                    log_power};
   const Eigen::Matrix3d chroma = Eigen::Matrix3d::Identity() - Eigen::Matrix3d::Constant(1.0 / 3);
   const auto slope = [&](Eigen::Index k) {  // of the logarithm by each channel
-    return 1 / (3 * (looks[static_cast<size_t>(k)].grey + kBlack));
+    return 1 / (3 * (looks[static_cast<size_t>(k)].grey + kBlackSpecular));
   };
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index l = 0; l < count; ++l) {

@@ -1,5 +1,5 @@
 // What physics knows of substances' specular albedos: each is a dielectric or a metal
-// (base/reflectance/material_kinds.h, docs/model.md "What is estimated of each capture").
+// (base/reflectance/material_kinds.h, docs/model.md "What is known of a texel beforehand").
 //
 // Which of the two a substance is follows from its specular albedo and from its channels'
 // departures from their mean: a dielectric's highlight has no colour. Where the light's power is
@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "base/reflectance/material_kinds.h"
 
 namespace glint {
@@ -17,7 +18,7 @@ namespace glint {
 using SpecularMean = Eigen::Vector3d;
 
 struct KindsPriorOptions {
-  double light_power_spread = 0.1;            // standard deviation of its logarithm, > 0
+  double light_power_spread = constants::kLightPowerSd;  // standard deviation of its logarithm, > 0
   double metal_share = MetalShareOf("rare");  // prior share of metals among substances, 0 to 1
 };
 

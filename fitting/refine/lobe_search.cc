@@ -5,32 +5,29 @@
 #include <optional>
 #include <utility>
 
+#include "base/model/constants.h"
+
 namespace glint {
 namespace {
-
-// Nearer to each other lobes are hard to tell apart: a step changes the prediction of held-out
-// photographs of polished stone and bamboo by 1 to 5 %.
-constexpr std::array<double, 4> kShares = {0.3, 0.5, 0.7, 0.85};
-constexpr std::array<double, 3> kRatios = {0.6, 0.4, 0.25};
-constexpr double kSecondLobeLogOdds = 3;  // against it, before photographs are seen
 
 using LobePlace = std::pair<int, int>;  // places of a share and a ratio
 constexpr LobePlace kNearestToOne = {1, 0};
 constexpr std::array<LobePlace, 4> kSteps = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
 SpecularLobes LobesAt(const LobePlace& place) {
-  return {kShares[static_cast<size_t>(place.first)], kRatios[static_cast<size_t>(place.second)]};
+  return {constants::kNarrowLobeShares[static_cast<size_t>(place.first)],
+          constants::kNarrowLobeRatios[static_cast<size_t>(place.second)]};
 }
 
 bool InLattice(const LobePlace& place) {
-  return place.first >= 0 && place.first < static_cast<int>(kShares.size()) && place.second >= 0 &&
-         place.second < static_cast<int>(kRatios.size());
+  return place.first >= 0 && place.first < static_cast<int>(constants::kNarrowLobeShares.size()) &&
+         place.second >= 0 && place.second < static_cast<int>(constants::kNarrowLobeRatios.size());
 }
 
 }  // namespace
 
 bool AskForTwoLobes(const HeldOutErrors& two, const HeldOutErrors& one) {
-  return two.EnergyAgainst(one) < -kSecondLobeLogOdds;
+  return two.EnergyAgainst(one) < -constants::kSecondLobeLogOdds;
 }
 
 SpecularLobes SearchLobes(const std::function<HeldOutErrors(const SpecularLobes& lobes)>& predict) {

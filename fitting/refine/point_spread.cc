@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
 #include "base/reflectance/log_radiance.h"
 #include "base/resampling/resampling.h"
 #include "fitting/texel/texel_batch.h"
@@ -10,18 +11,10 @@
 namespace glint {
 namespace {
 
-// Of a Gaussian whose response at half a cycle per texel is that of a texel's area, sinc(1/2).
-constexpr double kTexelVariance = 0.0915;
-// A pixel a little wider than two texels has it at .67 pixels. It bounds how far rows depend on
-// each other; where texels are finer still, photographs say nothing of single ones.
-constexpr double kMostVariance = 2;
-// Of [w, 1 − 2w, w] with w = ¼, at which the response falls to 0 at half a cycle.
-constexpr double kThreeTapVariance = 0.5;
-
 // As few convolutions of three taps as have the variance together: the variance is exact, and the
 // response falls like the Gaussian's.
 std::vector<float> GaussianTaps(double variance) {
-  const int times = static_cast<int>(std::ceil(variance / kThreeTapVariance));
+  const int times = static_cast<int>(std::ceil(variance / constants::kThreeTapVariance));
   const double w = variance / times / 2;
   std::vector<double> taps = {1};
   for (int i = 0; i < times; ++i) {
@@ -59,7 +52,8 @@ std::vector<Taps> TapsOf(const std::vector<float>& gaussian, int count) {
 PointSpread::PointSpread(double pixels_per_texel, double spread_px) {
   if (!(pixels_per_texel > 0) || !(spread_px > 0)) return;
   const double spread = spread_px / pixels_per_texel;
-  variance_ = std::clamp(spread * spread - kTexelVariance, 0.0, kMostVariance);
+  variance_ =
+      std::clamp(spread * spread - constants::kTexelVariance, 0.0, constants::kMostBlurVariance);
   if (variance_ > 0) taps_ = GaussianTaps(variance_);
 }
 
@@ -76,7 +70,9 @@ std::vector<float> Deblurred(const PointSpread& spread, std::span<const float> p
   const float most = ldr ? 1.0f : INFINITY;
   for (float& r : rendering) r = std::clamp(r, 0.0f, most);
   std::vector<float> residuals = spread.Blurred(rendering, width, height);
-  const auto clips = [&](double radiance) { return ldr && radiance >= kClipped; };
+  const auto clips = [&](double radiance) {
+    return ldr && radiance >= constants::kClippedRadiance;
+  };
   for (size_t i = 0; i < residuals.size(); ++i) {
     const float y = std::max(photograph[i], 0.0f);
     if (!(mask[i % mask.size()] >= 0.5f)) {

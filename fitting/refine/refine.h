@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "base/reflectance/convention.h"
 #include "base/reflectance/environment_lighting.h"
 #include "base/reflectance/svbrdf_deviations.h"
@@ -59,15 +60,20 @@ struct RefineProblem {
 };
 
 struct RefineOptions {
-  int iterations = 40;         // most Levenberg–Marquardt steps of one solve
-  int starts = 2;              // solves per texel: 1: the start alone; more: so many roughnesses
-  int neighbour_passes = 2;    // how often a texel tries its neighbours' solutions
-  int substances = 8;          // at most, that share their roughness and albedos
-  int estimation_rounds = 16;  // of variances and substances, on sampled texels, up to three times
+  // Most Levenberg–Marquardt steps of one solve.
+  int iterations = constants::kSolveIterations;
+  // Solves per texel: 1: from the initial maps alone; more: from so many roughnesses.
+  int starts = constants::kStarts;
+  // How often a texel tries its neighbours' solutions.
+  int neighbour_passes = constants::kNeighbourPasses;
+  // At most, that share their roughness and albedos.
+  int substances = constants::kSubstances;
+  // Of variances and substances, on sampled texels, up to three times.
+  int estimation_rounds = constants::kEstimationRounds;
   // Texels along the longer side among which those are sampled, at most; the sample as a whole is
   // estimated from no others. A million texels: the few thousand that are solved are picked of
   // them.
-  int estimation_size = 1024;
+  int estimation_size = constants::kEstimationSize;
   // Standard deviation expected of the flash's place beside where it is said to be, relative to its
   // distance (flash_offset.h). 0: it is where it is said to be.
   double flash_offset = 0;
@@ -81,17 +87,17 @@ struct RefineOptions {
   double lamp_gradient = 0, level_spread = 0;
   // Scale σ expected of residuals (log radiance) before any is seen: a weak prior, which decides
   // where photographs are few (residual_model.h).
-  double residual_sigma = 0.05;
+  double residual_sigma = constants::kResidualSigma;
   // Of substances. That of the light's power is what calibration leaves open of a board's white.
   KindsPriorOptions kinds;
   // Standard deviations expected of all views' light (shared_light.h). 0: as said.
   double flash_beam = 0, distance_power = 0;
   bool second_lobe = true;  // of the whole sample, where held-out photographs ask for it
-  double prior = 1.0;       // factor on the priors' weight; 0: none
+  double prior = constants::kPriorWeight;  // factor on the priors' weight; 0: none
   // Standard deviation by which lens, pixel, demosaicking and resampling spread a point of the
   // picture, pixels (point_spread.h). 0: not at all.
-  double point_spread_px = 0.67;
-  double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
+  double point_spread_px = constants::kPointSpread_px;
+  double robust_scale = constants::kRobustScale;  // residuals (log units) beyond it count linearly
 
   // Empty: all is well; otherwise what is wrong.
   std::string Check() const;

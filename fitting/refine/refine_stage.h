@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "base/programs/stage.h"
 #include "fitting/refine/correct_views.h"
 #include "fitting/refine/refine.h"
@@ -21,20 +22,20 @@ struct RefineStageOptions {
   CorrectionOptions correction;
   // RefineOptions::flash_offset of sets whose light was not calibrated (of unknown power): phones'
   // flashes are 1 to 3 cm beside the lens, 20 to 40 cm away.
-  double flash_offset = 0.05;
+  double flash_offset = constants::kFlashOffsetSd;
   // Of the same sets, RefineOptions::exposure_spread and light_spread.
-  double exposure_spread = 0.1;
-  double light_spread = 0.02;
+  double exposure_spread = constants::kExposureSd;
+  double light_spread = constants::kLightPlaceSd;
   // Likewise RefineOptions::residual_sigma: what fourteen such samples were found to have.
-  double residual_sigma = 0.1;
+  double residual_sigma = constants::kUncalibratedResidualSigma;
   // RefineOptions::lamp_gradient for a fixed camera: a dome half as bright on one side as on the
   // other; and level_spread: a degree, as panels lie in a dome or stand before a camera.
-  double lamp_gradient = 0.5;
-  double level_spread = 0.02;
-  double flash_beam = 0.3;
-  double distance_power = 1;
+  double lamp_gradient = constants::kLampGradientSd;
+  double level_spread = constants::kLampLevelSd;
+  double flash_beam = constants::kFlashBeamSd;
+  double distance_power = constants::kDistancePowerSd;
   // Likewise KindsPriorOptions::light_power_spread: estimators find it within a half.
-  double light_power_spread = 0.5;
+  double light_power_spread = constants::kUncalibratedLightPowerSd;
   int rows_at_once = 0;              // in memory; 0: as memory allows; never changes a value
   std::string part;                  // "K/N": that part alone; empty: all rows
   int join = 0;                      // this many parts; 0: refine

@@ -4,20 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
 #include "base/reflectance/log_radiance.h"
 #include "fitting/texel/texel_batch.h"
 
 namespace glint {
 namespace {
 
-constexpr double kGamma = 2.2;
-// Photon noise and what demosaicking and JPEG leave of it after resampling, relative.
-constexpr double kSensorNoise = 0.003;
-constexpr size_t kSamples = 4096;
+using constants::kCodeGamma;
+using constants::kGaussianZeta;
+using constants::kSensorNoise;
 
-// ζ = δ²/σ² from which the hyperbolic distribution is taken for Gauss's: mean squares differ by
-// less than 3/2ζ, and Bessel's functions underflow from ζ = 700 on.
-constexpr double kGaussian = 300;
 constexpr double kRadiansPerDegree = 3.14159265358979 / 180;
 
 // exp(−θ²/2τ²) of the half vectors at the sample's centre, by pairs of views.
@@ -42,13 +39,13 @@ std::vector<std::vector<double>> HalfVectorLikeness(const RefineProblem& problem
 double MeasurementVariance(const RefineProblem& problem) {
   double sum = 0, count = 0;
   for (const RefineView& view : problem.views) {
-    const size_t step = std::max<size_t>(1, view.mask.size() / kSamples);
+    const size_t step = std::max<size_t>(1, view.mask.size() / constants::kNoiseSamples);
     for (size_t i = 0; i < view.mask.size(); i += step) {
       if (!(view.mask[i] >= 0.5f)) continue;
       const double radiance = std::clamp<double>(view.rgb[view.mask.size() + i], 0, 1);
       // I = k^2.2, so dI = 2.2·I^(1.2/2.2)·dk with dk uniform over a 255th.
       const double by_code =
-          kGamma * std::pow(std::max(radiance, 1e-6), (kGamma - 1) / kGamma) / 255;
+          kCodeGamma * std::pow(std::max(radiance, 1e-6), (kCodeGamma - 1) / kCodeGamma) / 255;
       const double rounding = view.ldr ? by_code / std::sqrt(12.0) : 0;
       const double offset = radiance + kLogOffset;
       sum += rounding * rounding / (offset * offset) + kSensorNoise * kSensorNoise;
@@ -62,8 +59,8 @@ double HyperbolicVariance(double mean_square, double robust_scale) {
   const double delta2 = robust_scale * robust_scale;
   const double wanted = mean_square / (2 * delta2);
   // K₀/K₁ + 1/ζ − 1 falls from ∞ to 0 as ζ rises; beyond the range it is 1/2ζ, Gauss's.
-  double low = std::log(1e-3), high = std::log(kGaussian);
-  if (wanted <= 0.5 / kGaussian) return mean_square;
+  double low = std::log(1e-3), high = std::log(kGaussianZeta);
+  if (wanted <= 0.5 / kGaussianZeta) return mean_square;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high), zeta = std::exp(middle);
     const double here = std::cyl_bessel_k(0.0, zeta) / std::cyl_bessel_k(1.0, zeta) + 1 / zeta - 1;
@@ -74,7 +71,7 @@ double HyperbolicVariance(double mean_square, double robust_scale) {
 
 double HyperbolicMeanSquare(double variance, double robust_scale) {
   const double delta2 = robust_scale * robust_scale;
-  if (!(variance > 0) || delta2 / variance > kGaussian) return variance;
+  if (!(variance > 0) || delta2 / variance > kGaussianZeta) return variance;
   const double zeta = delta2 / variance;
   return variance * std::cyl_bessel_k(2.0, zeta) / std::cyl_bessel_k(1.0, zeta);
 }

@@ -11,22 +11,23 @@
 
 #include <vector>
 
+#include "base/model/constants.h"
 #include "fitting/refine/refine.h"
 
 namespace glint {
 
 struct ResidualModelOptions {
   // Inter-channel correlation of discrepancy; fourteen real samples: .75 to .99.
-  double channel_correlation = 0.9;
+  double channel_correlation = constants::kChannelCorrelation;
   // Length scale, in degrees between half vectors, over which discrepancy stays alike.
-  double half_vector_deg = 8;
+  double half_vector_deg = constants::kDiscrepancyLength_deg;
   // Share of its variance that is a smooth function of the half vector; the rest is each view's
   // own (registration, exposure).
-  double smooth_share = 0.8;
+  double smooth_share = constants::kSmoothShare;
   // What residuals are expected to be before any is seen (RefineOptions::residual_sigma), and
   // how many per texel that belief is worth while views are being found.
-  double expected_sigma = RefineOptions().residual_sigma;
-  double expected_residuals = 1;
+  double expected_sigma = constants::kResidualSigma;
+  double expected_residuals = constants::kResidualSigmaWeight;
 };
 
 class ResidualModel {
@@ -42,7 +43,8 @@ class ResidualModel {
   // Number of views that say something of their own: the sum of the inverse correlation matrix.
   double effective_views() const { return effective_views_; }
   // Standard deviation by which residuals of weight 1 are to be judged against priors:
-  // σ·√(1 + 2ρ)·√(views / effective views), with ρ the inter-channel correlation.
+  // σ·√(1 + 2κω)·√(views / effective views), κ the inter-channel correlation of discrepancy, ω its
+  // share of the variance.
   double scale() const;
 
   const ResidualModelOptions& options() const { return options_; }

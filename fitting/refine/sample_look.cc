@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 #include "base/reflectance/brdf.h"
 #include "base/reflectance/log_radiance.h"
@@ -12,11 +13,8 @@
 namespace glint {
 namespace {
 
-// Along each side of the sample: as fine as highlights are, and far coarser than texture.
-constexpr int kCells = 16;
-constexpr size_t kLeastViews = 3;  // a line through two points has no error
-constexpr double kLeastInformation = 1e-3;
-constexpr double kSteepest = 3;  // of few and noisy photographs
+using constants::kLookCells;
+
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 
 float LogRadianceOf(const RefineView& view, size_t texel) {
@@ -38,17 +36,19 @@ Place PlaceOnSample(const SamplePlane& plane, size_t texel) {
   return {plane.x_mm(column) / plane.width_mm + 0.5, 0.5 - plane.y_mm(row) / plane.height_mm};
 }
 
-int CellOf(double place) { return std::clamp(static_cast<int>(place * kCells), 0, kCells - 1); }
+int CellOf(double place) {
+  return std::clamp(static_cast<int>(place * kLookCells), 0, kLookCells - 1);
+}
 
 size_t CellAt(int row, int column) {
-  return static_cast<size_t>(row) * kCells + static_cast<size_t>(column);
+  return static_cast<size_t>(row) * kLookCells + static_cast<size_t>(column);
 }
 
 // The logarithm of what a view's light sends to the middle of a cell.
 double LogIrradiance(const RefineProblem& problem, const View& view, int column, int row) {
   const SamplePlane& plane = problem.plane;
-  const double x_mm = ((column + 0.5) / kCells - 0.5) * plane.width_mm;
-  const double y_mm = (0.5 - (row + 0.5) / kCells) * plane.height_mm;
+  const double x_mm = ((column + 0.5) / kLookCells - 0.5) * plane.width_mm;
+  const double y_mm = (0.5 - (row + 0.5) / kLookCells) * plane.height_mm;
   const TexelGeometry<double> at =
       TexelGeometryInView<double>(view, problem.convention.falloff, x_mm, y_mm);
   return std::log((at.irradiance[0] + at.irradiance[1] + at.irradiance[2]) / 3);
@@ -57,20 +57,21 @@ double LogIrradiance(const RefineProblem& problem, const View& view, int column,
 }  // namespace
 
 SampleLook::SampleLook(const RefineProblem& problem, int threads) : typical_(problem.views.size()) {
-  if (problem.views.size() < kLeastViews) return;
+  if (problem.views.size() < constants::kLeastGlossViews) return;
   const size_t texels = problem.views.front().mask.size();
   ForEachPiece(static_cast<int>(problem.views.size()), threads, [&](int v) {
     const RefineView& view = problem.views[static_cast<size_t>(v)];
-    std::vector<std::vector<float>> by_cell(kCells * kCells);
+    std::vector<std::vector<float>> by_cell(kLookCells * kLookCells);
     for (size_t t = 0; t < texels; ++t) {
       if (!Sees(view, t)) continue;
       const Place place = PlaceOnSample(problem.plane, t);
       by_cell[CellAt(CellOf(place.y), CellOf(place.x))].push_back(LogRadianceOf(view, t));
     }
-    for (int cell = 0; cell < kCells * kCells; ++cell) {
+    for (int cell = 0; cell < kLookCells * kLookCells; ++cell) {
       std::vector<float>& seen = by_cell[static_cast<size_t>(cell)];
       const float median = seen.empty() ? kUnseen : LowerMedian(&seen);
-      const double received = LogIrradiance(problem, view.view, cell % kCells, cell / kCells);
+      const double received =
+          LogIrradiance(problem, view.view, cell % kLookCells, cell / kLookCells);
       typical_[static_cast<size_t>(v)].push_back({median, median - static_cast<float>(received)});
     }
   });
@@ -80,7 +81,6 @@ SampleLook::SampleLook(const RefineProblem& problem, int threads) : typical_(pro
 // Of lines with slopes b_i and information w_i: τ² is where Σ (b_i² − s²/w_i)/(τ² + s²/w_i)² is 0,
 // the score of the likelihood.
 void SampleLook::LearnVariances(const std::vector<Line>& lines) {
-  constexpr int kIterations = 20;
   double squares = 0, freedom = 0;
   for (const Line& line : lines) {
     squares += line.squares;
@@ -89,7 +89,7 @@ void SampleLook::LearnVariances(const std::vector<Line>& lines) {
   if (!(freedom > 0)) return;
   noise_ = squares / freedom;
   variance_ = 1;
-  for (int i = 0; i < kIterations; ++i) {
+  for (int i = 0; i < constants::kGlossIterations; ++i) {
     double sum = 0, weights = 0;
     for (const Line& line : lines) {
       if (line.freedom == 0) continue;
@@ -104,10 +104,10 @@ void SampleLook::LearnVariances(const std::vector<Line>& lines) {
 
 // Between the middles of the four cells about a place; beyond the outermost as there.
 SampleLook::Typical SampleLook::TypicalAt(size_t view, double x, double y) const {
-  const double u = std::clamp(x * kCells - 0.5, 0.0, kCells - 1.0);
-  const double v = std::clamp(y * kCells - 0.5, 0.0, kCells - 1.0);
-  const int column = std::min(static_cast<int>(u), kCells - 2);
-  const int row = std::min(static_cast<int>(v), kCells - 2);
+  const double u = std::clamp(x * kLookCells - 0.5, 0.0, kLookCells - 1.0);
+  const double v = std::clamp(y * kLookCells - 0.5, 0.0, kLookCells - 1.0);
+  const int column = std::min(static_cast<int>(u), kLookCells - 2);
+  const int row = std::min(static_cast<int>(v), kLookCells - 2);
   const float s = static_cast<float>(u - column), t = static_cast<float>(v - row);
   const auto at = [&](int down, int across) -> const Typical& {
     return typical_[view][CellAt(row + down, column + across)];
@@ -136,10 +136,11 @@ SampleLook::Line SampleLook::LineOf(const RefineProblem& problem, size_t texel) 
     xy += highlight * departure;
     yy += departure * departure;
   }
-  if (n < kLeastViews) return {};
+  if (n < constants::kLeastGlossViews) return {};
   const double information = xx - x * x / n, both = xy - x * y / n;
-  if (!(information > kLeastInformation)) return {};
-  const double slope = std::clamp(both / information, -kSteepest, kSteepest);
+  if (!(information > constants::kLeastGlossInformation)) return {};
+  const double slope =
+      std::clamp(both / information, -constants::kSteepestGloss, constants::kSteepestGloss);
   const double left = yy - y * y / n - both * both / information;
   return {static_cast<float>(slope), static_cast<float>(information),
           static_cast<float>(std::max(0.0, left)), static_cast<int>(n) - 2};

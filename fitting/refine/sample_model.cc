@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 #include "fitting/refine/neighbours.h"
 #include "fitting/refine/sample_blocks.h"
@@ -17,19 +18,6 @@
 
 namespace glint {
 namespace {
-
-constexpr size_t kSampled = 2048;
-constexpr size_t kLeastValidatedViews = 3;  // of two, one would have to predict the other
-// Of the initialisation's errors, where fitting has seen the same photographs.
-constexpr double kSeenAlready = 3;
-// Scatter of normals to begin with; cross-validation changes it. Of what initial maps say of it a
-// part is what fitting made of its photographs.
-constexpr double kExpectedNormalSpread = 0.05;
-// Prior log odds of substances by gloss against those by colour alone, which gloss only divides:
-// what is lost where they are divided in vain is little.
-constexpr double kGlossLogOdds = 3;
-constexpr int kOtherRounds = 4;       // of other substances' means, from texels that are solved
-constexpr double kNormalTexels = 20;  // that this belief is worth, of a substance
 
 using Matrix9 = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
@@ -57,8 +45,8 @@ SharedValues SharedOf(const TexelValues& values) {
 // to count twice, and roughness and normals, which hold its misfit, are not taken from it at all.
 InitialisationErrors ErrorsOfInitialisation(const RefineProblem& problem) {
   InitialisationErrors errors;
-  if (problem.views.size() < kLeastValidatedViews) return errors;
-  errors.Scale(kSeenAlready);
+  if (problem.views.size() < constants::kLeastValidatedViews) return errors;
+  errors.Scale(constants::kSeenAlready);
   errors.normal = errors.roughness = std::numeric_limits<double>::infinity();
   return errors;
 }
@@ -132,7 +120,7 @@ SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
       measured_residuals_(residuals_),
       has_sample_priors_(part.problem().views.size() > 1),
       normal_spreads_(static_cast<size_t>(part.substances().count()),
-                      has_sample_priors_ ? kExpectedNormalSpread : kUnknownSpread),
+                      has_sample_priors_ ? constants::kNormalSd : kUnknownSpread),
       deviations_(static_cast<int>(part.problem().views.size()),
                   {options.exposure_spread, options.light_spread, options.light_spread},
                   {options.flash_offset, options.flash_offset, options.flash_beam,
@@ -152,7 +140,7 @@ SampleModel SampleModel::On(const SamplePart& part) const {
 
 TexelGaussian SampleModel::Initialisation(size_t texel) const {
   const std::span<const float> stated = part_->problem().initial_sd;
-  if (!stated.empty() && all_views_.size() < kLeastValidatedViews) {
+  if (!stated.empty() && all_views_.size() < constants::kLeastValidatedViews) {
     const auto of = [&](int plane) {
       return stated[static_cast<size_t>(plane) * part_->texels() + texel];
     };
@@ -300,7 +288,8 @@ void SampleModel::UpdateSubstances(const Sampling& sampling) {
 
 // Of half the length scale over which discrepancy stays alike.
 SampleModel::HalfVectorCell SampleModel::CellOf(size_t texel, size_t view) const {
-  const double cell = 0.5 * residuals_.options().half_vector_deg * std::numbers::pi / 180;
+  const double cell =
+      constants::kHalfVectorCell * residuals_.options().half_vector_deg * std::numbers::pi / 180;
   const RefineProblem& problem = part_->problem();
   const int row = static_cast<int>(texel) / part_->initial().width;
   const int column = static_cast<int>(texel) % part_->initial().width;
@@ -451,8 +440,9 @@ double SampleModel::NormalPrecision(size_t texel) const {
 void SampleModel::UpdateNormalSpreads(const Sampling& sampling) {
   const double variance = residuals_.scale() * residuals_.scale();
   const size_t count = normal_spreads_.size();
-  std::vector<double> squares(count, kExpectedNormalSpread * kExpectedNormalSpread * kNormalTexels);
-  std::vector<double> weights(count, kNormalTexels);
+  std::vector<double> squares(
+      count, constants::kNormalSd * constants::kNormalSd * constants::kNormalSdTexels);
+  std::vector<double> weights(count, constants::kNormalSdTexels);
   for (size_t i = 0; i < sampling.solved.size(); ++i) {
     const SampledTexel& solved = sampling.solved[i];
     if (solved.views == 0) continue;
@@ -491,14 +481,14 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
 }
 
 void SampleModel::Estimate(const SamplePart* other, const SampleSolver& solver, int threads) {
-  Sampling sampling = Sample(kSampled, solver, threads);
+  Sampling sampling = Sample(constants::kSampledTexels, solver, threads);
   learns_normals_ = has_sample_priors_;
   Fit(&sampling);
   learns_normals_ = false;
-  if (all_views_.size() < kLeastValidatedViews) return;
-  FreezeViews(kExpectedDiffuseSpread, sampling);
+  if (all_views_.size() < constants::kLeastValidatedViews) return;
+  FreezeViews(constants::kDiffuseSd, sampling);
   ChooseSubstances(other, sampling);
-  const Sampling blocks = SampleBlocks(kSampled, solver, threads);
+  const Sampling blocks = SampleBlocks(constants::kSampledTexels, solver, threads);
   ChooseLobesAndSpreads(blocks);
   if (deviations_.any()) {
     // Views are found while nothing is known of how far diffuse albedo departs from its substances:
@@ -517,13 +507,14 @@ void SampleModel::ChooseSubstances(const SamplePart* other, const Sampling& samp
   model.part_ = other;
   model.BeginSubstances(sampling);
   Sampling solved = sampling;
-  for (int round = 0; round < kOtherRounds; ++round) {
+  for (int round = 0; round < constants::kOtherSubstanceRounds; ++round) {
     model.Solve({.views = all_views_, .near_minimum = true}, &solved);
     model.UpdateSubstances(solved);
   }
-  const Sampling blocks = SampleBlocks(kSampled, *sampling.solver, sampling.threads);
-  if (model.CrossValidate(blocks).EnergyAgainst(CrossValidate(blocks)) < -kGlossLogOdds)
-    *this = model;
+  const Sampling blocks =
+      SampleBlocks(constants::kSampledTexels, *sampling.solver, sampling.threads);
+  const double energy = model.CrossValidate(blocks).EnergyAgainst(CrossValidate(blocks));
+  if (energy < -constants::kGlossLogOdds) *this = model;
 }
 
 void SampleModel::BeginSubstances(const Sampling& sampling) {
@@ -534,7 +525,7 @@ void SampleModel::BeginSubstances(const Sampling& sampling) {
   }
   means_.mean = mean.means();
   means_.covariance.clear();
-  normal_spreads_.assign(means_.mean.size(), kExpectedNormalSpread);
+  normal_spreads_.assign(means_.mean.size(), constants::kNormalSd);
   UpdateNormalSpreads(sampling);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "fitting/refine/confidence.h"
 #include "fitting/refine/held_out_errors.h"
 #include "fitting/refine/refine.h"
@@ -175,7 +176,7 @@ class SampleModel {
   // Of n_x, n_y about 0, and about their neighbours' mean, by substance.
   std::vector<double> normal_spreads_;
   // By how much neighbours' departures from their substances differ, in spreads of departures.
-  double neighbour_spread_ = 1;
+  double neighbour_spread_ = constants::kNeighbourSd;
   bool learns_normals_ = false;  // whether Fit estimates them …
   bool finds_views_ = true;      // … and views' deviations
   ViewDeviations deviations_;

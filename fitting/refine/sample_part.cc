@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 #include "base/reflectance/log_radiance.h"
 #include "fitting/refine/gather.h"
@@ -43,7 +44,8 @@ std::vector<float> MedianColour(const RefineProblem& problem, const SvbrdfMaps& 
             if (!seen.sees(v, lane)) continue;
             const auto at = [&](int plane) { return seen.rows()[v * Obs::kPlanes + plane][lane]; };
             const float radiance = 1 / at(Obs::kInverseTarget + c) - static_cast<float>(kLogOffset);
-            const float received = at(Obs::kIrradiance + c) * std::max(0.05f, at(Obs::kLightZ));
+            const float received =
+                at(Obs::kIrradiance + c) * std::max(constants::kLeastIncidence, at(Obs::kLightZ));
             values.push_back(std::numbers::pi_v<float> * radiance / received);
           }
           colour[static_cast<size_t>(c) * texels + batch[static_cast<size_t>(lane)]] =

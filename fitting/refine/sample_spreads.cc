@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "fitting/refine/lobe_search.h"
 #include "fitting/refine/neighbours.h"
 #include "fitting/refine/sample_blocks.h"
@@ -17,12 +18,7 @@
 namespace glint {
 namespace {
 
-constexpr int kMostFolds = 7;
-constexpr int kBlockSide = 4;  // of texels that are each other's neighbours
-constexpr int kHalves = 2;     // of a checkerboard
-// Errors that neighbours share look like a lobe where each texel's highlight is in a photograph or
-// two: of four synthetic ones two lobes were found by mistake.
-constexpr size_t kLeastViewsForTwoLobes = 5;
+constexpr int kHalves = 2;  // of a checkerboard
 
 }  // namespace
 
@@ -30,7 +26,8 @@ constexpr size_t kLeastViewsForTwoLobes = 5;
 SampleModel::Sampling SampleModel::SampleBlocks(size_t most, const SampleSolver& solver,
                                                 int threads) const {
   const int width = part_->initial().width, height = part_->initial().height;
-  const int across = std::min(kBlockSide, width), down = std::min(kBlockSide, height);
+  const int across = std::min(constants::kBlockSide_texel, width);
+  const int down = std::min(constants::kBlockSide_texel, height);
   const double wanted = static_cast<double>(most) / (across * down);
   const auto count = [](double blocks, int of, int side) {
     return std::clamp(static_cast<int>(std::lround(blocks)), 1, of / side);
@@ -88,7 +85,8 @@ void SampleModel::SolveFromNeighbours(const SampleRequest& request, size_t half,
 
 template <class Visit>
 void SampleModel::ForEachFold(const Sampling& sampling, const Visit& visit) const {
-  const int views = static_cast<int>(all_views_.size()), folds = std::min(views, kMostFolds);
+  const int views = static_cast<int>(all_views_.size());
+  const int folds = std::min(views, constants::kMostFolds);
   for (int fold = 0; fold < folds; ++fold) {
     std::vector<int> fitted, held_out;
     for (int v = 0; v < views; ++v) (v % folds == fold ? held_out : fitted).push_back(v);
@@ -160,7 +158,8 @@ void SampleModel::ChooseSpreads(const Sampling& sampling) {
 // judged with the spreads that each choice asks for.
 void SampleModel::ChooseLobesAndSpreads(const Sampling& sampling) {
   SampleModel two(*this);
-  if (options_.second_lobe && !lobes_.two() && all_views_.size() >= kLeastViewsForTwoLobes) {
+  if (options_.second_lobe && !lobes_.two() &&
+      all_views_.size() >= constants::kLeastViewsForTwoLobes) {
     const SpecularLobes found = SearchLobes([&](const SpecularLobes& lobes) {
       two.lobes_ = lobes;
       return two.CrossValidate(sampling);

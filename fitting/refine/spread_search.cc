@@ -6,16 +6,11 @@
 #include <numeric>
 #include <set>
 
+#include "base/model/constants.h"
+
 namespace glint {
 namespace {
 
-// As far as each may go, in the order of SpreadKind. Specular albedo's reaches further down than
-// roughness's, with which it is scaled first and then alone. The initialisation has seen the
-// photographs that are held out, so that its errors would be thought smaller than they are.
-constexpr SpreadPowers kLeast = {-2, -4, -2, -3, 0, -2}, kMost = {2, 2, 1, 1, 4, 1};
-// Standard deviation of log₂ of the factor on the initialisation's errors. Photographs that hardly
-// tell a rough specular lobe from diffuse light say nothing of it, and what is said of them does.
-constexpr double kInitialisationOctaves = 1;
 // Roughness varies within many substances whose specular albedo does not.
 constexpr std::array<SpreadPowers, 7> kDirections = {{{1, 1, 0, 0, 0, 0},
                                                       {0, 0, 1, 0, 0, 0},
@@ -24,18 +19,16 @@ constexpr std::array<SpreadPowers, 7> kDirections = {{{1, 1, 0, 0, 0, 0},
                                                       {0, 0, 0, 0, 1, 0},
                                                       {0, 0, 0, 0, 0, 1},
                                                       {1, 1, 0, 0, 0, -1}}};
-// Difference of negative logarithms: of what lies beyond, less than e⁻³ = 5 % is left out.
-constexpr double kImprobable = 3;
-
 // Of what is known beforehand.
 double PriorEnergy(const SpreadPowers& powers) {
-  const double octaves = powers[kInitialisationError] / kInitialisationOctaves;
+  const double octaves = powers[kInitialisationError] / constants::kInitialisationOctaves;
   return 0.5 * octaves * octaves;
 }
 
 bool InRange(const SpreadPowers& powers) {
   for (size_t i = 0; i < powers.size(); ++i) {
-    if (powers[i] < kLeast[i] || powers[i] > kMost[i]) return false;
+    if (powers[i] < constants::kLeastSdOctaves[i]) return false;
+    if (powers[i] > constants::kMostSdOctaves[i]) return false;
   }
   return true;
 }
@@ -67,7 +60,7 @@ class Search {
              next = Moved(next, axis, sign)) {
           if (MoveIfBetter(next)) return true;
           around_.push_back({next, EnergyAt(next)});
-          if (around_.back().energy > kImprobable) break;
+          if (around_.back().energy > constants::kImprobable) break;
         }
       }
     }

@@ -6,22 +6,14 @@
 #include <limits>
 
 #include "base/cpu/vector_clones.h"
+#include "base/model/constants.h"
 #include "fitting/texel/texel_parameters.h"
 #include "fitting/view_correction/bounded_step.h"
 
 namespace glint {
 namespace {
 
-// Chroma tells substances apart better than brightness, which shading changes too.
-constexpr float kBrightnessWeight = 0.5f, kChromaWeight = 2.0f, kGlossWeight = 2.0f;
-constexpr float kAlbedoOffset = 0.01f;
-constexpr float kMembershipWidth = 0.2f;  // of the features, for soft shares
-constexpr float kLeastShare = 1e-3f;      // a texel that has less of a substance has nothing of it
-constexpr int kIterations = 40;
-constexpr size_t kClustered = 8192;
-
-constexpr double kMostDiffuse = 0.9;   // white paint and paper
-constexpr double kMostMeanStep = 0.5;  // of a mean, in one round, relative
+using constants::kLeastShare;
 
 using Feature = std::array<float, 4>;
 
@@ -58,7 +50,7 @@ std::vector<Feature> Centres(const std::vector<Feature>& features, int count) {
     if (most <= 0) break;
     centres.push_back(features[farthest]);
   }
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
+  for (int iteration = 0; iteration < constants::kClusteringIterations; ++iteration) {
     std::vector<std::array<double, 4>> sums(centres.size());
     std::vector<double> counts(centres.size());
     for (const Feature& x : features) {
@@ -107,16 +99,18 @@ Substances::Feature Substances::FeatureOf(const TexelLooks& looks, size_t texel)
   float mean = 0;
   for (size_t c = 0; c < 3; ++c) {
     const float d = looks.colour[c * looks.colour.size() / 3 + texel];
-    logs[c] = std::log(std::max(0.0f, d) + kAlbedoOffset);
+    logs[c] = std::log(std::max(0.0f, d) + constants::kColourOffset);
     mean += logs[c] / 3;
   }
-  return {kBrightnessWeight * mean, kChromaWeight * (logs[0] - mean),
-          kChromaWeight * (logs[2] - mean), by_gloss_ ? kGlossWeight * looks.gloss[texel] : 0};
+  return {constants::kBrightnessWeight * mean, constants::kChromaWeight * (logs[0] - mean),
+          constants::kChromaWeight * (logs[2] - mean),
+          by_gloss_ ? constants::kGlossWeight * looks.gloss[texel] : 0};
 }
 
 Substances::Substances(const TexelLooks& looks, int substances, bool by_gloss)
     : by_gloss_(by_gloss) {
-  const size_t texels = looks.colour.size() / 3, step = std::max<size_t>(1, texels / kClustered);
+  const size_t texels = looks.colour.size() / 3,
+               step = std::max<size_t>(1, texels / constants::kClusteredTexels);
   std::vector<Feature> sampled;
   for (size_t i = step / 2; i < texels; i += step) sampled.push_back(FeatureOf(looks, i));
   if (sampled.empty()) sampled.push_back(FeatureOf(looks, 0));
@@ -133,7 +127,8 @@ std::vector<float> Substances::SharesOf(const TexelLooks& looks) const {
     float* shares = all.data() + t * centres_.size();
     for (size_t k = 0; k < centres_.size(); ++k) {
       const float d = Distance2(centres_[k], x) - least;
-      sum += shares[k] = std::exp(-d / (2 * kMembershipWidth * kMembershipWidth));
+      sum += shares[k] =
+          std::exp(-d / (2 * constants::kMembershipWidth * constants::kMembershipWidth));
     }
     for (size_t k = 0; k < centres_.size(); ++k) shares[k] /= sum;
   }
@@ -172,7 +167,7 @@ double SubstanceMeans::LightPower() const {
   for (const SharedValues& m : mean) {
     for (size_t p = kAlikeNearby; p < kShared; ++p) most = std::max(most, m[p]);
   }
-  return std::max(std::exp(KindsOf(*this).log_power), most / kMostDiffuse);
+  return std::max(std::exp(KindsOf(*this).log_power), most / constants::kMostDiffuse);
 }
 
 SharedValues SubstanceMeans::Variances(const SharedValues& of) const {
@@ -239,9 +234,9 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, const SampleWorth&
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index p = kSpecularValues; p < kN; ++p) {
       const auto q = static_cast<size_t>(p);
-      const double width =
-          kBetweenToWithin * (p == 3 ? kExpectedRoughnessSpread
-                                     : kExpectedDiffuseSpread * (common[q] + kSpecularOffset));
+      const double width = constants::kBetweenToWithin *
+                           (p == 3 ? constants::kRoughnessSd
+                                   : constants::kDiffuseSd * (common[q] + kSpecularOffset));
       const double precision = 1 / (width * width);
       information(kN * k + p, kN * k + p) += precision;
       gradient[kN * k + p] += precision * (common[q] - means->mean[static_cast<size_t>(k)][q]);
@@ -251,7 +246,7 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, const SampleWorth&
   Eigen::VectorXd least(kN * count), most(kN * count);
   for (Eigen::Index i = 0; i < kN * count; ++i) {
     const double mean = means->mean[static_cast<size_t>(i / kN)][static_cast<size_t>(i % kN)];
-    const double farthest = kMostMeanStep * (mean + kSpecularOffset);
+    const double farthest = constants::kMostMeanStep * (mean + kSpecularOffset);
     least[i] = std::max(-farthest, (i % kN == 3 ? kRoughnessBounds.low : 0.0) - mean);
     most[i] = std::min(farthest, 1.0 - mean);
   }

@@ -10,13 +10,14 @@
 #include <limits>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "base/reflectance/svbrdf_maps.h"
 #include "fitting/refine/kinds_prior.h"
 #include "fitting/texel/texel_prior.h"
 
 namespace glint {
 
-inline constexpr int kMostSubstances = 8;
+inline constexpr int kMostSubstances = 8;  // that options allow
 // Shared values, by their place among a texel's parameters; the first of them are also expected to
 // depart from their substances as their neighbours' do.
 inline constexpr size_t kShared = 7, kAlikeNearby = 4;
@@ -53,20 +54,15 @@ class Substances {
   std::vector<Feature> centres_;
 };
 
-inline constexpr double kExpectedRoughnessSpread = 0.1, kExpectedSpecularSpread = 0.8;
-// Diffuse albedo's, relative; it is unknown before cross-validation, and from too few photographs.
-inline constexpr double kExpectedDiffuseSpread = 1.0;
+// Diffuse albedo's before cross-validation, and from too few photographs.
 inline constexpr double kUnknownSpread = std::numeric_limits<double>::infinity();
-// Substances are expected to differ from their common mean by so many times what texels of one
-// differ from each other.
-inline constexpr double kBetweenToWithin = 2;
 
 // What has been learned of them.
 struct SubstanceMeans {
   std::vector<SharedValues> mean;
   // Standard deviation of texels about their substance's mean: of roughness, and of albedos
   // relative to mean + kSpecularOffset.
-  double roughness_spread = kExpectedRoughnessSpread, specular_spread = kExpectedSpecularSpread;
+  double roughness_spread = constants::kRoughnessSd, specular_spread = constants::kSpecularSd;
   double diffuse_spread = kUnknownSpread;
   KindsPriorOptions kinds;
 

@@ -5,16 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
+
 namespace glint {
 namespace {
 
-// Views that the expected spreads are worth when they are estimated.
-constexpr double kExpectedViews = 2;
-constexpr double kMostDeviationStep = 0.2;  // of a deviation, in one step
-// What all views share is no deviation of theirs: exposures' mean is the albedos', and the lights'
-// is the flash's offset (shared_light.h). The mean has a prior at 0, of so many times a
-// view's own precision.
-constexpr double kMeanPrecision = 1e3;
+using constants::kLeastViewSd;
+using constants::kMostDeviationStep;
 
 using TexelMatrix = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
@@ -157,7 +154,7 @@ DeviationProducts ProductsOf(const BatchResiduals& residuals,
     const double residual = at(Row::kResidual);
     std::array<double, kViewDeviations> by;
     for (size_t i = 0; i < kViewDeviations; ++i) {
-      by[i] = (nudged[i].at(view, c, Row::kResidual, lane) - residual) / kDeviationStep;
+      by[i] = (nudged[i].at(view, c, Row::kResidual, lane) - residual) / constants::kDeviationStep;
     }
     const std::pair<int, double> by_values[] = {{DiffuseParameter(c), at(Row::kByDiffuse)},
                                                 {SpecularParameter(c), at(Row::kBySpecular)},
@@ -215,15 +212,17 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
     const bool shading = kind >= kViewDeviations;
     // From a sample's centre to its edge a view's exposure is expected to be off by as much as the
     // whole view's is: phones' JPEGs are corrected for vignetting to some per cent.
-    const double spread =
-        std::max(shading ? expected_[kLogExposure] : spreads_[static_cast<size_t>(kind)], 1e-6);
+    const double spread = std::max(
+        shading ? expected_[kLogExposure] : spreads_[static_cast<size_t>(kind)], kLeastViewSd);
     const double precision = 1 / (spread * spread);
     for (int v = 0; v < views; ++v) {
       const Eigen::Index at = unknowns.at(v, i);
       hessian(at, at) += precision;
       if (shading) continue;
       gradient[at] -= precision * values_[static_cast<size_t>(v)][static_cast<size_t>(kind)];
-      for (int w = 0; w < views; ++w) hessian(unknowns.at(w, i), at) += kMeanPrecision * precision;
+      for (int w = 0; w < views; ++w) {
+        hessian(unknowns.at(w, i), at) += constants::kMeanDeviationPrecision * precision;
+      }
     }
     if (kind != kLogExposure || lamps_.directions.empty()) continue;
     // What the lamps' gradient takes off that precision.
@@ -263,7 +262,8 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
 // The inverse of the covariance spread²·1 + gradient²·G·Gᵀ, G the directions (Woodbury).
 Eigen::MatrixXd ViewDeviations::ExposurePrecision() const {
   const auto views = static_cast<Eigen::Index>(values_.size());
-  const double spread = std::max(spreads_[kLogExposure], 1e-6), precision = 1 / (spread * spread);
+  const double spread = std::max(spreads_[kLogExposure], kLeastViewSd);
+  const double precision = 1 / (spread * spread);
   Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(views, views);
   if (lamps_.directions.empty() || !(lamps_.gradient > 0)) return precision * identity;
   Eigen::MatrixXd by(views, 2);
@@ -284,18 +284,19 @@ void ViewDeviations::UpdateSpreads(const std::vector<DeviationValues>& variances
     exposures[static_cast<Eigen::Index>(v)] = values_[v][kLogExposure];
   }
   if (!lamps_.directions.empty()) {
-    const double spread = std::max(spreads_[kLogExposure], 1e-6);
+    const double spread = std::max(spreads_[kLogExposure], kLeastViewSd);
     exposures = spread * spread * ExposurePrecision() * exposures;
   }
   for (size_t i = 0; i < kViewDeviations; ++i) {
-    double squares = kExpectedViews * expected_[i] * expected_[i];
+    double squares = constants::kViewSdWeight * expected_[i] * expected_[i];
     for (size_t v = 0; v < values_.size(); ++v) {
       const double value =
           i == kLogExposure ? exposures[static_cast<Eigen::Index>(v)] : values_[v][i];
       squares += value * value + variances[v][i];
     }
     if (expected_[i] > 0) {
-      spreads_[i] = std::sqrt(squares / (kExpectedViews + static_cast<double>(values_.size())));
+      spreads_[i] =
+          std::sqrt(squares / (constants::kViewSdWeight + static_cast<double>(values_.size())));
     }
   }
 }

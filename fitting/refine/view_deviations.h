@@ -38,11 +38,6 @@ struct DeviationProducts {
   std::array<std::array<double, kTexelParameters>, kViewDeviations> by_values{};
 };
 
-// Derivatives of residuals by the deviations: differences over a step this long. Single precision
-// rounds residuals by 2e-7 and more where lobes are narrow, derivatives so by .002 and more: little
-// beside those that matter there, and random.
-inline constexpr double kDeviationStep = 1e-4;
-
 // Of a lane's texel in one view. `nudged`: for each deviation in turn, with views that are a step
 // further. Which view it is, and `by_shared`, is left to the caller.
 DeviationProducts ProductsOf(const BatchResiduals& residuals,

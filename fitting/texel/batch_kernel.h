@@ -11,6 +11,7 @@
 #pragma once
 
 #include "base/cpu/instruction_set.h"
+#include "base/model/constants.h"
 #include "fitting/texel/texel_batch.h"
 
 namespace glint::kernel {
@@ -20,12 +21,13 @@ using LaneBits = unsigned;
 inline constexpr LaneBits kAllLanes = (1u << kBatch) - 1;
 
 struct SolveOptions {
-  int most_iterations = 40;
+  int most_iterations = constants::kSolveIterations;
   // Where no step promises to lower the sum of squared residuals by so much a solve ends. A sum of
   // squared logarithms: far below what 8 or 16 bit leave undetermined. At least what single
   // precision rounds the sum by.
-  float squares_tolerance = 1e-9f;
-  float damping = 1;  // of the first step, relative to the diagonal of the normal equations
+  float squares_tolerance = constants::kSquaresTolerance;
+  // Of the first step, relative to the diagonal of the normal equations.
+  float damping = constants::kFarDamping;
 };
 
 // Solves of each lane, and where they stand.

@@ -8,6 +8,7 @@
 #include <immintrin.h>
 #endif
 
+#include "base/model/constants.h"
 #include "base/reflectance/brdf_core.h"
 #include "base/reflectance/log_radiance.h"
 #include "fitting/texel/batch_kernel.h"
@@ -473,12 +474,6 @@ struct VectorSolver {
   const BatchPrior& prior;
   int first;
 
-  static constexpr float kStepTolerance = 1e-6f;
-  static constexpr float kLeastDiagonal = 1e-6f;  // by scaled variables
-  static constexpr float kLeastDamping = 1e-5f;   // as rounding of the factor asks for
-  static constexpr float kExactCost = 1e-14f;     // nothing to gain
-  static constexpr float kRounding = 4e-7f;       // of a sum of squares in single precision
-
   GLINT_INLINE Normal Evaluate(const VectorValues& variables) const {
     const Moved moved = ValuesOf(variables);
     Normal normal = EvaluateProducts<false>(options, views, moved.values, first, nullptr);
@@ -508,7 +503,7 @@ struct VectorSolver {
     state->start_squares = normal.squares();
     for (int i = 0; i < kTexelParameters; ++i) {
       const Floats scale = 1.0f + Sqrt(DiagonalOf(normal, i));
-      state->least.of[i] = scale * scale * kLeastDiagonal;
+      state->least.of[i] = scale * scale * constants::kLeastDiagonal;
     }
     state->damping = Broadcast(solve.damping);
     state->growth = Broadcast(2.0f);
@@ -525,7 +520,7 @@ struct VectorSolver {
     Ints converged = Ints{};
     Floats damping = state->damping, growth = state->growth;
     for (;;) {
-      const Ints exact = normal.squares() < 2 * kExactCost;
+      const Ints exact = normal.squares() < 2 * constants::kExactCost;
       converged |= active & exact;
       active &= ~exact;
       VectorValues at;
@@ -538,13 +533,14 @@ struct VectorSolver {
         at.of[i] = variables.of[i] + step.of[i];
       }
       const Floats least_gain =
-          Max(Broadcast(solve.squares_tolerance), normal.squares() * kRounding);
-      const Floats least_step = (Sqrt(length) + kStepTolerance) * kStepTolerance;
+          Max(Broadcast(solve.squares_tolerance), normal.squares() * constants::kSquaresRounding);
+      const Floats least_step =
+          (Sqrt(length) + constants::kStepTolerance) * constants::kStepTolerance;
       // Where no more is promised, however far the step, the search ends.
       Ints last = active & (expected >= 0.0f) & (expected < least_gain);
       if (Any(last)) {
         Floats most;
-        Step(normal, Broadcast(kLeastDamping), state->least, &most);
+        Step(normal, Broadcast(constants::kLeastDamping), state->least, &most);
         last &= (most >= 0.0f) & (most < least_gain);
       }
       last |= active & (step_squares < least_step * least_step);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/model/constants.h"
 #include "base/reflectance/log_radiance.h"
 #include "fitting/texel/texel_albedos.h"
 #include "fitting/texel/texel_parameters.h"
@@ -15,25 +16,6 @@ namespace {
 using kernel::BatchSolution;
 using kernel::LaneBits;
 using kernel::Solving;
-
-// Roughnesses to look at: steps of 1.4, about the width of the valley in which one solve converges.
-constexpr std::array<double, 8> kRoughnesses = {0.07, 0.10, 0.14, 0.20, 0.28, 0.39, 0.55, 0.77};
-
-// Another start is worth a solve when it promises this much less cost; solutions that differ by
-// less are the same for every practical purpose.
-constexpr double kWorthwhile = 0.98;
-// Gain of a step against one residual's noise: narrow valleys (diffuse light against a rough lobe)
-// are walked in short steps.
-constexpr double kWorthStep = 0.005;
-constexpr double kExplained = 1.5;  // squared residuals against noise alone
-// Lights that tell a normal: the square of the angle between them, a milliradian.
-constexpr double kLeastRcond = 1e-6;
-
-// Dampings of the first step. Full Gauss–Newton steps from a rough start throw texels into corners
-// that hold them (no specular at all; the smoothest lobe): with a damping of 1e-4 a third of texels
-// ended in one, with 1 a twentieth (20 views), in no more steps. Next to a minimum they are what is
-// wanted.
-constexpr float kRoughStart = 1, kNearMinimum = 0.01f;
 
 bool Has(LaneBits lanes, int lane) { return (lanes >> lane & 1u) != 0; }
 
@@ -101,7 +83,7 @@ bool TurnToShading(const BatchObservations& observations, int lane, TexelValues*
     }
   }
   const Eigen::LDLT<Eigen::Matrix3d> solver(information);
-  if (solver.rcond() < kLeastRcond) return false;
+  if (solver.rcond() < constants::kLeastShadingRcond) return false;
   const Eigen::Vector3d normal = solver.solve(seen);
   if (!(normal.z() > normal.norm() / kMostSlope)) return false;
   (*values)[kSlopeX] = normal.x() / normal.z();
@@ -158,7 +140,8 @@ BatchSearch::BatchSearch(const KernelOptions& options, int most_iterations, int 
 
 void BatchSearch::SetNoise(double residual_sigma) {
   SetExplained(residual_sigma);
-  solve_.squares_tolerance = static_cast<float>(std::max(kWorthStep * variance_, 1e-9));
+  solve_.squares_tolerance =
+      std::max(static_cast<float>(constants::kWorthStep * variance_), constants::kSquaresTolerance);
 }
 
 int BatchSearch::Batch::FreeLane() const { return std::countr_one(taken); }
@@ -176,7 +159,7 @@ void BatchSearch::Batch::Take(const Batch& from, int lane) {
 
 void BatchSearch::Begin(From from, Gather gather, Done done) {
   from_ = from;
-  solve_.damping = from == From::kStart ? kRoughStart : kNearMinimum;
+  solve_.damping = from == From::kStart ? constants::kFarDamping : constants::kNearDamping;
   gather_ = std::move(gather);
   done_ = std::move(done);
   first_.taken = slow_.taken = second_.taken = 0;
@@ -197,7 +180,7 @@ void BatchSearch::Finish() {
 
 bool BatchSearch::Unexplained(const Batch& batch, int lane) const {
   const double cost = batch.found[static_cast<size_t>(lane)].solution.cost;
-  return 2.0 * cost > kExplained * variance_ * 3.0 * batch.observations().seen(lane);
+  return 2.0 * cost > constants::kExplained * variance_ * 3.0 * batch.observations().seen(lane);
 }
 
 void BatchSearch::RunFirst() {
@@ -309,7 +292,7 @@ void BatchSearch::TrySolve(LaneBits lanes, const Candidates& from) {
     SetLane(lane, from[static_cast<size_t>(lane)].values, &solution.values);
   });
   kernel::SolveOptions solve = solve_;
-  solve.damping = kRoughStart;
+  solve.damping = constants::kFarDamping;
   evaluator_.Solve(solve, second_.observations(), second_.prior, lanes, Solving::kBegin, &solution);
   evaluator_.Solve(solve, second_.observations(), second_.prior, lanes & ~solution.finished,
                    Solving::kFinish, &solution);
@@ -326,12 +309,13 @@ void BatchSearch::TrySolve(LaneBits lanes, const Candidates& from) {
 // From `from` with other roughnesses: the valleys of the profile over them, with the one each comes
 // from in its place, that promise less than the solution has.
 void BatchSearch::TryRoughnesses(LaneBits lanes, const std::array<TexelValues, kBatch>& from) {
-  constexpr size_t kProfile = kRoughnesses.size() + 1;
+  constexpr size_t kProfile = constants::kTriedRoughnesses.size() + 1;
   std::array<Candidates, kProfile> profile;
   ForEachLane(lanes, [&](int lane) {
     const size_t i = static_cast<size_t>(lane);
     std::array<double, kProfile> roughnesses;
-    std::copy(kRoughnesses.begin(), kRoughnesses.end(), roughnesses.begin());
+    std::copy(constants::kTriedRoughnesses.begin(), constants::kTriedRoughnesses.end(),
+              roughnesses.begin());
     roughnesses.back() = from[i][kRough];
     std::sort(roughnesses.begin(), roughnesses.end());
     for (size_t p = 0; p < kProfile; ++p) {
@@ -352,7 +336,7 @@ void BatchSearch::TryRoughnesses(LaneBits lanes, const std::array<TexelValues, k
       const double here = profile[p][i].after;
       const bool valley = (p == 0 || here <= profile[p - 1][i].after) &&
                           (p + 1 == kProfile || here < profile[p + 1][i].after);
-      if (valley && here < kWorthwhile * own[i].before) {
+      if (valley && here < constants::kWorthwhile * own[i].before) {
         valleys[i][static_cast<size_t>(counts[i]++)] = p;
       }
     }
@@ -416,7 +400,8 @@ void BatchSearch::TryNeighbours() {
     FitAlbedosOf(lanes, candidates);
     ForEachLane(lanes, [&](int lane) {
       const size_t i = static_cast<size_t>(lane);
-      const double least = Has(any, lane) ? promising[i].after : kWorthwhile * own[i].before;
+      const double least =
+          Has(any, lane) ? promising[i].after : constants::kWorthwhile * own[i].before;
       if (!((*candidates)[i].after < least)) return;
       promising[i] = (*candidates)[i];
       any |= 1u << lane;
@@ -433,7 +418,8 @@ void BatchSearch::TryNeighbours() {
       const TexelValues& current = second_.found[i].solution.values;
       lanes |= 1u << lane;
       // A roughness as its own would only find the texel's own minimum again.
-      if (std::abs(std::log(neighbour[kRough] / current[kRough])) > 0.1) rougher |= 1u << lane;
+      const double ratio = neighbour[kRough] / current[kRough];
+      if (std::abs(std::log(ratio)) > constants::kOtherRoughness) rougher |= 1u << lane;
       roughness[i].values = current;
       roughness[i].values[kRough] = neighbour[kRough];
       normal_too[i].values = roughness[i].values;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/model/constants.h"
+
 namespace glint {
 namespace {
 
@@ -13,7 +15,8 @@ double Squares(const AlbedoSums& q, double a, double b) {
 double SolveInUnitSquare(const AlbedoSums& q, double* a, double* b) {
   const auto clamp = [](double x) { return x < 0.0 ? 0.0 : (x > 1.0 ? 1.0 : x); };
   const double determinant = q.aa * q.bb - q.ab * q.ab;
-  if (determinant > 1e-6 * q.aa * q.bb) {  // the sums are of single precision
+  // The sums are of single precision.
+  if (determinant > constants::kLeastAlbedoDeterminant * q.aa * q.bb) {
     const double x = (q.ay * q.bb - q.by * q.ab) / determinant;
     const double y = (q.by * q.aa - q.ay * q.ab) / determinant;
     if (x >= 0.0 && x <= 1.0 && y >= 0.0 && y <= 1.0) {

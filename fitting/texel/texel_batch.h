@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "base/reflectance/lobe_mix.h"
 #include "base/reflectance/view.h"
 #include "fitting/texel/texel_albedos.h"
@@ -17,8 +18,8 @@ inline constexpr int kBatch = 16;
 
 struct KernelOptions {
   DiffuseWeight diffuse_weight = DiffuseWeight::kOne;
-  LobeMix<float> mix;         // of the sample's specular lobes
-  double robust_scale = 0.1;  // δ (batch_kernel.h), in units of the logarithm
+  LobeMix<float> mix;                             // of the sample's specular lobes
+  double robust_scale = constants::kRobustScale;  // δ (batch_kernel.h), in units of the logarithm
 };
 
 struct alignas(64) BatchRow {
@@ -49,10 +50,6 @@ struct BatchView {
   float beam[2];
   bool inverse_square;
 };
-
-// Linear radiance from which a photograph that clips is taken to be at its limit; resampling may
-// have mixed a little of a darker pixel in (see AdmitClippedTexels).
-inline constexpr double kClipped = 0.99;
 
 // What the lanes' residuals need from the photographs: a few planes for each view. All lanes have
 // the same views; one that does not see a lane's texel weighs nothing there.

@@ -9,6 +9,8 @@
 // Constants alone: the vector kernels include this (base/cpu/vectors.inl).
 #pragma once
 
+#include "base/model/constants.h"
+
 namespace glint {
 
 struct ValueBounds {
@@ -16,13 +18,14 @@ struct ValueBounds {
   double tail = 0.02;  // width over which the value bends toward its bound
 };
 
-inline constexpr ValueBounds kAlbedoBounds{0.0, 1.0, 0.05};
-inline constexpr ValueBounds kRoughnessBounds{0.03, 1.0, 0.10};
-inline constexpr double kMostSlope = 11.43;  // 85° of tilt: starts beyond are drawn back to it
+inline constexpr ValueBounds kAlbedoBounds{0.0, 1.0, constants::kAlbedoTail};
+inline constexpr ValueBounds kRoughnessBounds{constants::kLeastRoughness, 1.0,
+                                              constants::kRoughnessTail};
+using constants::kMostSlope;  // initial normals beyond are drawn back to it
 
 // Beyond this many tails the value is its bound to double precision.
-inline constexpr double kFarthestTail = 30.0;
+using constants::kFarthestTail;
 // In tails: values nearer to a bound are moved there before they become variables.
-inline constexpr double kNearestToBound = 0.01;
+using constants::kNearestToBound;
 
 }  // namespace glint

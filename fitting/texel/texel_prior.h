@@ -10,18 +10,19 @@
 
 #include <array>
 
+#include "base/model/constants.h"
 #include "fitting/texel/texel_parameters.h"
 
 namespace glint {
 
 // Standard deviations expected of an initialisation's error. Albedos: error + relative·value.
 struct InitialisationErrors {
-  double normal = 0.10;  // of n_x, n_y
-  double roughness = 0.10;
-  double diffuse = 0.03;
-  double diffuse_relative = 0.1;
-  double specular = 0.02;
-  double specular_relative = 0.2;
+  double normal = constants::kInitialNormalSd;  // of n_x, n_y
+  double roughness = constants::kInitialRoughnessSd;
+  double diffuse = constants::kInitialDiffuseSd;
+  double diffuse_relative = constants::kInitialDiffuseRelativeSd;
+  double specular = constants::kInitialSpecularSd;
+  double specular_relative = constants::kInitialSpecularRelativeSd;
 
   void Scale(double factor) {
     for (double* error :

@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 #include "base/reflectance/log_radiance.h"
 #include "base/reflectance/texel_at.h"
@@ -20,30 +21,23 @@
 namespace glint {
 namespace {
 
-constexpr int kMargin = 2;        // texels at the edge, whose lookup would leave the picture
-constexpr double kNoise = 0.004;  // of log residuals: texels that fit so well are not searched
-constexpr int kTexelIterations = 40;
-constexpr int kTexelStarts = 2;
+using constants::kCorrectionMargin_texel;
+
 constexpr size_t kTexelsPerPiece = 4 * kBatch;
-// Sums of normal equations, whatever the number of threads: each has views² memory.
-constexpr int kSums = 8;
-// A mean square over so many is known to a tenth. A prime: the sampled texels stand in columns.
-constexpr size_t kPropagated = 281;
-constexpr double kMostStep = 0.3;  // of roughness and slopes together, as a texel follows
 
 using Jet = ceres::Jet<double, 3>;  // by the light's offset
 
 // Normals that were fitted under wrong lights are tilted alike and must be free to tilt back.
 InitialisationErrors ErrorsOfStart() {
   InitialisationErrors errors;
-  errors.normal = 1;
+  errors.normal = constants::kCorrectionNormalSd;
   return errors;
 }
 
 // Masked texels may hold anything, and a lookup between texels sees those around it.
 bool UsableAround(const std::vector<float>& mask, int width, int column, int row) {
-  for (int y = row - kMargin; y <= row + kMargin; ++y) {
-    for (int x = column - kMargin; x <= column + kMargin; ++x) {
+  for (int y = row - kCorrectionMargin_texel; y <= row + kCorrectionMargin_texel; ++y) {
+    for (int x = column - kCorrectionMargin_texel; x <= column + kCorrectionMargin_texel; ++x) {
       if (!(mask[static_cast<size_t>(y) * width + x] >= 0.5f)) return false;
     }
   }
@@ -119,12 +113,12 @@ struct SampledTexels::Texel {
 
 struct SampledTexels::Worker {
   Worker(const KernelOptions& options, int views)
-      : batches(options, kTexelIterations, views, kTexelStarts),
+      : batches(options, constants::kSolveIterations, views, constants::kStarts),
         observations(views),
         residuals(views),
         seen(3 * static_cast<size_t>(views) * kBatch),
         kernel(options) {
-    batches.SetNoise(kNoise);
+    batches.SetNoise(constants::kCorrectionNoise);
   }
   static size_t PlaceOf(int view, int channel, int lane) {
     return (3 * static_cast<size_t>(view) + static_cast<size_t>(channel)) * kBatch +
@@ -151,8 +145,10 @@ SampledTexels::SampledTexels(const PhotographSet& set, const SvbrdfMaps& maps,
       1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(maps.texels()) / texels))));
   const EnvironmentLighting environment =
       unknowns.EnvironmentAt(Eigen::VectorXd::Zero(unknowns.size()));
-  for (int row = kMargin + stride / 2; row < height - kMargin; row += stride) {
-    for (int column = kMargin + stride / 2; column < width - kMargin; column += stride) {
+  for (int row = kCorrectionMargin_texel + stride / 2; row < height - kCorrectionMargin_texel;
+       row += stride) {
+    for (int column = kCorrectionMargin_texel + stride / 2;
+         column < width - kCorrectionMargin_texel; column += stride) {
       const size_t index = static_cast<size_t>(row) * width + column;
       Texel texel{column, row, set.plane.x_mm(column), set.plane.y_mm(row), {}, {}, {}, {}};
       for (int v = 0; v < unknowns.views(); ++v) {
@@ -245,7 +241,7 @@ void SampledTexels::Gather(std::span<const size_t> texels, const ViewsAt& at, Wo
         LookedUp seen = place ? place->In(picture) : LookedUp{picture[texel_at], 0, 0};
         seen.value = std::max(seen.value, 0.0);
         radiance[c] = static_cast<float>(seen.value);
-        clipped[c] = photograph.ldr && seen.value >= kClipped;
+        clipped[c] = photograph.ldr && seen.value >= constants::kClippedRadiance;
         worker->seen[Worker::PlaceOf(v, c, lane)] = seen;
       }
       observations->Set(lane, v, radiance, clipped);
@@ -351,7 +347,8 @@ void SampledTexels::AddResiduals(const Texel& texel, int lane, const ViewsAt& at
       radiance[c].a +=
           ReflectEnvironment(texel, k, svbrdf, view.exposure, environment, c, &by_environment);
       const LogResidual residual(radiance[c].a, seen.value, worker.kernel.robust_scale);
-      if (ldr && seen.value >= kClipped && residual.error > 0) continue;  // satisfied
+      const bool clipped = ldr && seen.value >= constants::kClippedRadiance;
+      if (clipped && residual.error > 0) continue;  // satisfied
       by_views.clear();
       for (int i = 0; kinds.light && i < 3; ++i) {
         by_views.emplace_back(unknowns_.light(v) + i, residual.by_rendered * radiance[c].v[i]);
@@ -391,12 +388,13 @@ double SampledTexels::ReflectEnvironment(const Texel& texel, size_t k,
 
 NormalEquations SampledTexels::Reduce(const Eigen::VectorXd& x, const Values& values) {
   const ViewsAt views = At(x);
-  while (reductions_.size() < kSums) {
+  while (reductions_.size() < constants::kCorrectionSums) {
     reductions_.emplace_back(unknowns_.size(), unknowns_.kinds().environment_terms);
   }
-  ForEachPieceByWorker(kSums, threads_, [&](int piece, int at) {
+  ForEachPieceByWorker(constants::kCorrectionSums, threads_, [&](int piece, int at) {
     const size_t k = static_cast<size_t>(piece);
-    const size_t begin = texels_.size() * k / kSums, end = texels_.size() * (k + 1) / kSums;
+    const size_t begin = texels_.size() * k / constants::kCorrectionSums;
+    const size_t end = texels_.size() * (k + 1) / constants::kCorrectionSums;
     Worker* worker = workers_[static_cast<size_t>(at)].get();
     TexelReduction& reduction = reductions_[k];
     reduction.Clear();
@@ -430,7 +428,8 @@ SampledTexels::Values SampledTexels::Follow(const Eigen::VectorXd& step,
   for (size_t k = 0; k < texels_.size(); ++k) {
     const TexelFollowing::Vector by = following_[k].After(step);
     const double length = by.tail<kTexelParameters - kRough>().norm();
-    const double share = length > kMostStep ? kMostStep / length : 1;
+    const double share =
+        length > constants::kMostTexelStep ? constants::kMostTexelStep / length : 1;
     double variables[kTexelParameters];
     ToVariables(values[k], variables);
     for (int i = 0; i < kTexelParameters; ++i) variables[i] -= share * by[i];
@@ -457,7 +456,7 @@ Eigen::MatrixXd SampledTexels::MeanSlopeByViews() const {
 SystematicDeviations SampledTexels::PropagatedDeviations(const Eigen::MatrixXd& hessian,
                                                          const Values& values) const {
   const Eigen::LDLT<Eigen::MatrixXd> factor(hessian);
-  const size_t count = std::min(kPropagated, texels_.size());
+  const size_t count = std::min(constants::kPropagatedTexels, texels_.size());
   TexelValues variances{}, squares{};
   Eigen::MatrixXd by_views(unknowns_.size(), kTexelParameters);
   for (size_t i = 0; i < count; ++i) {
@@ -502,7 +501,7 @@ double SampledTexels::SharedNoise(const Eigen::VectorXd& x, const Values& values
     for (size_t i = 0; i < texels.size(); ++i) {
       const int lane = static_cast<int>(i);
       const int freedom = 3 * worker->observations.seen(lane) - kTexelParameters;
-      if (freedom < 6) continue;
+      if (freedom < constants::kLeastFreedom) continue;
       const double squares =
           photographs.Squares(lane) + PriorOf(texels_[texels[i]]).SquaredNorm(values[texels[i]]);
       noise.Add(worker->observations, worker->residuals, lane, squares / freedom);

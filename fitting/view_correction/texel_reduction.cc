@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/model/constants.h"
+
 namespace glint {
 
 TexelFollowing::Vector TexelFollowing::After(const Eigen::VectorXd& step) const {
@@ -81,7 +83,7 @@ void TexelReduction::Eliminate(const TexelGram& gram, TexelFollowing* following)
       const size_t b = static_cast<size_t>(j);
       own(i, j) = own(j, i) = gram[a][b] * by_variable_[a] * by_variable_[b];
     }
-    own(i, i) += 1e-8;
+    own(i, i) += constants::kLeastTexelInformation;
     gradient[i] = gram[a][kTexelParameters] * by_variable_[a];
   }
   const Eigen::LLT<TexelFollowing::Square> cholesky(own);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "base/model/constants.h"
 #include "base/parallel/parallel.h"
 #include "fitting/view_correction/bounded_step.h"
 #include "fitting/view_correction/sampled_texels.h"
@@ -19,24 +20,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Residuals of log radiance: expected of a first descent, and least that is believed of
-// photographs.
-constexpr double kFirstSigma = 0.02, kLeastSigma = 0.005;
-constexpr double kRoundingSigma = 0.007;  // what rounding to 8 bits leaves, about
-// Relative fall of the cost by one step that ends a descent.
-constexpr double kFirstTolerance = 1e-3, kSecondTolerance = 1e-5, kLastTolerance = 1e-6;
-constexpr double kMostDamping = 1e6;
-// Channels have no share in what is left: rounding gives 1.0 to 1.13, errors of views 1.8 to 3 (and
-// so does rounding on grey materials, which are then believed less).
-constexpr double kLooksLikeNoise = 1.5;
-// The work on one texel grows with the square of the views: with more views than these fewer
-// texels are sampled.
-constexpr double kViewsOfAllSamples = 40;
-constexpr int kFewestTexels = 256;
-
 int SampledCount(int wanted, size_t views) {
-  const double share = std::min(1.0, kViewsOfAllSamples / static_cast<double>(views));
-  return std::max(std::min(wanted, kFewestTexels), static_cast<int>(wanted * share * share));
+  const double share = std::min(1.0, constants::kViewsOfAllTexels / static_cast<double>(views));
+  return std::max(std::min(wanted, constants::kFewestCorrectionTexels),
+                  static_cast<int>(wanted * share * share));
 }
 
 // Some sampled texels and the descent of the views on them.
@@ -68,7 +55,7 @@ class Adjustment {
   bool empty() const { return sampled_.size() == 0; }
   double cost() const { return cost_; }
   double RoundingCost() const {
-    return 0.5 * sampled_.residuals() * kRoundingSigma * kRoundingSigma;
+    return 0.5 * sampled_.residuals() * constants::kRoundingSigma * constants::kRoundingSigma;
   }
   double residual_rms() const { return std::sqrt(2 * cost_ / sampled_.residuals()); }
   double SharedNoise() { return sampled_.SharedNoise(x_, values_); }
@@ -165,7 +152,8 @@ SystematicDeviations Adjustment::PropagatedDeviations() {
 }
 
 VectorXd Adjustment::Step(NormalEquations equations, double damping) const {
-  equations.hessian.diagonal().array() += damping * equations.hessian.diagonal().array() + 1e-12;
+  equations.hessian.diagonal().array() +=
+      damping * equations.hessian.diagonal().array() + constants::kLeastViewInformation;
   FixUnseen(&equations);
   constexpr double kAny = std::numeric_limits<double>::infinity();
   VectorXd least = VectorXd::Constant(unknowns_.size(), -kAny);
@@ -179,9 +167,9 @@ VectorXd Adjustment::Step(NormalEquations equations, double damping) const {
 
 void Adjustment::Descend(double tolerance) {
   double total = weight_ * cost_ + PriorCost(x_, values_);
-  double damping = 1e-3;
+  double damping = constants::kFirstViewDamping;
   std::unique_ptr<NormalEquations> equations;
-  for (int i = 0; i < options_.iterations && damping < kMostDamping; ++i) {
+  for (int i = 0; i < options_.iterations && damping < constants::kMostViewDamping; ++i) {
     if (!equations) equations = std::make_unique<NormalEquations>(Equations());
     const VectorXd step = Step(*equations, damping);
     if (!step.allFinite()) break;
@@ -189,7 +177,7 @@ void Adjustment::Descend(double tolerance) {
     const double cost = sampled_.Fit(x_ + step, &values_, &values);
     const double after = weight_ * cost + PriorCost(x_ + step, values);
     if (!(after < total)) {
-      damping *= 8;
+      damping *= constants::kViewDampingRise;
       continue;
     }
     const double gain = (total - after) / total;
@@ -198,7 +186,7 @@ void Adjustment::Descend(double tolerance) {
     cost_ = cost;
     total = after;
     equations.reset();
-    damping = std::max(0.2 * damping, 1e-7);
+    damping = std::max(constants::kViewDampingFall * damping, constants::kLeastViewDamping);
     if (gain < tolerance) break;
   }
 }
@@ -215,7 +203,7 @@ double NoiseLeft(const ViewCorrections& corrections) {
 ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
                             const ViewCorrectionOptions& options, const Adjustment& coarse,
                             int threads) {
-  const double sigma = std::max(kLeastSigma, coarse.residual_rms());
+  const double sigma = std::max(constants::kLeastCorrectionSigma, coarse.residual_rms());
   const int texels = SampledCount(options.last_texels, set.photographs.size());
   const auto make = [&](bool registration) {
     auto made = std::make_unique<Adjustment>(set, maps, options, registration, texels, threads);
@@ -231,10 +219,10 @@ ViewCorrectionResult Finish(const PhotographSet& set, const SvbrdfMaps& maps,
     if (fine->cost() > (1 - options.registration_gain) * as_noise) fine = std::move(unmoved);
   }
   fine->Learn();
-  const bool noise = fine->SharedNoise() < kLooksLikeNoise;
-  fine->Weigh(std::max(kLeastSigma, fine->residual_rms()),
+  const bool noise = fine->SharedNoise() < constants::kLooksLikeNoise;
+  fine->Weigh(std::max(constants::kLeastCorrectionSigma, fine->residual_rms()),
               noise ? options.independent_residuals : options.effective_residuals);
-  fine->Descend(kLastTolerance);
+  fine->Descend(constants::kLastTolerance);
   ViewCorrectionResult result;
   result.cost_before = fine->CostUncorrected();
   result.cost_after = fine->cost();
@@ -309,15 +297,16 @@ ViewCorrectionResult CorrectViews(const PhotographSet& set, const SvbrdfMaps& ma
   ViewCorrectionResult result;
   result.corrections.views.resize(set.photographs.size());
   if (coarse.empty()) return result;
-  coarse.Weigh(kFirstSigma, options.effective_residuals);
+  coarse.Weigh(constants::kFirstCorrectionSigma, options.effective_residuals);
   if (known.views.empty()) {
-    coarse.Descend(kFirstTolerance);
+    coarse.Descend(constants::kFirstTolerance);
   } else {
     coarse.BeginWith(known);
   }
   coarse.Learn();
-  coarse.Weigh(std::max(kLeastSigma, coarse.residual_rms()), options.effective_residuals);
-  coarse.Descend(kSecondTolerance);
+  coarse.Weigh(std::max(constants::kLeastCorrectionSigma, coarse.residual_rms()),
+               options.effective_residuals);
+  coarse.Descend(constants::kSecondTolerance);
   result = Finish(set, maps, options, coarse, threads);
   if (options.registration) CentreShifts(&result.corrections.views);
   return result;

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "base/model/constants.h"
 #include "base/reflectance/environment_lighting.h"
 #include "base/reflectance/svbrdf_maps.h"
 #include "base/reflectance/systematic_deviations.h"
@@ -48,16 +49,19 @@ struct ViewCorrections {
 
 // Standard deviations expected beforehand.
 struct ViewExpectations {
-  double light = 0.03;     // of the light's offset across its direction, of its distance …
-  double distance = 0.03;  // … and along it; both beside what all lights share:
-  // the flash stands elsewhere beside the lens of an upright camera.
-  double shared_light = 0.3;
-  double level = 0.01;  // of the sample's mean slope
+  // Of the light's offset across its direction, relative to its distance …
+  double light = constants::kCorrectedLightSd;
+  // … and along it; both beside what all lights share: the flash stands elsewhere beside the lens
+  // of an upright camera.
+  double distance = constants::kCorrectedDistanceSd;
+  double shared_light = constants::kSharedLightSd;
+  double level = constants::kCorrectedLevelSd;  // of the sample's mean slope
   // Of ambient illumination, of the flash's at the sample's centre: in the mean of all directions,
   // and of each term that says where it comes from (docs/experiments/wrong-views.md).
-  double ambient = 0.1, ambient_direction = 0.02;
-  double exposure = 0.1;  // of its logarithm
-  double registration_texel = 1.0;
+  double ambient = constants::kAmbientSd;
+  double ambient_direction = constants::kAmbientDirectionSd;
+  double exposure = constants::kCorrectedExposureSd;  // of its logarithm
+  double registration_texel = constants::kShiftSd_texel;
 };
 
 struct ViewCorrectionOptions {
@@ -70,16 +74,17 @@ struct ViewCorrectionOptions {
   ViewExpectations expected;
   // Effective sample size of a view's residuals. Errors of model and maps are common to many of
   // them; at their full number they would outweigh any prior.
-  double effective_residuals = 20;
+  double effective_residuals = constants::kEffectiveResiduals;
   // The same where what remains looks like noise: without inter-channel correlation.
-  double independent_residuals = 200;
-  int texels = 1024;          // sampled, about …
-  int last_texels = 2304;     // … and for the last descent
-  int iterations = 25;        // Levenberg–Marquardt steps of one descent, at most
-  double robust_scale = 0.1;  // residuals (log units) beyond it count linearly
+  double independent_residuals = constants::kIndependentResiduals;
+  int texels = constants::kCorrectionTexels;           // sampled, about …
+  int last_texels = constants::kLastCorrectionTexels;  // … and for the last descent
+  // Levenberg–Marquardt steps of one descent, at most.
+  int iterations = constants::kCorrectionIterations;
+  double robust_scale = constants::kRobustScale;  // residuals (log units) beyond it count linearly
   // Displacements that lower the squared residuals by a smaller share, beside what looking up
   // between texels takes off their noise, are not taken: it costs sharpness.
-  double registration_gain = 0.1;
+  double registration_gain = constants::kLeastRegistrationGain;
 
   // Empty: all is well; otherwise what is wrong.
   std::string Check() const;

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/model/constants.h"
+
 namespace glint {
 namespace {
 
 using Derivatives = std::vector<std::pair<int, double>>;
-
-// Of the mean displacement of all views, in texels: it is the maps' own place.
-constexpr double kSharedShift = 1e-3;
 
 double AddOne(double residual, const Derivatives& derivatives, NormalEquations* equations) {
   if (equations != nullptr) equations->Add(residual, derivatives);
@@ -72,9 +71,9 @@ double ViewPriors::Add(const Eigen::VectorXd& x, NormalEquations* equations) con
     double sum = 0;
     for (int v = 0; v < views; ++v) {
       sum += x[unknowns_.shift(v) + i];
-      row.emplace_back(unknowns_.shift(v) + i, 1 / (kSharedShift * views));
+      row.emplace_back(unknowns_.shift(v) + i, 1 / (constants::kSharedShiftSd_texel * views));
     }
-    cost += AddOne(sum / (kSharedShift * views), row, equations);
+    cost += AddOne(sum / (constants::kSharedShiftSd_texel * views), row, equations);
   }
   for (int i = 0; kinds.light && i < 3; ++i) {
     cost += AddSimple(x, unknowns_.shared_light() + i,

@@ -12,7 +12,7 @@ import re
 import sys
 
 FLOORS = {
-    "base": "errors text colour statistics cpu memory parallel resampling reflectance files images canvas "
+    "base": "errors text model colour statistics cpu memory parallel resampling reflectance files images canvas "
     "photos camera board stages formats programs linearize",
     "calib": "chart registration printing corners bundle uncertainty validation light moving_light response "
     "triage colmap guidance capture",

@@ -1,5 +1,6 @@
 // Refinement as a solver: what it finds, leaves alone and refuses.
 #include "fitting/refine/refine.h"
+#include "base/model/constants.h"
 #include "fitting/refine/substances.h"
 
 #include <gtest/gtest.h>
@@ -172,7 +173,7 @@ TEST(Refine, KeepsTheStartWhereNothingIsSeen) {
   // No wider than the model's own prior: as texels of a substance differ, and substances from each
   // other.
   EXPECT_LT(sigma(kSigmaRoughness, 5),
-            kExpectedRoughnessSpread * std::hypot(1.0, kBetweenToWithin));
+            constants::kRoughnessSd * std::hypot(1.0, constants::kBetweenToWithin));
 }
 
 TEST(Refine, TakesClippedPhotographsAsLowerBounds) {

@@ -1,4 +1,5 @@
 #include "fitting/refine/substances.h"
+#include "base/model/constants.h"
 
 #include <gtest/gtest.h>
 
@@ -132,7 +133,7 @@ TEST(UpdateMeans, FindsEachSubstanceHoweverLittleATexelKnows) {
       Substances(Looks(Stripes(1000)), 2, true).SharesOf(Looks(Stripes(1000)));
   for (const double noise : {0.02, 0.3}) {
     SubstanceMeans means;
-    means.diffuse_spread = kExpectedDiffuseSpread;
+    means.diffuse_spread = constants::kDiffuseSd;
     means.mean.assign(2, {0.1, 0.1, 0.1, 0.45, 0.2, 0.2, 0.2});
     for (int round = 0; round < 12; ++round) {
       UpdateMeans(Samples(shares, noise, means), {1, 1}, &means);
