@@ -8,7 +8,8 @@
 //   f = w·k_d/π + D·G·F / (4·NoL·NoV),   w = 1 or 1−k_s (DiffuseWeight)
 //   radiance = exposure·(E·f·NoL + ambient·(w·k_d + k_s)/π)
 //
-// D·G of two lobes (convention.h) is the sum of theirs by their shares.
+// D·G of two lobes (convention.h) is the sum of theirs by their shares; a coat's has an F of its
+// own, and its share of the surroundings.
 //
 // The ambient term is a uniform surround reflected by a flat surface, its specular part without
 // Fresnel's rise toward grazing views: what a metal shows of its surroundings.
@@ -71,7 +72,8 @@ LobeMix<S> LobeMixOf(const SpecularLobes& lobes) {
   const double wide = std::pow(lobes.narrow_ratio, -lobes.narrow_share);
   return {true,
           {S(1 - lobes.narrow_share), S(lobes.narrow_share)},
-          {S(wide), S(wide * lobes.narrow_ratio)}};
+          {S(wide), S(wide * lobes.narrow_ratio)},
+          S(lobes.coat_f0)};
 }
 
 template <class T>
@@ -112,19 +114,24 @@ DiffuseTerms<T> DiffuseLobe(const TexelSvbrdf<T>& texel, DiffuseWeight weight, i
 // What is reflected of the surroundings, one channel of the radiance.
 template <class T>
 T AmbientRadiance(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
-                  DiffuseWeight weight, int channel) {
-  return geometry.ambient[channel] * DiffuseLobe(texel, weight, channel).value +
-         geometry.ambient_specular[channel] * texel.specular[channel] * T(kInversePi);
+                  const ReflectanceConvention& convention, int channel) {
+  const LobeMix<ScalarOf<T>> mix = LobeMixOf<ScalarOf<T>>(convention.lobes);
+  T specular = texel.specular[channel];
+  if (mix.coat()) specular = specular * mix.share[0] + mix.share[1] * mix.coat_f0;
+  return geometry.ambient[channel] * DiffuseLobe(texel, convention.diffuse_weight, channel).value +
+         geometry.ambient_specular[channel] * specular * T(kInversePi);
 }
 
 // The BRDF f, per channel [1/sr]. `geometry` needs its directions only.
 template <class T>
 void EvaluateBrdf(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
                   const ReflectanceConvention& convention, T brdf[3]) {
-  const T factor = EvaluateMix(texel, geometry, convention.lobes).over_cosine;
+  const MixTerms<T> lobe = EvaluateMix(texel, geometry, convention.lobes);
+  const Coat<T> coat = EvaluateCoat(lobe.coat_over_cosine, geometry.fresnel,
+                                    LobeMixOf<ScalarOf<T>>(convention.lobes));
   for (int c = 0; c < 3; ++c) {
     brdf[c] = EvaluateChannel(DiffuseLobe(texel, convention.diffuse_weight, c), texel.specular[c],
-                              geometry.fresnel, T(1), factor)
+                              geometry.fresnel, T(1), lobe.over_cosine, coat)
                   .reflected;
   }
 }
@@ -133,14 +140,15 @@ void EvaluateBrdf(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
 template <class T>
 void ShadeRadiance(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
                    const ReflectanceConvention& convention, T radiance[3]) {
-  const DiffuseWeight weight = convention.diffuse_weight;
   const MixTerms<T> lobe = EvaluateMix(texel, geometry, convention.lobes);
+  const Coat<T> coat =
+      EvaluateCoat(lobe.coat, geometry.fresnel, LobeMixOf<ScalarOf<T>>(convention.lobes));
   for (int c = 0; c < 3; ++c) {
     const ChannelTerms<T> channel =
-        EvaluateChannel(DiffuseLobe(texel, weight, c), texel.specular[c], geometry.fresnel,
-                        lobe.n_dot_l, lobe.value);
-    radiance[c] =
-        geometry.irradiance[c] * channel.reflected + AmbientRadiance(texel, geometry, weight, c);
+        EvaluateChannel(DiffuseLobe(texel, convention.diffuse_weight, c), texel.specular[c],
+                        geometry.fresnel, lobe.n_dot_l, lobe.value, coat);
+    radiance[c] = geometry.irradiance[c] * channel.reflected +
+                  AmbientRadiance(texel, geometry, convention, c);
   }
 }
 

@@ -5,11 +5,13 @@
 // A texel in a view has a specular lobe S = D·G·NoL/(4·NoL·NoV) (SpecularTerms, SpecularSlopes), a
 // diffuse one w·k_d/π (DiffuseTerms) and, by channel,
 //
-//   radiance = E·(w·k_d/π·NoL + S·F) + A·w·k_d/π + A_s·k_s/π
+//   radiance = E·(w·k_d/π·NoL + S·F + C·F_c) + A·w·k_d/π + A_s·(m·k_s + (1 − m)·f_c)/π
 //
 // with E = exposure·irradiance, and A and A_s what the diffuse and the specular lobe reflect of the
 // surroundings (ChannelTerms, ChannelSlopes). S of a sample with two specular lobes
-// (convention.h) is their sum: EvaluateMix, DifferentiateMix. To add another kind of lobe: its
+// (convention.h) is their sum; where the second is a coat's, C is its part and m the first one's
+// share, and F_c the Fresnel term of its F0 f_c (Coat): EvaluateMix, DifferentiateMix. To add
+// another kind of lobe: its
 // terms and slopes here, its sum with S where S is used (what includes this file), and the same in
 // the viewer's GLSL (pipeline/viewer/src/shading.glsl); tests/base/reflectance compares slopes
 // with automatic differentiation, tests/fitting/render and tests/fitting/texel the vector code with
@@ -121,6 +123,14 @@ GLINT_BRDF SpecularTerms<T> EvaluateSpecular(const Cosines<T>& cosines, const T&
 template <class T>
 struct SpecularSlopes {
   T by_roughness, by_n_dot_l, by_n_dot_v, by_n_dot_h, by_n_dot_n;
+
+  GLINT_BRDF void operator+=(const SpecularSlopes& other) {
+    by_roughness += other.by_roughness;
+    by_n_dot_l += other.by_n_dot_l;
+    by_n_dot_v += other.by_n_dot_v;
+    by_n_dot_h += other.by_n_dot_h;
+    by_n_dot_n += other.by_n_dot_n;
+  }
 };
 
 // `weight` comes first, so that what cancels between slopes by n·h and by n·n is rounded alike.
@@ -156,9 +166,10 @@ GLINT_BRDF SpecularSlopes<T> DifferentiateSpecular(
 template <class T>
 struct MixTerms {
   SpecularTerms<T> lobes[2];
-  T n_dot_l;      // clamped
-  T over_cosine;  // S/NoL
-  T value;        // S
+  T n_dot_l;                 // clamped
+  T over_cosine;             // S/NoL
+  T value;                   // S
+  T coat_over_cosine, coat;  // C/NoL and C; 0 where no lobe is a coat's
 };
 
 template <class T, class S>
@@ -172,6 +183,7 @@ template <class T, class S>
 GLINT_BRDF MixTerms<T> EvaluateMix(const Cosines<T>& cosines, const T& roughness,
                                    const LobeMix<S>& mix) {
   MixTerms<T> s;
+  s.coat_over_cosine = s.coat = Arithmetic<T>::Constant(S(0));
   if (!mix.two) {
     s.lobes[0] = EvaluateSpecular(cosines, roughness);
     s.n_dot_l = s.lobes[0].n_dot_l;
@@ -183,31 +195,48 @@ GLINT_BRDF MixTerms<T> EvaluateMix(const Cosines<T>& cosines, const T& roughness
     s.lobes[i] = EvaluateSpecular(cosines, LobeRoughness(roughness, mix, i));
   }
   s.n_dot_l = s.lobes[0].n_dot_l;
-  s.over_cosine = s.lobes[0].over_cosine * mix.share[0] + s.lobes[1].over_cosine * mix.share[1];
-  s.value = s.lobes[0].value * mix.share[0] + s.lobes[1].value * mix.share[1];
+  s.over_cosine = s.lobes[0].over_cosine * mix.share[0];
+  s.value = s.lobes[0].value * mix.share[0];
+  if (mix.coat()) {
+    s.coat_over_cosine = s.lobes[1].over_cosine * mix.share[1];
+    s.coat = s.lobes[1].value * mix.share[1];
+    return s;
+  }
+  s.over_cosine = s.over_cosine + s.lobes[1].over_cosine * mix.share[1];
+  s.value = s.value + s.lobes[1].value * mix.share[1];
   return s;
+}
+
+// ∂(weight·share·S_lobe).
+template <class T, class S>
+GLINT_BRDF SpecularSlopes<T> DifferentiateLobe(const MixTerms<T>& s, const T& roughness,
+                                               const LobeMix<S>& mix, int lobe, const T& weight) {
+  using A = Arithmetic<T>;
+  SpecularSlopes<T> by = DifferentiateSpecular(s.lobes[lobe], LobeRoughness(roughness, mix, lobe),
+                                               T(weight * mix.share[lobe]));
+  // A lobe as rough as can be stays so.
+  by.by_roughness = A::WhereAbove(T(roughness * mix.scale[lobe]), S(1), A::Constant(S(0)),
+                                  T(by.by_roughness * mix.scale[lobe]));
+  return by;
 }
 
 template <class T, class S>
 GLINT_BRDF SpecularSlopes<T> DifferentiateMix(
     const MixTerms<T>& s, const T& roughness, const LobeMix<S>& mix,
     const T& weight = Arithmetic<T>::Constant(ScalarOf<T>(1))) {
-  using A = Arithmetic<T>;
   if (!mix.two) return DifferentiateSpecular(s.lobes[0], roughness, weight);
-  const T zero = A::Constant(S(0));
-  SpecularSlopes<T> sum = {zero, zero, zero, zero, zero};
-  for (int i = 0; i < 2; ++i) {
-    const SpecularSlopes<T> by = DifferentiateSpecular(s.lobes[i], LobeRoughness(roughness, mix, i),
-                                                       T(weight * mix.share[i]));
-    // A lobe as rough as can be stays so.
-    sum.by_roughness +=
-        A::WhereAbove(T(roughness * mix.scale[i]), S(1), zero, T(by.by_roughness * mix.scale[i]));
-    sum.by_n_dot_l += by.by_n_dot_l;
-    sum.by_n_dot_v += by.by_n_dot_v;
-    sum.by_n_dot_h += by.by_n_dot_h;
-    sum.by_n_dot_n += by.by_n_dot_n;
-  }
+  SpecularSlopes<T> sum = DifferentiateLobe(s, roughness, mix, 0, weight);
+  if (mix.coat()) return sum;
+  sum += DifferentiateLobe(s, roughness, mix, 1, weight);
   return sum;
+}
+
+// ∂(weight·C).
+template <class T, class S>
+GLINT_BRDF SpecularSlopes<T> DifferentiateCoat(
+    const MixTerms<T>& s, const T& roughness, const LobeMix<S>& mix,
+    const T& weight = Arithmetic<T>::Constant(ScalarOf<T>(1))) {
+  return DifferentiateLobe(s, roughness, mix, 1, weight);
 }
 
 // The diffuse lobe of one channel with its slopes by k_d and k_s: all that w does.
@@ -246,16 +275,36 @@ GLINT_BRDF T Fresnel(const T& specular, const T& weight) {
   return A::MultiplyAdd(specular, S(1) - weight, weight);
 }
 
+// What a coat adds to every channel, and m.
+template <class T>
+struct Coat {
+  T reflected = Arithmetic<T>::Constant(ScalarOf<T>(0));    // C·F_c
+  T surrounding = Arithmetic<T>::Constant(ScalarOf<T>(0));  // (1 − m)·f_c/π
+  ScalarOf<T> mapped = ScalarOf<T>(1);
+};
+
+// `c`: C, or C/NoL for the BRDF.
+template <class T, class S>
+GLINT_BRDF Coat<T> EvaluateCoat(const T& c, const T& fresnel_weight, const LobeMix<S>& mix) {
+  using A = Arithmetic<T>;
+  if (!mix.coat()) return {};
+  return {c * Fresnel(A::Constant(mix.coat_f0), fresnel_weight),
+          A::Constant(mix.share[1] * mix.coat_f0 * S(kInversePi)), mix.mapped()};
+}
+
 // `s`: the specular lobe S; `fresnel_weight`: 2 to the FresnelExponent.
 template <class T>
 GLINT_BRDF ChannelTerms<T> EvaluateChannel(const DiffuseTerms<T>& diffuse, const T& specular,
-                                           const T& fresnel_weight, const T& n_dot_l, const T& s) {
+                                           const T& fresnel_weight, const T& n_dot_l, const T& s,
+                                           const Coat<T>& coat = {}) {
   using A = Arithmetic<T>;
   using S = ScalarOf<T>;
   ChannelTerms<T> terms;
   terms.fresnel = Fresnel(specular, fresnel_weight);
-  terms.reflected = A::MultiplyAdd(s, terms.fresnel, diffuse.value * n_dot_l);
-  terms.surrounding = A::MultiplyAdd(specular, A::Constant(S(kInversePi)), diffuse.value);
+  terms.reflected = A::MultiplyAdd(s, terms.fresnel, diffuse.value * n_dot_l) + coat.reflected;
+  terms.surrounding =
+      A::MultiplyAdd(specular, A::Constant(coat.mapped * S(kInversePi)), diffuse.value) +
+      coat.surrounding;
   return terms;
 }
 
@@ -270,12 +319,13 @@ GLINT_BRDF ChannelSlopes<T> DifferentiateChannel(const DiffuseTerms<T>& diffuse,
                                                  const ChannelTerms<T>& channel,
                                                  const T& fresnel_weight, const T& n_dot_l,
                                                  const T& s, const T& irradiance, const T& ambient,
-                                                 const T& ambient_specular) {
+                                                 const T& ambient_specular,
+                                                 ScalarOf<T> mapped = ScalarOf<T>(1)) {
   using A = Arithmetic<T>;
   using S = ScalarOf<T>;
   const T received = A::MultiplyAdd(irradiance, n_dot_l, ambient);
-  const T by_f0 =
-      A::MultiplyAdd(irradiance, s * (S(1) - fresnel_weight), ambient_specular * S(kInversePi));
+  const T by_f0 = A::MultiplyAdd(irradiance, s * (S(1) - fresnel_weight),
+                                 ambient_specular * (mapped * S(kInversePi)));
   return {diffuse.by_diffuse * received, A::MultiplyAdd(diffuse.by_specular, received, by_f0),
           irradiance * diffuse.value, irradiance * channel.fresnel};
 }

@@ -13,7 +13,8 @@ namespace {
       "reflectance convention: found '" + std::string(found) +
       "'; use photograph, dir2019, materialgan, or words of diffuse=one|one_minus_specular, "
       "light=none|inverse_square, sampling=pixel_centres|corner_to_corner, "
-      "narrow_lobe=SHARExRATIO (a share from 0 to below 1, a ratio of roughnesses up to 1)");
+      "narrow_lobe=SHARExRATIO[@F0] (a share from 0 to below 1, a ratio of roughnesses up to 1, a "
+      "coat's F0 up to 1)");
 }
 
 constexpr std::string_view kNarrowLobe = "narrow_lobe=";
@@ -24,16 +25,21 @@ std::string Shortest(double x) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr};
 }
 
-// "0.5x0.4"
+// "0.5x0.4", "0.5x0.4@0.04"
 SpecularLobes ParseLobes(std::string_view text) {
   SpecularLobes lobes;
   const char* const end = text.data() + text.size();
   const auto share = std::from_chars(text.data(), end, lobes.narrow_share);
   if (share.ec != std::errc() || share.ptr == end || *share.ptr != 'x') Reject(text);
   const auto ratio = std::from_chars(share.ptr + 1, end, lobes.narrow_ratio);
-  if (ratio.ec != std::errc() || ratio.ptr != end) Reject(text);
+  if (ratio.ec != std::errc()) Reject(text);
+  if (ratio.ptr != end) {
+    if (*ratio.ptr != '@') Reject(text);
+    const auto f0 = std::from_chars(ratio.ptr + 1, end, lobes.coat_f0);
+    if (f0.ec != std::errc() || f0.ptr != end || !(lobes.coat_f0 > 0)) Reject(text);
+  }
   const bool in_range = lobes.narrow_share >= 0 && lobes.narrow_share < 1 &&
-                        lobes.narrow_ratio > 0 && lobes.narrow_ratio <= 1;
+                        lobes.narrow_ratio > 0 && lobes.narrow_ratio <= 1 && lobes.coat_f0 <= 1;
   if (!in_range) Reject(text);
   return lobes;
 }
@@ -72,6 +78,7 @@ std::string ToString(const ReflectanceConvention& convention) {
   if (lobes.two()) {
     text += " " + std::string(kNarrowLobe) + Shortest(lobes.narrow_share) + "x" +
             Shortest(lobes.narrow_ratio);
+    if (lobes.coat_f0 > 0) text += "@" + Shortest(lobes.coat_f0);
   }
   return text;
 }

@@ -22,10 +22,13 @@ enum class TexelSampling { kPixelCentres, kCornerToCorner };
 // varnish or a polish shows a sharp peak on a wide glow,
 //   S = (1 − s)·S(r·q^−s) + s·S(r·q^(1−s)),
 // with s the narrow one's share and q the ratio of the two roughnesses. The roughness map r is
-// their geometric mean by these shares; a lobe's own roughness is at most 1.
+// their geometric mean by these shares; a lobe's own roughness is at most 1. Or the narrow one is a
+// coat's, a varnish's on wood or on paper: it reflects white light by an F0 of its own, the same
+// all over, and the specular map is the wide one's F0 alone.
 struct SpecularLobes {
   double narrow_share = 0;  // s in [0, 1); 0: one lobe
   double narrow_ratio = 1;  // q in (0, 1]
+  double coat_f0 = 0;       // of a coat, up to 1; 0: the narrow lobe has the specular map's F0
 
   bool two() const { return narrow_share > 0; }
   bool operator==(const SpecularLobes&) const = default;
@@ -50,7 +53,8 @@ struct ReflectanceConvention {
 };
 
 // Names as manifests and EXR headers write them: "diffuse=one light=inverse_square
-// sampling=pixel_centres", and " narrow_lobe=0.5x0.4" (share × ratio of roughnesses) of two lobes.
+// sampling=pixel_centres", and " narrow_lobe=0.5x0.4" (share × ratio of roughnesses) of two lobes,
+// " narrow_lobe=0.5x0.4@0.04" (@ F0) where the narrow one is a coat's.
 std::string ToString(const ReflectanceConvention& convention);
 
 // The inverse of ToString; also accepts the presets "photograph", "dir2019" and "materialgan".

@@ -11,6 +11,12 @@ struct LobeMix {
   bool two = false;
   S share[2] = {1, 0};
   S scale[2] = {1, 1};
+  S coat_f0 = 0;  // of the second lobe, where it is a coat's; 0: it has the specular map's
+
+  // Always inlined: the linker must not take them from code compiled for another instruction set.
+  [[gnu::always_inline]] bool coat() const { return coat_f0 > S(0); }
+  // The share of the lobes that have the specular map's F0.
+  [[gnu::always_inline]] S mapped() const { return coat() ? share[0] : S(1); }
 };
 
 }  // namespace glint

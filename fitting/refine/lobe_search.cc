@@ -1,5 +1,6 @@
 #include "fitting/refine/lobe_search.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -14,9 +15,11 @@ using LobePlace = std::pair<int, int>;  // places of a share and a ratio
 constexpr LobePlace kNearestToOne = {1, 0};
 constexpr std::array<LobePlace, 4> kSteps = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
-SpecularLobes LobesAt(const LobePlace& place) {
+using Predict = std::function<HeldOutErrors(const SpecularLobes& lobes)>;
+
+SpecularLobes LobesAt(const LobePlace& place, double coat_f0) {
   return {constants::kNarrowLobeShares[static_cast<size_t>(place.first)],
-          constants::kNarrowLobeRatios[static_cast<size_t>(place.second)]};
+          constants::kNarrowLobeRatios[static_cast<size_t>(place.second)], coat_f0};
 }
 
 bool InLattice(const LobePlace& place) {
@@ -24,22 +27,22 @@ bool InLattice(const LobePlace& place) {
          place.second >= 0 && place.second < static_cast<int>(constants::kNarrowLobeRatios.size());
 }
 
-}  // namespace
+struct LobeChoice {
+  SpecularLobes lobes;
+  HeldOutErrors errors;
+};
 
-bool AskForTwoLobes(const HeldOutErrors& two, const HeldOutErrors& one) {
-  return two.EnergyAgainst(one) < -constants::kSecondLobeLogOdds;
-}
-
-SpecularLobes SearchLobes(const std::function<HeldOutErrors(const SpecularLobes& lobes)>& predict) {
+// The best two lobes of a kind, where the first that are tried predict better than `one`.
+std::optional<LobeChoice> SearchKind(double coat_f0, const HeldOutErrors& one,
+                                     const Predict& predict) {
   std::map<LobePlace, HeldOutErrors> known;
   const auto at = [&](const LobePlace& place) -> const HeldOutErrors& {
     auto found = known.find(place);
-    if (found == known.end()) found = known.emplace(place, predict(LobesAt(place))).first;
+    if (found == known.end()) found = known.emplace(place, predict(LobesAt(place, coat_f0))).first;
     return found->second;
   };
-  const HeldOutErrors one = predict({});
   LobePlace best = kNearestToOne;
-  if (!(at(best).EnergyAgainst(one) < 0)) return {};
+  if (!(at(best).EnergyAgainst(one) < 0)) return std::nullopt;
   for (bool moved = true; moved;) {
     moved = false;
     for (const LobePlace& step : kSteps) {
@@ -51,7 +54,28 @@ SpecularLobes SearchLobes(const std::function<HeldOutErrors(const SpecularLobes&
       break;
     }
   }
-  return AskForTwoLobes(at(best), one) ? LobesAt(best) : SpecularLobes();
+  return LobeChoice{LobesAt(best, coat_f0), at(best)};
+}
+
+}  // namespace
+
+bool AskForTwoLobes(const HeldOutErrors& two, const HeldOutErrors& one) {
+  return two.EnergyAgainst(one) < -constants::kSecondLobeLogOdds;
+}
+
+std::vector<SpecularLobes> SearchLobes(double coat_f0, const Predict& predict) {
+  const HeldOutErrors one = predict({});
+  std::vector<LobeChoice> found;
+  for (const double f0 : {0.0, coat_f0}) {
+    const auto best = SearchKind(f0, one, predict);
+    if (best && AskForTwoLobes(best->errors, one)) found.push_back(*best);
+  }
+  std::stable_sort(found.begin(), found.end(), [](const LobeChoice& a, const LobeChoice& b) {
+    return a.errors.sum() < b.errors.sum();
+  });
+  std::vector<SpecularLobes> lobes;
+  for (const LobeChoice& choice : found) lobes.push_back(choice.lobes);
+  return lobes;
 }
 
 }  // namespace glint

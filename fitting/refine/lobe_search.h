@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "base/reflectance/convention.h"
 #include "fitting/refine/held_out_errors.h"
@@ -15,7 +16,9 @@ namespace glint {
 bool AskForTwoLobes(const HeldOutErrors& two, const HeldOutErrors& one);
 
 // From one lobe on over a lattice of shares and ratios of roughness, to the next that predicts
-// better until none does; one lobe unless these ask for two.
-SpecularLobes SearchLobes(const std::function<HeldOutErrors(const SpecularLobes& lobes)>& predict);
+// better until none does: once for a narrow lobe that has the specular map's F0, once for a coat's
+// of `coat_f0`. Those of the two that ask for two lobes, the better one first; empty: one lobe.
+std::vector<SpecularLobes> SearchLobes(
+    double coat_f0, const std::function<HeldOutErrors(const SpecularLobes& lobes)>& predict);
 
 }  // namespace glint

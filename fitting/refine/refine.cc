@@ -100,7 +100,7 @@ std::string RefineSummary::BriefReport() const {
   }
   if (lobes.two()) {
     text << "a second specular lobe (share " << lobes.narrow_share << ", " << lobes.narrow_ratio
-         << " times as rough as the other), ";
+         << " times as rough as the other" << (lobes.coat_f0 > 0 ? ", a coat's" : "") << "), ";
   }
   if (exposure_spread > 0) text << "exposures scatter " << 100 * exposure_spread << " %, ";
   text << 100.0 * converged << " % converged";

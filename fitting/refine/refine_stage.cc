@@ -55,7 +55,9 @@ Json KnownOrNull(double value) { return std::isfinite(value) ? Json(value) : Jso
 // null: one lobe.
 Json JsonOf(const SpecularLobes& lobes) {
   if (!lobes.two()) return nullptr;
-  return {{"share", lobes.narrow_share}, {"roughness_ratio", lobes.narrow_ratio}};
+  Json json = {{"share", lobes.narrow_share}, {"roughness_ratio", lobes.narrow_ratio}};
+  if (lobes.coat_f0 > 0) json["coat_f0"] = lobes.coat_f0;
+  return json;
 }
 
 // What was estimated of the sample as a whole.
@@ -258,9 +260,8 @@ struct Sample {
         views(ChooseViews(set, start, stage_options)),
         options(OptionsFor(set, start, stage_options)),
         source(set, views, start.light_scale_rgb, start.maps_file, start.deviations_file),
-        correction(CorrectViewsWithBar(stage_options.refine,
-                                       CorrectionFor(set, views, stage_options.correction), threads,
-                                       &source)),
+        correction(CorrectViewsWithBar(options, CorrectionFor(set, views, stage_options.correction),
+                                       threads, &source)),
         rows_at_once(stage_options.rows_at_once > 0 ? stage_options.rows_at_once
                                                     : RowsAtOnce(set.plane, views.size())),
         estimate(EstimateCorrected(threads)) {}
@@ -282,10 +283,12 @@ struct Sample {
   }
 };
 
-// Of the maps: that of the initial ones, with the lobes that the photographs asked for.
-ReflectanceConvention ConventionOf(const SampleEstimate& estimate,
+// Of the maps: that of the initial ones, with the lobes that the photographs asked for, under a
+// light of `power`.
+ReflectanceConvention ConventionOf(const SampleEstimate& estimate, double power,
                                    ReflectanceConvention convention) {
   convention.lobes = estimate.summary.lobes;
+  convention.lobes.coat_f0 /= power;
   return convention;
 }
 
@@ -317,7 +320,8 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
                    const RefineOptions& options, double power, int rows_at_once, int threads,
                    SampleSource* source, Stage* stage) {
   const SamplePlane& plane = source->plane();
-  const ReflectanceConvention convention = ConventionOf(estimate, source->Views().convention);
+  const ReflectanceConvention convention =
+      ConventionOf(estimate, power, source->Views().convention);
   const int end = part.last(plane.height), rows = end - part.first(plane.height);
   std::unique_ptr<Progress> bar;
   const RowRefiner::ReportProgress progress = [&](std::int64_t done, std::int64_t total) {
@@ -544,15 +548,17 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
   for (const RectifiedView& view : sample.views) result.views.push_back(view.name);
   Vec3d light_scale_rgb = start.light_scale_rgb;
   for (double& scale : light_scale_rgb) scale *= sample.power();
-  result.data = {
-      {"convention", ToString(ConventionOf(sample.estimate, sample.source.Views().convention))},
-      {"light_scale_rgb", light_scale_rgb},
-      {"shared_light", JsonOf(result.summary.shared_light)},
-      {"views", result.views},
-      {"metals", start.metals},
-      {"method", "refined"}};
+  const ReflectanceConvention convention =
+      ConventionOf(sample.estimate, sample.power(), sample.source.Views().convention);
+  result.data = {{"convention", ToString(convention)},
+                 {"light_scale_rgb", light_scale_rgb},
+                 {"shared_light", JsonOf(result.summary.shared_light)},
+                 {"views", result.views},
+                 {"metals", start.metals},
+                 {"method", "refined"}};
   result.metrics = Metrics(result.summary, sample.views);
   result.metrics["light_power"] = {{"factor", sample.power()}};
+  result.metrics["narrow_lobe"] = JsonOf(convention.lobes);
   AddCorrections(Corrections(result.correction, result.summary), sample.views, &result.data);
   AddHeldOut(sample, stage->StagedOutput(kMapsFile), light_scale_rgb, threads, &result.data);
   DescribeCorrection(result.correction, sample.set, sample.views, start.light_scale_rgb, &result);

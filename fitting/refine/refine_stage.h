@@ -15,7 +15,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 36;
+inline constexpr int kRefineVersion = 37;
 
 struct RefineStageOptions {
   RefineOptions refine;

@@ -146,7 +146,9 @@ class SampleModel {
   std::vector<double> HeldOutSquares(std::span<const ViewDifferences> differences) const;
   HeldOutErrors CrossValidate(const Sampling& sampling) const;
   SampleModel ScaledBy(const SpreadFactors& factors) const;
-  void ChooseSpreads(const Sampling& sampling);
+  // From factors of these powers on; returns those that predict best, and takes their mean.
+  SpreadPowers ChooseSpreads(const Sampling& sampling, const SpreadPowers& from);
+  std::vector<SpecularLobes> LobesToTry(const Sampling& sampling) const;
   void ChooseLobesAndSpreads(const Sampling& sampling);
 
   // What is known of a texel by itself; what its substance and a level surface say; both.

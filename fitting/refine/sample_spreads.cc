@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "base/model/constants.h"
+#include "base/reflectance/material_kinds.h"
 #include "fitting/refine/lobe_search.h"
 #include "fitting/refine/neighbours.h"
 #include "fitting/refine/sample_blocks.h"
@@ -145,31 +147,45 @@ SampleModel SampleModel::ScaledBy(const SpreadFactors& factors) const {
   return model;
 }
 
-void SampleModel::ChooseSpreads(const Sampling& sampling) {
-  const auto tried = SearchSpreads([&](const SpreadPowers& powers) {
-    SpreadFactors factors;
-    for (size_t i = 0; i < kSpreadKinds; ++i) factors[i] = std::exp2(powers[i]);
-    return ScaledBy(factors).CrossValidate(sampling);
-  });
+SpreadPowers SampleModel::ChooseSpreads(const Sampling& sampling, const SpreadPowers& from) {
+  const auto tried = SearchSpreads(
+      [&](const SpreadPowers& powers) {
+        SpreadFactors factors;
+        for (size_t i = 0; i < kSpreadKinds; ++i) factors[i] = std::exp2(powers[i]);
+        return ScaledBy(factors).CrossValidate(sampling);
+      },
+      from);
   *this = ScaledBy(ProbableFactors(tried));
+  return tried.front().powers;
+}
+
+std::vector<SpecularLobes> SampleModel::LobesToTry(const Sampling& sampling) const {
+  if (!options_.second_lobe || lobes_.two() ||
+      all_views_.size() < constants::kLeastViewsForTwoLobes) {
+    return {};
+  }
+  SampleModel model(*this);
+  return SearchLobes(kDielectric.f0 * means_.LightPower(), [&](const SpecularLobes& lobes) {
+    model.lobes_ = lobes;
+    return model.CrossValidate(sampling);
+  });
 }
 
 // Lobes are looked for before spreads, which would make up for the one that is missing, and are
 // judged with the spreads that each choice asks for.
 void SampleModel::ChooseLobesAndSpreads(const Sampling& sampling) {
-  SampleModel two(*this);
-  if (options_.second_lobe && !lobes_.two() &&
-      all_views_.size() >= constants::kLeastViewsForTwoLobes) {
-    const SpecularLobes found = SearchLobes([&](const SpecularLobes& lobes) {
-      two.lobes_ = lobes;
-      return two.CrossValidate(sampling);
-    });
-    two.lobes_ = found;
-  }
-  ChooseSpreads(sampling);
-  if (two.lobes_ != lobes_) {
-    two.ChooseSpreads(sampling);
-    if (AskForTwoLobes(two.CrossValidate(sampling), CrossValidate(sampling))) *this = two;
+  const SampleModel nominal(*this);
+  const std::vector<SpecularLobes> to_try = LobesToTry(sampling);
+  const SpreadPowers powers = ChooseSpreads(sampling, {});
+  const std::optional<HeldOutErrors> one =
+      to_try.empty() ? std::nullopt : std::optional(CrossValidate(sampling));
+  for (const SpecularLobes& lobes : to_try) {
+    SampleModel two(nominal);
+    two.lobes_ = lobes;
+    two.ChooseSpreads(sampling, powers);
+    if (!AskForTwoLobes(two.CrossValidate(sampling), *one)) continue;
+    *this = two;
+    break;
   }
   sampling.solver->reflect(lobes_);
 }

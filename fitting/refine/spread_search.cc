@@ -40,8 +40,8 @@ SpreadPowers Moved(SpreadPowers powers, const SpreadPowers& direction, int sign)
 
 class Search {
  public:
-  explicit Search(const std::function<HeldOutErrors(const SpreadPowers&)>& predict)
-      : predict_(predict) {}
+  Search(const std::function<HeldOutErrors(const SpreadPowers&)>& predict, const SpreadPowers& from)
+      : predict_(predict), at_(from) {}
 
   // As far along a direction as others are better, one way or the other; false: nowhere.
   bool Descend(const SpreadPowers& direction) {
@@ -101,7 +101,7 @@ class Search {
   const std::function<HeldOutErrors(const SpreadPowers&)>& predict_;
   std::map<SpreadPowers, HeldOutErrors> known_;
   std::set<SpreadPowers> left_;
-  SpreadPowers at_{};
+  SpreadPowers at_;
   std::vector<TriedSpreads> around_;
 };
 
@@ -120,8 +120,9 @@ std::vector<double> Probabilities(const std::vector<double>& energies) {
 }  // namespace
 
 std::vector<TriedSpreads> SearchSpreads(
-    const std::function<HeldOutErrors(const SpreadPowers& powers)>& predict) {
-  Search search(predict);
+    const std::function<HeldOutErrors(const SpreadPowers& powers)>& predict,
+    const SpreadPowers& from) {
+  Search search(predict, from);
   for (bool moved = true; moved;) {
     moved = false;
     for (const SpreadPowers& direction : kDirections) moved |= search.Descend(direction);

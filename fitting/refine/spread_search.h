@@ -30,14 +30,15 @@ struct TriedSpreads {
   double energy;  // against the best: negative logarithm of how probable they are
 };
 
-// Coordinate descent on the negative log posterior, from factors of 1: roughness and specular
+// Coordinate descent on the negative log posterior, from the factors `from`: roughness and specular
 // albedo together, normals, specular albedo alone, diffuse albedo, the initial maps' errors,
 // neighbours, and neighbours against roughness and specular albedo; then again until nothing is
 // better. Returns the best first, then along the axes through it all that is not
 // improbable; the way to it, which rounding decides, is not told. The initialisation is expected to
 // err by as much as is said, within a factor of two.
 std::vector<TriedSpreads> SearchSpreads(
-    const std::function<HeldOutErrors(const SpreadPowers& powers)>& predict);
+    const std::function<HeldOutErrors(const SpreadPowers& powers)>& predict,
+    const SpreadPowers& from = {});
 
 // Of each kind the mean along the axis through the best, by how probable each factor is: what
 // predicts nearly as well as the best is nearly as probable. `tried`: of SearchSpreads().

@@ -79,10 +79,11 @@ GLINT_INLINE Shading<T> Shade(const Texels<T>& texels, const Directions<T>& d,
                               bool one_minus_specular, const LobeMix<T>& mix) {
   Shading<T> s;
   s.specular = EvaluateMix(CosinesOf<T>(texels, d), texels.roughness, mix);
+  const Coat<VectorOf<T>> coat = EvaluateCoat(s.specular.coat, d.fresnel, mix);
   for (int c = 0; c < 3; ++c) {
     s.channels[c] =
         EvaluateChannel(EvaluateDiffuse(texels.diffuse[c], texels.specular[c], one_minus_specular),
-                        texels.specular[c], d.fresnel, s.specular.n_dot_l, s.specular.value);
+                        texels.specular[c], d.fresnel, s.specular.n_dot_l, s.specular.value, coat);
   }
   return s;
 }
@@ -96,20 +97,26 @@ GLINT_INLINE void AddAdjoint(const Texels<T>& texels, const Directions<T>& d, co
                              VectorOf<T>* gradient) {
   using V = VectorOf<T>;
   const MixTerms<V>& lobe = s.specular;
-  V by_lobe = V{}, by_cosine = V{};
+  V by_lobe = V{}, by_cosine = V{}, by_coat = V{};
   for (int c = 0; c < 3; ++c) {
     // Slopes of the radiance are linear in what the texel receives: with the loss's own slopes in
     // its place they are the loss's.
     const ChannelSlopes<V> by = DifferentiateChannel(
         EvaluateDiffuse(texels.diffuse[c], texels.specular[c], one_minus_specular), s.channels[c],
-        d.fresnel, lobe.n_dot_l, lobe.value, by_reflected[c], by_surrounding[c], by_surrounding[c]);
+        d.fresnel, lobe.n_dot_l, lobe.value, by_reflected[c], by_surrounding[c], by_surrounding[c],
+        mix.mapped());
+    by_coat += by_reflected[c];
     gradient[3 + c] += by.by_diffuse;
     gradient[6 + c] += by.by_specular;
     by_lobe += by.by_lobe;
     by_cosine += by.by_n_dot_l;
   }
 
-  const SpecularSlopes<V> by = DifferentiateMix(lobe, texels.roughness, mix, by_lobe);
+  SpecularSlopes<V> by = DifferentiateMix(lobe, texels.roughness, mix, by_lobe);
+  if (mix.coat()) {
+    const V fresnel = Fresnel(Broadcast(mix.coat_f0), d.fresnel);
+    by += DifferentiateCoat(lobe, texels.roughness, mix, V(by_coat * fresnel));
+  }
   gradient[9] += by.by_roughness;
   const V by_normal = by.by_n_dot_n * T(2);
   const V by_half = by.by_n_dot_h * d.half_inverse;  // h in terms of l and v

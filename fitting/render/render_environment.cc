@@ -25,7 +25,7 @@ void AddEnvironmentLighting(const EnvironmentLighting& environment, const Svbrdf
       EnvironmentReflection(svbrdf).AddTo(environment, view.exposure, &geometry);
       for (int c = 0; c < 3; ++c) {
         rgb_planar[static_cast<size_t>(c) * maps.texels() + texel] +=
-            static_cast<float>(AmbientRadiance(svbrdf, geometry, convention.diffuse_weight, c));
+            static_cast<float>(AmbientRadiance(svbrdf, geometry, convention, c));
       }
     }
   });

@@ -31,15 +31,23 @@ Tensor LobeFactor(const Tensor& normal, const Tensor& half, const Tensor& n_dot_
   return ratio * ratio * (0.25 * kInversePi) / masking;
 }
 
-// Of the sample's lobes (base/reflectance/convention.h).
-Tensor SpecularFactor(const SpecularLobes& lobes, const Tensor& normal, const Tensor& half,
-                      const Tensor& n_dot_l, const Tensor& n_dot_v, const Tensor& roughness) {
-  if (!lobes.two()) return LobeFactor(normal, half, n_dot_l, n_dot_v, roughness);
-  const double share = lobes.narrow_share, wide = std::pow(lobes.narrow_ratio, -share);
+// Of the sample's lobes (base/reflectance/convention.h), with the specular map's F0 and with a coat's.
+struct SpecularFactors {
+  Tensor mapped, coat;
+};
+SpecularFactors FactorsOf(const SpecularLobes& lobes, const Tensor& normal, const Tensor& half,
+                          const Tensor& n_dot_l, const Tensor& n_dot_v, const Tensor& roughness) {
   const auto of = [&](double scale) {
     return LobeFactor(normal, half, n_dot_l, n_dot_v, (roughness * scale).clamp_max(1));
   };
-  return of(wide) * (1 - share) + of(wide * lobes.narrow_ratio) * share;
+  if (!lobes.two()) {
+    const Tensor only = LobeFactor(normal, half, n_dot_l, n_dot_v, roughness);
+    return {only, torch::zeros_like(only)};
+  }
+  const double share = lobes.narrow_share, wide = std::pow(lobes.narrow_ratio, -share);
+  const Tensor broad = of(wide) * (1 - share), narrow = of(wide * lobes.narrow_ratio) * share;
+  if (lobes.coat_f0 > 0) return {broad, narrow};
+  return {broad + narrow, torch::zeros_like(broad)};
 }
 
 }  // namespace
@@ -64,14 +72,19 @@ Tensor RenderReference(const Tensor& maps, const Tensor& light_rgb, const ViewBa
   if (batch.convention.diffuse_weight == DiffuseWeight::kOneMinusSpecular) {
     lobe = lobe * (1 - specular);
   }
-  const Tensor factor =
-      SpecularFactor(batch.convention.lobes, normal, half, n_dot_l, n_dot_v, roughness);
-  const Tensor brdf = lobe + factor * fresnel;
+  const SpecularLobes& lobes = batch.convention.lobes;
+  const SpecularFactors factors = FactorsOf(lobes, normal, half, n_dot_l, n_dot_v, roughness);
+  const Tensor coat = lobes.coat_f0 + (1 - lobes.coat_f0) * power;
+  const Tensor brdf = lobe + factors.mapped * fresnel + factors.coat * coat;
   Tensor irradiance = light_rgb.defined() ? light_rgb.unsqueeze(-1).unsqueeze(-1) : views.light_rgb;
   if (batch.convention.falloff == LightFalloff::kInverseSquare) {
     irradiance = irradiance / light_distance_squared;
   }
-  const Tensor ambient = views.ambient_rgb * (lobe + specular * kInversePi);
+  Tensor mirrored = specular;
+  if (lobes.coat_f0 > 0) {
+    mirrored = specular * (1 - lobes.narrow_share) + lobes.narrow_share * lobes.coat_f0;
+  }
+  const Tensor ambient = views.ambient_rgb * (lobe + mirrored * kInversePi);
   return views.exposure * (irradiance * brdf * n_dot_l + ambient);
 }
 

@@ -52,7 +52,7 @@ enum class Solving {
 
 // Observations, and memory for kScratchRows rows of each view.
 struct BatchViews {
-  static constexpr int kScratchRows = 7;
+  static constexpr int kScratchRows = 11;
   const BatchRow* rows;  // BatchObservations::rows()
   int count;
   BatchRow* scratch;

@@ -106,10 +106,34 @@ GLINT_INLINE Floats Dot3(const Floats* a, const Floats* b) {
   return Fma(a[2], b[2], Fma(a[1], b[1], a[0] * b[0]));
 }
 
-// n·l, the specular lobes' S of brdf_core.h and their derivatives by slope_x, slope_y and
-// roughness.
-enum Lobe { kNormalLight, kByXNormalLight, kByYNormalLight, kLobe, kByXLobe, kByYLobe, kByRLobe };
-static_assert(kByRLobe + 1 == BatchViews::kScratchRows);
+// n·l, S and C·F_c of brdf_core.h and their derivatives by slope_x, slope_y and roughness.
+enum Lobe {
+  kNormalLight,
+  kByXNormalLight,
+  kByYNormalLight,
+  kLobe,
+  kByXLobe,
+  kByYLobe,
+  kByRLobe,
+  kCoat,
+  kByXCoat,
+  kByYCoat,
+  kByRCoat
+};
+static_assert(kByRCoat + 1 == BatchViews::kScratchRows);
+
+// Derivatives by slope_x, slope_y and roughness of what has the slopes `by`; of n·l and n·v by the
+// normal's.
+struct ByTexel {
+  Floats x, y, r;
+};
+GLINT_INLINE ByTexel Chained(const SpecularSlopes<Floats>& by, const Floats& half_inverse,
+                             const Floats n_dot_l[2], const Floats n_dot_v[2]) {
+  const Floats by_half = by.by_n_dot_h * half_inverse;
+  const Floats by_light = by.by_n_dot_l + by_half, by_camera = by.by_n_dot_v + by_half;
+  return {Fma(by_light, n_dot_l[0], by_camera * n_dot_v[0]),
+          Fma(by_light, n_dot_l[1], by_camera * n_dot_v[1]), by.by_roughness};
+}
 
 // Of every view into the scratch memory, as vectors.
 template <bool kSlopes>
@@ -139,21 +163,36 @@ GLINT_INLINE Floats* EvaluateLobes(const KernelOptions& options, const BatchView
     Floats* out = lobes + v * BatchViews::kScratchRows;
     out[kNormalLight] = lobe.n_dot_l;
     out[kLobe] = lobe.value;
+    const Floats fresnel = At(rows[Obs::kFresnel], first);
+    out[kCoat] = EvaluateCoat(lobe.coat, fresnel, options.mix).reflected;
     if constexpr (kSlopes) {
-      const SpecularSlopes<Floats> by = DifferentiateMix(lobe, roughness, options.mix);
-      const Floats nl_x = Dot3(tilt.by_x, light), nl_y = Dot3(tilt.by_y, light);
-      const Floats nv_x = Dot3(tilt.by_x, camera), nv_y = Dot3(tilt.by_y, camera);
-      const Floats by_half = by.by_n_dot_h * half_inverse;
-      const Floats by_light = by.by_n_dot_l + by_half, by_camera = by.by_n_dot_v + by_half;
+      const Floats n_dot_l[] = {Dot3(tilt.by_x, light), Dot3(tilt.by_y, light)};
+      const Floats n_dot_v[] = {Dot3(tilt.by_x, camera), Dot3(tilt.by_y, camera)};
       const Ints lit = cosines.n_dot_l > float(kDotClamp);
-      out[kByXNormalLight] = Where(lit, nl_x, Floats{});
-      out[kByYNormalLight] = Where(lit, nl_y, Floats{});
-      out[kByXLobe] = Fma(by_light, nl_x, by_camera * nv_x);
-      out[kByYLobe] = Fma(by_light, nl_y, by_camera * nv_y);
-      out[kByRLobe] = by.by_roughness;
+      out[kByXNormalLight] = Where(lit, n_dot_l[0], Floats{});
+      out[kByYNormalLight] = Where(lit, n_dot_l[1], Floats{});
+      const ByTexel by =
+          Chained(DifferentiateMix(lobe, roughness, options.mix), half_inverse, n_dot_l, n_dot_v);
+      out[kByXLobe] = by.x;
+      out[kByYLobe] = by.y;
+      out[kByRLobe] = by.r;
+      if (options.mix.coat()) {
+        const Floats weight = Fresnel(Broadcast(options.mix.coat_f0), fresnel);
+        const ByTexel coat = Chained(DifferentiateCoat(lobe, roughness, options.mix, weight),
+                                     half_inverse, n_dot_l, n_dot_v);
+        out[kByXCoat] = coat.x;
+        out[kByYCoat] = coat.y;
+        out[kByRCoat] = coat.r;
+      }
     }
   }
   return lobes;
+}
+
+// What a coat adds in a view.
+GLINT_INLINE Coat<Floats> CoatIn(const Floats* lobe, const LobeMix<float>& mix) {
+  if (!mix.coat()) return {};
+  return {lobe[kCoat], Broadcast(mix.share[1] * mix.coat_f0 * float(kInversePi)), mix.mapped()};
 }
 
 // The normal equations: BatchGram's products, of one vector.
@@ -191,10 +230,14 @@ GLINT_INLINE Normal EvaluateProducts(const KernelOptions& options, const BatchVi
       const Floats irradiance = At(rows[Obs::kIrradiance + c], first);
       const Floats ambient = At(rows[Obs::kAmbient + c], first);
       const Floats ambient_specular = At(rows[Obs::kAmbientSpecular + c], first);
+      const Coat<Floats> coat = CoatIn(lobe, options.mix);
       const ChannelTerms<Floats> terms =
-          EvaluateChannel(diffuse, specular, fresnel, lobe[kNormalLight], lobe[kLobe]);
-      const Floats surroundings =
-          Fma(ambient, diffuse.value, ambient_specular * specular * float(kInversePi));
+          EvaluateChannel(diffuse, specular, fresnel, lobe[kNormalLight], lobe[kLobe], coat);
+      Floats mirrored = ambient_specular * specular * float(kInversePi);
+      if (options.mix.coat()) {
+        mirrored = Fma(mirrored, Broadcast(coat.mapped), ambient_specular * coat.surrounding);
+      }
+      const Floats surroundings = Fma(ambient, diffuse.value, mirrored);
       const Floats radiance = Fma(irradiance, terms.reflected, surroundings) + float(kLogOffset);
 
       const Floats free = Log(radiance) - At(rows[Obs::kLogTarget + c], first);
@@ -213,10 +256,16 @@ GLINT_INLINE Normal EvaluateProducts(const KernelOptions& options, const BatchVi
 
       const ChannelSlopes<Floats> by =
           DifferentiateChannel(diffuse, terms, fresnel, lobe[kNormalLight], lobe[kLobe], irradiance,
-                               ambient, ambient_specular);
-      const Floats d = by.by_diffuse, s = by.by_specular, r = by.by_lobe * lobe[kByRLobe];
-      const Floats px = Fma(by.by_n_dot_l, lobe[kByXNormalLight], by.by_lobe * lobe[kByXLobe]);
-      const Floats py = Fma(by.by_n_dot_l, lobe[kByYNormalLight], by.by_lobe * lobe[kByYLobe]);
+                               ambient, ambient_specular, coat.mapped);
+      const Floats d = by.by_diffuse, s = by.by_specular;
+      Floats r = by.by_lobe * lobe[kByRLobe];
+      Floats px = Fma(by.by_n_dot_l, lobe[kByXNormalLight], by.by_lobe * lobe[kByXLobe]);
+      Floats py = Fma(by.by_n_dot_l, lobe[kByYNormalLight], by.by_lobe * lobe[kByYLobe]);
+      if (options.mix.coat()) {
+        r = Fma(irradiance, lobe[kByRCoat], r);
+        px = Fma(irradiance, lobe[kByXCoat], px);
+        py = Fma(irradiance, lobe[kByYCoat], py);
+      }
       if constexpr (kRows) {
         const Floats slope = Sqrt(by_both);
         const Floats all[BatchResiduals::kRows] = {
@@ -679,14 +728,16 @@ void AlbedoSums(const KernelOptions& options, const BatchViews& views, const Bat
         const Floats usable = Where(At(rows[Obs::kCeiling + c], first) > 0.0f,
                                     Sqrt(At(rows[Obs::kWeight], first)), Floats{});
         const Floats relative = usable * At(rows[Obs::kInverseTarget + c], first);
+        const Floats ambient_specular = At(rows[Obs::kAmbientSpecular + c], first);
+        const Coat<Floats> coat = CoatIn(lobe, options.mix);
         const ChannelTerms<Floats> terms =
-            EvaluateChannel(diffuse, Floats{}, fresnel, lobe[kNormalLight], lobe[kLobe]);
+            EvaluateChannel(diffuse, Floats{}, fresnel, lobe[kNormalLight], lobe[kLobe], coat);
         const ChannelSlopes<Floats> slopes = DifferentiateChannel(
             diffuse, terms, fresnel, lobe[kNormalLight], lobe[kLobe], irradiance,
-            At(rows[Obs::kAmbient + c], first), At(rows[Obs::kAmbientSpecular + c], first));
+            At(rows[Obs::kAmbient + c], first), ambient_specular, coat.mapped);
         const Floats a = relative * slopes.by_diffuse, b = relative * slopes.by_specular;
-        const Floats y =
-            usable - relative * Fma(irradiance, terms.reflected, Broadcast(float(kLogOffset)));
+        const Floats dark = Fma(ambient_specular, coat.surrounding, Broadcast(float(kLogOffset)));
+        const Floats y = usable - relative * Fma(irradiance, terms.reflected, dark);
         aa = Fma(a, a, aa);
         ab = Fma(a, b, ab);
         bb = Fma(b, b, bb);

@@ -85,25 +85,30 @@ std::array<double, 3> TextbookRadiance(const Point& point, const ReflectanceConv
   const double share = model.lobes.narrow_share, ratio = model.lobes.narrow_ratio;
   const double wide = std::min(1.0, s.roughness * std::pow(ratio, -share));
   const double narrow = std::min(1.0, s.roughness * std::pow(ratio, 1 - share));
-  const double lobes = (1 - share) * lobe(wide) + share * lobe(narrow);
+  const bool coated = model.lobes.coat_f0 > 0;
   std::array<double, 3> radiance;
   for (int c = 0; c < 3; ++c) {
-    const double f0 = s.specular[c];
-    const double f = f0 + (1 - f0) * std::pow(2.0, voh * (-5.55473 * voh - 6.98316));
+    const double f0 = s.specular[c], narrow_f0 = coated ? model.lobes.coat_f0 : f0;
+    const auto f = [&](double at_normal) {
+      return at_normal + (1 - at_normal) * std::pow(2.0, voh * (-5.55473 * voh - 6.98316));
+    };
     const double w = model.diffuse_weight == DiffuseWeight::kOne ? 1 : 1 - f0;
-    const double brdf = w * s.diffuse[c] / kPi + lobes * f / (4 * nol * nov);
-    radiance[c] =
-        g.irradiance[c] * brdf * nol + g.ambient[c] * (w * s.diffuse[c] + s.specular[c]) / kPi;
+    const double lobes = (1 - share) * lobe(wide) * f(f0) + share * lobe(narrow) * f(narrow_f0);
+    const double brdf = w * s.diffuse[c] / kPi + lobes / (4 * nol * nov);
+    const double mirrored = (1 - share) * f0 + share * narrow_f0;
+    radiance[c] = g.irradiance[c] * brdf * nol + g.ambient[c] * (w * s.diffuse[c] + mirrored) / kPi;
   }
   return radiance;
 }
 
-// Each diffuse weight, with one specular lobe and with two.
-const std::array<ReflectanceConvention, 4> kModels = {
+// Each diffuse weight, with one specular lobe, with two and with a coat's.
+const std::array<ReflectanceConvention, 6> kModels = {
     {{.diffuse_weight = DiffuseWeight::kOne},
      {.diffuse_weight = DiffuseWeight::kOneMinusSpecular},
      {.diffuse_weight = DiffuseWeight::kOne, .lobes = {0.5, 0.4}},
-     {.diffuse_weight = DiffuseWeight::kOneMinusSpecular, .lobes = {0.85, 0.25}}}};
+     {.diffuse_weight = DiffuseWeight::kOneMinusSpecular, .lobes = {0.85, 0.25}},
+     {.diffuse_weight = DiffuseWeight::kOne, .lobes = {0.3, 0.4, 0.04}},
+     {.diffuse_weight = DiffuseWeight::kOneMinusSpecular, .lobes = {0.85, 0.25, 0.03}}}};
 
 TEST(BrdfTest, RadianceIsTheTextbookFormula) {
   RandomPoints random(1);
@@ -237,7 +242,8 @@ TEST(BrdfDerivativesTest, JacobianMatchesAutodiffBesideClamps) {
     } else {
       (i % 2 ? dark : hidden) += wanted < kDotClamp;
     }
-    ExpectJacobianMatchesAutodiff(point, kModels[static_cast<size_t>(i / 2 % 4)], 1e-4);
+    ExpectJacobianMatchesAutodiff(point, kModels[static_cast<size_t>(i / 2) % kModels.size()],
+                                  1e-4);
   }
   EXPECT_GT(std::min({dark, hidden, narrow}), kPoints / 20);
 }
@@ -251,10 +257,10 @@ TEST(BrdfDerivativesTest, TangentDerivativesMatchDifferencesOfTheTextbookFormula
                   Dot(point.texel.normal, point.geometry.camera)}) < 0.01) {
       continue;  // differences across a clamp mean nothing
     }
-    const SpecularLobes& lobes = kModels[static_cast<size_t>(i % 4)].lobes;
+    const SpecularLobes& lobes = kModels[static_cast<size_t>(i) % kModels.size()].lobes;
     const double widest = point.texel.roughness * std::pow(lobes.narrow_ratio, -lobes.narrow_share);
     if (lobes.two() && std::abs(widest - 1) < 1e-3) continue;
-    const ReflectanceConvention& model = kModels[static_cast<size_t>(i % 4)];
+    const ReflectanceConvention& model = kModels[static_cast<size_t>(i) % kModels.size()];
     double radiance[3], jacobian[3 * kSvbrdfPlanes];
     ShadeTexel(point.texel, point.geometry, model, radiance, jacobian);
     const auto along = random.Direction(90);

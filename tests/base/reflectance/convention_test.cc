@@ -13,7 +13,8 @@ TEST(ConventionTest, TextRoundTripKeepsEverySwitch) {
   for (const auto diffuse : {DiffuseWeight::kOne, DiffuseWeight::kOneMinusSpecular}) {
     for (const auto falloff : {LightFalloff::kNone, LightFalloff::kInverseSquare}) {
       for (const auto sampling : {TexelSampling::kPixelCentres, TexelSampling::kCornerToCorner}) {
-        for (const SpecularLobes& lobes : {SpecularLobes(), SpecularLobes{0.85, 0.25}}) {
+        for (const SpecularLobes& lobes :
+             {SpecularLobes(), SpecularLobes{0.85, 0.25}, SpecularLobes{0.3, 0.4, 0.04}}) {
           const ReflectanceConvention convention{diffuse, falloff, sampling, lobes};
           EXPECT_EQ(ParseReflectanceConvention(ToString(convention)), convention);
         }
@@ -29,7 +30,8 @@ TEST(ConventionTest, OneLobeIsNotWritten) {
 
 TEST(ConventionTest, RefusesLobesThatAreNone) {
   for (const char* text : {"", "0.5", "x0.4", "0.5x", "0.5x0.4x", "1x0.4", "-0.1x0.4", "0.5x0",
-                           "0.5x1.1", "nanx0.4", "0.5xnan"}) {
+                           "0.5x1.1", "nanx0.4", "0.5xnan", "0.5x0.4@", "0.5x0.4@0", "0.5x0.4@1.1",
+                           "0.5x0.4@-1", "0.5x0.4@nan", "0.5x0.4@0.04x"}) {
     EXPECT_THROW(ParseReflectanceConvention(std::string("narrow_lobe=") + text),
                  std::invalid_argument)
         << text;

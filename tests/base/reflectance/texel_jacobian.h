@@ -15,8 +15,7 @@ inline void ShadeTexel(const TexelSvbrdf<double>& texel, const TexelGeometry<dou
                        const ReflectanceConvention& convention, double radiance[3],
                        double jacobian[3 * kSvbrdfPlanes]) {
   const MixTerms<double> lobe = EvaluateMix(texel, geometry, convention.lobes);
-  const SpecularSlopes<double> by =
-      DifferentiateMix(lobe, texel.roughness, LobeMixOf<double>(convention.lobes));
+  const LobeMix<double> mix = LobeMixOf<double>(convention.lobes);
   ShadeRadiance(texel, geometry, convention, radiance);
   std::fill_n(jacobian, 3 * kSvbrdfPlanes, 0.0);
   for (int c = 0; c < 3; ++c) {
@@ -25,18 +24,22 @@ inline void ShadeTexel(const TexelSvbrdf<double>& texel, const TexelGeometry<dou
         EvaluateChannel(diffuse, texel.specular[c], geometry.fresnel, lobe.n_dot_l, lobe.value);
     const ChannelSlopes<double> slopes = DifferentiateChannel(
         diffuse, channel, geometry.fresnel, lobe.n_dot_l, lobe.value, geometry.irradiance[c],
-        geometry.ambient[c], geometry.ambient_specular[c]);
+        geometry.ambient[c], geometry.ambient_specular[c], mix.mapped());
+    SpecularSlopes<double> by = DifferentiateMix(lobe, texel.roughness, mix, slopes.by_lobe);
+    if (mix.coat()) {
+      by += DifferentiateCoat(lobe, texel.roughness, mix,
+                              geometry.irradiance[c] * Fresnel(mix.coat_f0, geometry.fresnel));
+    }
     double* row = jacobian + c * kSvbrdfPlanes;
     row[kDiffuseR + c] = slopes.by_diffuse;
     row[kSpecularR + c] = slopes.by_specular;
-    row[kRoughness] = slopes.by_lobe * by.by_roughness;
+    row[kRoughness] = by.by_roughness;
     const double lit = lobe.lobes[0].free.n_dot_l > kDotClamp ? slopes.by_n_dot_l : 0.0;
     for (int i = 0; i < 3; ++i) {
       row[kNormalX + i] =
           lit * geometry.light[i] +
-          slopes.by_lobe *
-              (by.by_n_dot_l * geometry.light[i] + by.by_n_dot_v * geometry.camera[i] +
-               by.by_n_dot_h * geometry.half[i] + 2.0 * by.by_n_dot_n * texel.normal[i]);
+          by.by_n_dot_l * geometry.light[i] + by.by_n_dot_v * geometry.camera[i] +
+          by.by_n_dot_h * geometry.half[i] + 2.0 * by.by_n_dot_n * texel.normal[i];
     }
   }
 }

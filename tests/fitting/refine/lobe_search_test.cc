@@ -3,13 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "fitting/refine/refine.h"
 #include "tests/fitting/refine/synthetic_scene.h"
 
 namespace glint {
 namespace {
+
+constexpr double kCoatF0 = 0.04;
 
 // Folds and places that all agree, but for a little.
 HeldOutErrors Errors(double sum) {
@@ -25,25 +29,32 @@ HeldOutErrors Errors(double sum) {
 
 TEST(LobeSearch, OneLobeIsKeptWhereTwoPredictNoBetter) {
   int tried = 0;
-  const SpecularLobes found = SearchLobes([&](const SpecularLobes& lobes) {
+  const auto found = SearchLobes(kCoatF0, [&](const SpecularLobes& lobes) {
     ++tried;
     return Errors(lobes.two() ? 1.01 : 1);
   });
-  EXPECT_EQ(found, SpecularLobes());
-  EXPECT_EQ(tried, 2);  // one lobe, and the nearest two
+  EXPECT_TRUE(found.empty());
+  EXPECT_EQ(tried, 3);  // one lobe, and the nearest two of each kind
 }
 
 TEST(LobeSearch, WalksToThoseThatPredictBest) {
-  const SpecularLobes found = SearchLobes([](const SpecularLobes& lobes) {
+  const auto found = SearchLobes(kCoatF0, [](const SpecularLobes& lobes) {
     const double share = lobes.narrow_share - 0.7, ratio = std::log(lobes.narrow_ratio / 0.25);
-    return Errors(1 + share * share + ratio * ratio);
+    return Errors((lobes.coat_f0 > 0 ? 0.9 : 1) + share * share + ratio * ratio);
   });
-  EXPECT_EQ(found, (SpecularLobes{0.7, 0.25}));
+  EXPECT_EQ(found, (std::vector<SpecularLobes>{{0.7, 0.25, kCoatF0}, {0.7, 0.25}}));
+}
+
+TEST(LobeSearch, AKindThatPredictsNoBetterIsLeftOut) {
+  const auto found = SearchLobes(kCoatF0, [](const SpecularLobes& lobes) {
+    return Errors(lobes.coat_f0 > 0 ? 1.01 : lobes.two() ? 0.5 : 1);
+  });
+  EXPECT_EQ(found, (std::vector<SpecularLobes>{{0.5, 0.6}}));
 }
 
 // One photograph that is predicted better does not say that there are two.
 TEST(LobeSearch, TwoLobesMustPredictClearlyBetter) {
-  const SpecularLobes found = SearchLobes([](const SpecularLobes& lobes) {
+  const auto found = SearchLobes(kCoatF0, [](const SpecularLobes& lobes) {
     HeldOutErrors errors(4);
     for (size_t fold = 0; fold < 3; ++fold) {
       errors.BeginFold();
@@ -53,12 +64,16 @@ TEST(LobeSearch, TwoLobesMustPredictClearlyBetter) {
     }
     return errors;
   });
-  EXPECT_EQ(found, SpecularLobes());
+  EXPECT_TRUE(found.empty());
 }
 
 // Refinement of a level sample, of nine photographs, from maps that are off.
-RefineResult Refined(const SpecularLobes& lobes, const RefineOptions& options) {
-  const SvbrdfMaps truth = test::LevelSubstance(24, 0.4f);
+RefineResult Refined(const SpecularLobes& lobes, const RefineOptions& options,
+                     const std::array<float, 3>& specular_tint = {1, 1, 1}) {
+  SvbrdfMaps truth = test::LevelSubstance(24, 0.4f);
+  for (int c = 0; c < 3; ++c) {
+    for (float& f0 : truth.plane(kSpecularR + c)) f0 *= specular_tint[static_cast<size_t>(c)];
+  }
   const test::SyntheticScene scene = test::Photograph(truth, 9, 0, 5, {}, lobes);
   return Refine(scene.Problem(), test::DisturbedMaps(truth, 0.5f, 3), options, 2);
 }
@@ -77,6 +92,15 @@ TEST(Refine, AVarnishedSampleHasItsTwoLobes) {
   double mean = 0;
   for (const float value : roughness) mean += value / static_cast<double>(roughness.size());
   EXPECT_NEAR(mean, 0.4, 0.03);
+}
+
+// The substance's own F0 is coloured, the coat's highlight is white.
+TEST(Refine, ACoatedSampleHasItsCoat) {
+  const SpecularLobes truth = {0.3, 0.4, 0.04};
+  const RefineResult found = Refined(truth, {}, {1.5f, 1.0f, 0.3f});
+  ASSERT_TRUE(found.summary.lobes.two());
+  EXPECT_GT(found.summary.lobes.coat_f0, 0);
+  EXPECT_NEAR(found.summary.lobes.narrow_share, truth.narrow_share, 0.21);
 }
 
 TEST(Refine, ASampleOfOneLobeKeepsIt) { EXPECT_FALSE(Refined({}, {}).summary.lobes.two()); }

@@ -69,7 +69,11 @@ inline const std::vector<ReflectanceConvention>& AllConventions() {
       {DiffuseWeight::kOne,
        LightFalloff::kInverseSquare,
        TexelSampling::kPixelCentres,
-       {0.7, 0.4}}};
+       {0.7, 0.4}},
+      {DiffuseWeight::kOne,
+       LightFalloff::kInverseSquare,
+       TexelSampling::kPixelCentres,
+       {0.3, 0.4, 0.05}}};
   return conventions;
 }
 
