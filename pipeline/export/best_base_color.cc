@@ -49,11 +49,13 @@ PairTerms TermsOf(double roughness, const SpecularLobes& lobes) {
   for (size_t i = 0; i < pairs.size(); ++i) {
     const DirectionPair& pair = pairs[i];
     const double received = std::numbers::pi * pair.light[2];
-    const double ours = received * EvaluateMix(texel, pair.geometry, lobes).over_cosine;
+    const MixTerms<double> mix = EvaluateMix(texel, pair.geometry, lobes);
     const double power = pair.geometry.fresnel;
+    const double ours = received * mix.over_cosine;
+    const double coat = received * mix.coat_over_cosine * Fresnel(lobes.coat_f0, power);
     terms.matte[i] = static_cast<float>(received / std::numbers::pi);
     terms.mirror[i] = static_cast<float>(ours * (1 - power));
-    terms.rim[i] = static_cast<float>(ours * power);
+    terms.rim[i] = static_cast<float>(ours * power + coat);
     const double lobe = SmithSpecular(pair, roughness), fresnel = SchlickWeight(pair.v_dot_h);
     const LinearInBase dielectric = DielectricReflectance(lobe, fresnel);
     const LinearInBase metal = MetalReflectance(lobe, fresnel);

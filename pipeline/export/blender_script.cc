@@ -26,6 +26,13 @@ def _picture(tree, file, colour, y):
     return node.outputs["Color"]
 
 
+def _fresnel(tree, schlick, y):
+    """F0 + (1 - F0) times Schlick's weight; F0 is Color1."""
+    fresnel = _node(tree, "ShaderNodeMixRGB", -200, y, Color2=(1, 1, 1, 1))
+    tree.links.new(schlick.outputs["Value"], fresnel.inputs["Fac"])
+    return fresnel
+
+
 def _glossy(tree, fresnel, roughness, bend, scale, y):
     """A GGX lobe of the roughness map times scale, at most 1."""
     glossy = _node(tree, "ShaderNodeBsdfGlossy", 0, y)
@@ -73,14 +80,17 @@ def make_material():
     schlick.operation = "POWER"
     schlick.inputs[1].default_value = 5.0
     link(facing.outputs["Facing"], schlick.inputs[0])
-    fresnel = _node(tree, "ShaderNodeMixRGB", -200, 300, Color2=(1, 1, 1, 1))
-    link(schlick.outputs["Value"], fresnel.inputs["Fac"])
+    fresnel = _fresnel(tree, schlick, 300)
     link(specular, fresnel.inputs["Color1"])
+    fresnels = [fresnel, fresnel]
+    if COAT_F0 > 0:
+        fresnels[1] = _fresnel(tree, schlick, 500)
+        fresnels[1].inputs["Color1"].default_value = (COAT_F0, COAT_F0, COAT_F0, 1)
 
     matte = _node(tree, "ShaderNodeBsdfDiffuse", 0, 400, Roughness=0.0)
     link(diffuse, matte.inputs["Color"])
     link(bend.outputs["Normal"], matte.inputs["Normal"])
-    glossy = [_glossy(tree, fresnel, roughness, bend, scale, 200 - 200 * i)
+    glossy = [_glossy(tree, fresnels[i], roughness, bend, scale, 200 - 200 * i)
               for i, scale in enumerate(LOBE_SCALES)]
     shine = glossy[0].outputs["BSDF"]
     if len(glossy) == 2:  # a wide and a narrow lobe
@@ -158,6 +168,7 @@ ROUGHNESS, NORMAL, HEIGHT = {6}, {7}, {8}
 HEIGHT_LOW_M, HEIGHT_RANGE_M = {9}, {10}
 DIFFUSE_WHOLE = {11}  # False: the diffuse lobe has weight 1 - F0
 LOBE_SCALES, NARROW_SHARE = {12}, {13}  # of roughness, of each specular lobe
+COAT_F0 = {14}  # of a narrow lobe that is a coat's; 0: it has the specular map's
 USE_DISPLACEMENT = False  # True: moves the surface too; subdivide the plane first
 )",
              material.name, Quoted(material.name), material.width_mm / 1000,
@@ -165,7 +176,7 @@ USE_DISPLACEMENT = False  # True: moves the surface too; subdivide the plane fir
              Quoted(file_of("roughness")), Quoted(file_of("normal_gl")), Quoted(file_of("height")),
              low_mm / 1000, (high_mm - low_mm) / 1000,
              material.convention.diffuse_weight == DiffuseWeight::kOne ? "True" : "False",
-             LobeScales(lobes), lobes.narrow_share) +
+             LobeScales(lobes), lobes.narrow_share, lobes.coat_f0) +
          kBody;
 }
 

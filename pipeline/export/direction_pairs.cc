@@ -91,10 +91,18 @@ double SmithSpecular(const DirectionPair& pair, double roughness) {
 double SmithSpecular(const DirectionPair& pair, double roughness, const SpecularLobes& lobes) {
   const LobeMix<double> mix = LobeMixOf<double>(lobes);
   double sum = 0;
-  for (int i = 0; i < (mix.two ? 2 : 1); ++i) {
+  for (int i = 0; i < (mix.two && !mix.coat() ? 2 : 1); ++i) {
     sum += mix.share[i] * SmithSpecular(pair, LobeRoughness(roughness, mix, i));
   }
   return sum;
+}
+
+double SmithCoat(const DirectionPair& pair, double roughness, const SpecularLobes& lobes,
+                 double schlick_weight) {
+  const LobeMix<double> mix = LobeMixOf<double>(lobes);
+  if (!mix.coat()) return 0;
+  return mix.share[1] * SmithSpecular(pair, LobeRoughness(roughness, mix, 1)) *
+         Fresnel(mix.coat_f0, schlick_weight);
 }
 
 double SchlickWeight(double cosine) { return std::pow(1 - std::clamp(cosine, 0.0, 1.0), 5); }

@@ -187,11 +187,16 @@ GltfLobes GltfLobesOf(const ExportedMaterial& material, size_t texel) {
   const SpecularLobes& ours = material.convention.lobes;
   if (!ours.two()) return lobes;
   const LobeMix<double> mix = LobeMixOf<double>(ours);
+  lobes.clearcoat_roughness = LobeRoughness(lobes.roughness, mix, 1);
+  lobes.roughness = LobeRoughness(lobes.roughness, mix, 0);
+  if (mix.coat()) {
+    lobes.clearcoat = std::min(1.0, mix.share[1] * mix.coat_f0 / kGltfF0);
+    for (double& f0 : lobes.f0) f0 *= mix.share[0];
+    return lobes;
+  }
   const double least = *std::min_element(lobes.f0.begin(), lobes.f0.end());
   const double mean = (lobes.f0[0] + lobes.f0[1] + lobes.f0[2]) / 3;
   lobes.clearcoat = std::min({1.0, ours.narrow_share * mean / kGltfF0, least / kGltfF0});
-  lobes.clearcoat_roughness = LobeRoughness(lobes.roughness, mix, 1);
-  lobes.roughness = LobeRoughness(lobes.roughness, mix, 0);
   for (double& f0 : lobes.f0) f0 -= lobes.clearcoat * kGltfF0;
   return lobes;
 }

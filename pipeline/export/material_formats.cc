@@ -38,12 +38,13 @@ Rgb Diffuse(const ExportedMaterial& material, size_t texel) {
 Rgb Added(const ExportedMaterial& material, size_t texel, const DirectionPair& pair,
           double cosine) {
   const Rgb diffuse = Diffuse(material, texel), specular = Specular(material, texel);
-  const double lobe =
-      SmithSpecular(pair, material.maps.plane(kRoughness)[texel], material.convention.lobes);
-  const double weight = SchlickWeight(cosine);
+  const double roughness = material.maps.plane(kRoughness)[texel], weight = SchlickWeight(cosine);
+  const double lobe = SmithSpecular(pair, roughness, material.convention.lobes);
+  const double coat = SmithCoat(pair, roughness, material.convention.lobes, weight);
   Rgb brdf;
   for (size_t c = 0; c < 3; ++c) {
-    brdf[c] = diffuse[c] / std::numbers::pi + lobe * (specular[c] + (1 - specular[c]) * weight);
+    brdf[c] =
+        diffuse[c] / std::numbers::pi + lobe * (specular[c] + (1 - specular[c]) * weight) + coat;
   }
   return brdf;
 }

@@ -26,8 +26,9 @@ std::string Picture(const std::string& name, const std::string& type, const std:
   return Node("image", name, type, Input("file", "filename", Value(file) + space));
 }
 
-// The specular lobe `name` of the roughness map times `scale`, at most 1; α is its square.
-std::string Glossy(const std::string& name, double scale) {
+// The specular lobe `name` of the roughness map times `scale`, at most 1, with the F0 `f0`: a picture
+// or a value; α is the roughness's square.
+std::string Glossy(const std::string& name, double scale, const std::string& f0) {
   std::string nodes;
   std::string roughness = "roughness", of = name == "glossy" ? "" : "_" + name;
   if (scale != 1) {
@@ -44,7 +45,7 @@ std::string Glossy(const std::string& name, double scale) {
       Node("combine2", "alpha_both" + of, "vector2",
            Input("in1", "float", From("alpha" + of)) + Input("in2", "float", From("alpha" + of)));
   return nodes + Node("generalized_schlick_bsdf", name, "BSDF",
-                      Input("color0", "color3", From("specular")) +
+                      Input("color0", "color3", f0) +
                           Input("color90", "color3", Value("1, 1, 1")) +
                           Input("exponent", "float", Value("5")) +
                           Input("roughness", "vector2", From("alpha_both" + of)) +
@@ -75,12 +76,14 @@ std::string MaterialXOf(const ExportedMaterial& material,
   const SpecularLobes& lobes = material.convention.lobes;
   if (lobes.two()) {
     const LobeMix<double> mix = LobeMixOf<double>(lobes);
-    for (int i = 0; i < 2; ++i) graph += Glossy(i == 0 ? "wide" : "narrow", mix.scale[i]);
+    const std::string f0 = fmt::format("{0:.6g}, {0:.6g}, {0:.6g}", mix.coat_f0);
+    graph += Glossy("wide", mix.scale[0], From("specular"));
+    graph += Glossy("narrow", mix.scale[1], mix.coat() ? Value(f0) : From("specular"));
     graph += Node("mix", "glossy", "BSDF",
                   Input("fg", "BSDF", From("narrow")) + Input("bg", "BSDF", From("wide")) +
                       Input("mix", "float", Value(fmt::format("{}", lobes.narrow_share))));
   } else {
-    graph += Glossy("glossy", 1);
+    graph += Glossy("glossy", 1, From("specular"));
   }
   graph += Node("add", "both", "BSDF",
                 Input("in1", "BSDF", From("matte")) + Input("in2", "BSDF", From("glossy")));

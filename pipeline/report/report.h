@@ -18,7 +18,7 @@
 
 namespace glint {
 
-inline constexpr int kReportVersion = 11;
+inline constexpr int kReportVersion = 12;
 
 struct ReportOptions {
   std::string from = "refine";  // stage whose maps are shown: refine, fit

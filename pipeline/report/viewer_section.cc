@@ -96,7 +96,7 @@ Json ViewsJson(const ReportInput& input, const std::vector<ShownView>& shown) {
 
 Json LobesJson(const SpecularLobes& lobes) {
   const LobeMix<double> mix = LobeMixOf<double>(lobes);
-  return {{"shares", mix.share}, {"scales", mix.scale}};
+  return {{"shares", mix.share}, {"scales", mix.scale}, {"coat_f0", mix.coat_f0}};
 }
 
 // JSON inside <script>: what could end it is escaped.

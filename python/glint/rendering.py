@@ -143,7 +143,7 @@ def _colours(value: ArrayLike) -> Doubles:
 
 def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayLike,
          specular: ArrayLike, roughness: ArrayLike, *, diffuse_weight: str = "one",
-         narrow_lobe: tuple[float, float] = (0.0, 1.0)) -> Doubles:
+         narrow_lobe: tuple[float, ...] = (0.0, 1.0)) -> Doubles:
     """The BRDF f, without the cosine; vectorised, in double precision.
 
     Arguments broadcast against each other as NumPy's do, the last axis aside.
@@ -156,22 +156,24 @@ def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayL
         roughness: (...), in (0, 1]; the GGX alpha is its square.
         diffuse_weight: "one" or "one_minus_specular", the weight w of the diffuse lobe.
         narrow_lobe: share and ratio of roughnesses of a second specular lobe, as a convention's
-            "narrow_lobe=0.5x0.4"; share 0: one lobe.
+            "narrow_lobe=0.5x0.4"; share 0: one lobe. A third number, as in "0.5x0.4@0.04", is the
+            F0 of a coat, which the narrow lobe then has in place of `specular`.
 
     Returns:
         (..., 3) float64, 1/sr.
 
     Raises:
         ValueError: shapes that do not agree, a vector of length 0, an unknown weight, a share that
-            is not in [0, 1), a ratio that is not in (0, 1].
+            is not in [0, 1), a ratio that is not in (0, 1], an F0 that is not in [0, 1].
     """
     if diffuse_weight not in ("one", "one_minus_specular"):
         raise ValueError(f"diffuse_weight: found {diffuse_weight!r}; "
                          "'one' or 'one_minus_specular' is expected")
-    share, ratio = narrow_lobe
-    if not (0 <= share < 1 and 0 < ratio <= 1):
-        raise ValueError(f"narrow_lobe: found {narrow_lobe!r}; a share from 0 to below 1 and a "
-                         "ratio of roughnesses above 0, up to 1, are expected")
+    share, ratio, coat_f0 = (*narrow_lobe, 0.0, 0.0)[:3]
+    if not (len(narrow_lobe) in (2, 3) and 0 <= share < 1 and 0 < ratio <= 1 and 0 <= coat_f0 <= 1):
+        raise ValueError(f"narrow_lobe: found {narrow_lobe!r}; a share from 0 to below 1, a "
+                         "ratio of roughnesses above 0, up to 1, and perhaps the F0 of a coat, up "
+                         "to 1, are expected")
     vectors = [_unit("light", light), _unit("camera", camera), _unit("normal", normal),
                _colours(diffuse), _colours(specular)]
     widths = np.asarray(roughness, dtype=float)
@@ -179,7 +181,7 @@ def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayL
     rows = [np.broadcast_to(vector, (*shape, 3)).reshape(-1, 3) for vector in vectors]
     values = _glint.brdf(rows[0], rows[1], rows[2], rows[3], rows[4],
                          np.broadcast_to(widths, shape).reshape(-1),
-                         diffuse_weight == "one_minus_specular", share, ratio)
+                         diffuse_weight == "one_minus_specular", share, ratio, coat_f0)
     return values.reshape((*shape, 3))
 
 

@@ -64,6 +64,20 @@ def test_brdf_is_the_formula_and_reciprocal():
     np.testing.assert_allclose(glint.brdf(camera, light, normal, 0.5, 0.04, 0.6), f, rtol=1e-12)
 
 
+def test_a_coat_reflects_white_by_its_own_f0():
+    light, camera = (0.3, 0.2, 1), (-0.3, -0.2, 1)
+
+    def f(specular, lobe):
+        return glint.brdf(light, camera, (0, 0, 1), 0.0, specular, 0.4, narrow_lobe=lobe)
+
+    coat = f((0.2, 0.1, 0.0), (0.5, 0.4, 0.04)) - f((0.2, 0.1, 0.0), (0.5, 0.4, 1e-12))
+    assert coat[0] > 0
+    np.testing.assert_allclose(coat, coat[0], rtol=1e-9)
+    np.testing.assert_allclose(f(0.04, (0.5, 0.4, 0.04)), f(0.04, (0.5, 0.4)), rtol=1e-12)
+    with pytest.raises(ValueError, match="narrow_lobe"):
+        f(0.04, (0.5, 0.4, 2.0))
+
+
 def test_brdf_broadcasts():
     f = glint.brdf(np.ones((5, 1, 3)), (0, 0, 1), (0, 0, 1), 0.5, (0.04, 0.05, 0.06),
                    np.linspace(0.1, 1, 7))

@@ -37,7 +37,7 @@ vec2 lobeShare(float roughness, float noV) {
 vec3 environmentInLobe(Texel t, int lobe, vec3 n, vec3 v) {
   float roughness = lobeRoughness(t, lobe);
   vec2 share = lobeShare(roughness, max(dot(n, v), 0.0));
-  return (t.specular * share.x + share.y) * environment(reflect(-v, n), roughness);
+  return (lobeF0(t, lobe) * share.x + share.y) * environment(reflect(-v, n), roughness);
 }
 
 vec3 underEnvironment(Texel t, vec3 n, vec3 v) {
@@ -53,7 +53,8 @@ vec3 radianceOf(Texel t, vec3 n, vec3 v) {
   vec3 received = fallsOff ? lightRadiance / dot(toLight, toLight) : lightRadiance;
   if (beam != vec2(0.0)) received *= exp(-dot(beam, toLight.xy) / toLight.z);
   vec3 reflected = brdf(t, n, l, v) * max(dot(n, l), 1e-8);
-  return received * reflected + ambient * (t.diffuse + t.specular) / 3.14159265358979;
+  vec3 mirrored = lobeShares.x * lobeF0(t, 0) + lobeShares.y * lobeF0(t, 1);
+  return received * reflected + ambient * (t.diffuse + mirrored) / 3.14159265358979;
 }
 
 void main() {

@@ -14,6 +14,7 @@ uniform sampler2D geometryLowMap;   // … and low bytes of 16 bits
 uniform bool diffuseWhole;
 uniform vec2 lobeShares;  // of the wide and the narrow specular lobe …
 uniform vec2 lobeScales;  // … and what multiplies roughness in them
+uniform float coatF0;     // of a narrow lobe that is a coat's; 0: it has the map's
 
 Texel texelAt(vec2 uv) {
   Texel t;
@@ -43,12 +44,18 @@ float specularLobe(float roughness, vec3 n, vec3 h, float noL, float noV) {
 
 float lobeRoughness(Texel t, int lobe) { return min(t.roughness * lobeScales[lobe], 1.0); }
 
+vec3 lobeF0(Texel t, int lobe) { return lobe == 1 && coatF0 > 0.0 ? vec3(coatF0) : t.specular; }
+
 // f of unit directions n, l, v.
 vec3 brdf(Texel t, vec3 n, vec3 l, vec3 v) {
   vec3 h = normalize(l + v);
   float noL = max(dot(n, l), 1e-8), noV = max(dot(n, v), 1e-8), voH = max(dot(v, h), 1e-8);
-  float lobe = lobeShares.x * specularLobe(lobeRoughness(t, 0), n, h, noL, noV);
-  if (lobeShares.y > 0.0) lobe += lobeShares.y * specularLobe(lobeRoughness(t, 1), n, h, noL, noV);
-  vec3 fresnel = t.specular + (1.0 - t.specular) * exp2(voH * (-5.55473 * voH - 6.98316));
-  return t.diffuse / 3.14159265358979 + lobe * fresnel;
+  float rim = exp2(voH * (-5.55473 * voH - 6.98316));
+  vec3 f = t.diffuse / 3.14159265358979;
+  for (int i = 0; i < 2; ++i) {
+    if (lobeShares[i] == 0.0) continue;
+    vec3 f0 = lobeF0(t, i);
+    f += lobeShares[i] * specularLobe(lobeRoughness(t, i), n, h, noL, noV) * (f0 + (1.0 - f0) * rim);
+  }
+  return f;
 }

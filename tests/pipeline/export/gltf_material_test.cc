@@ -143,6 +143,23 @@ TEST_F(GltfTest, ANarrowLobeIsAClearCoat) {
   }
 }
 
+TEST_F(GltfTest, ACoatIsTheClearCoatAndTheMapTheBases) {
+  ExportedMaterial coated = test::MaterialOf(Maps());
+  coated.convention.lobes = {0.6, 0.4, 0.04};
+  Read(GlbOf(coated, 1));
+  const Json& extensions = json_["materials"][0]["extensions"];
+  const Json& specular = extensions["KHR_materials_specular"];
+  for (const size_t texel : {size_t{3}, size_t{7}}) {
+    EXPECT_NEAR(Texel(extensions["KHR_materials_clearcoat"]["clearcoatTexture"], 0, texel),
+                0.6 * 0.04 / kGltfF0, 0.004);
+    for (int c = 0; c < 3; ++c) {
+      const double f0 = kGltfF0 * specular["specularColorFactor"][c].get<double>() *
+                        LinearFromSrgb(Texel(specular["specularColorTexture"], c, texel));
+      EXPECT_NEAR(f0, 0.4 * coated.maps.plane(kSpecularR + c)[texel], 0.004);
+    }
+  }
+}
+
 TEST_F(GltfTest, TheSameMapsGiveTheSameBytes) {
   const auto once = GlbOf(test::MaterialOf(Maps()), 1);
   EXPECT_EQ(once, GlbOf(test::MaterialOf(Maps()), 3));

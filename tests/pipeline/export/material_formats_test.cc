@@ -99,9 +99,9 @@ TEST(MaterialFormatsTest, WholeMaterialsAreMoreFaithfulThanMetalRoughness) {
   }
 }
 
-ExportedMaterial TwoLobes() {
+ExportedMaterial TwoLobes(double coat_f0 = 0) {
   ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));
-  material.convention.lobes = {0.5, 0.4};
+  material.convention.lobes = {0.5, 0.4, coat_f0};
   material.metal = ToMetalRoughness(material.maps, material.convention, {}, 1);
   return material;
 }
@@ -109,19 +109,33 @@ ExportedMaterial TwoLobes() {
 // MaterialX and Blender mix two lobes and glTF has a clear coat; USD has one lobe, and its figure
 // says what that costs.
 TEST(MaterialFormatsTest, TwoLobesAreKeptWhereTheFormatHasThem) {
-  const ExportedMaterial material = TwoLobes();
-  for (const MaterialFormat& format : MaterialFormats()) {
-    const Shading shading = [&](size_t texel, const DirectionPair& pair) {
-      return format.brdf(material, texel, pair);
-    };
-    const double error = ShadingErrors(material.maps, material.convention, {shading}, 1)[0];
-    if (format.name != "usd") {
-      EXPECT_LT(error, 0.06) << format.name;
-    } else {
-      EXPECT_GT(error, 0.06) << format.name;
-      EXPECT_LT(error, 0.25) << format.name;
+  for (const double coat_f0 : {0.0, 0.04}) {
+    const ExportedMaterial material = TwoLobes(coat_f0);
+    for (const MaterialFormat& format : MaterialFormats()) {
+      const Shading shading = [&](size_t texel, const DirectionPair& pair) {
+        return format.brdf(material, texel, pair);
+      };
+      const double error = ShadingErrors(material.maps, material.convention, {shading}, 1)[0];
+      if (format.name != "usd") {
+        EXPECT_LT(error, 0.06) << format.name << coat_f0;
+      } else {
+        EXPECT_GT(error, 0.06) << coat_f0;
+        EXPECT_LT(error, 0.25) << coat_f0;
+      }
     }
   }
+}
+
+TEST(MaterialFormatsTest, ACoatHasItsOwnF0InMaterialXAndBlender) {
+  EXPECT_THAT(Format("materialx").write(TwoLobes(0.04), FileOfMap, 1),
+              HasSubstr("name=\"color0\" type=\"color3\" value=\"0.04, 0.04, 0.04\""));
+  const test::TemporaryFolder folder;
+  const std::filesystem::path script = folder / "material.py";
+  test::WriteAll(script, Format("blender").write(TwoLobes(0.04), FileOfMap, 1));
+  EXPECT_THAT(test::ReadAll(script), HasSubstr("COAT_F0 = 0.04 "));
+  const test::Outcome run =
+      test::RunProgram({"python3", GLINT_STAND_IN_BPY, script.string(), "material"});
+  EXPECT_EQ(run.code, 0) << run.err;
 }
 
 TEST(MaterialFormatsTest, MaterialXAndBlenderMixTwoLobes) {
