@@ -178,8 +178,6 @@ struct MaterialOptions {
            "fraction of materials turned, wholly or partly, into dark, mostly glossy dielectrics")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
-    CLI::deprecate_option(app->add_option("--glazed-share", glossy_dielectric_share),
-                          "--glossy-dielectric-share");
     app->add_option("--one-substance-share", one_substance_share,
                     "fraction of materials with nearly constant roughness and specular albedo")
         ->check(CLI::Range(0.0, 1.0))
