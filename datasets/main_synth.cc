@@ -158,17 +158,16 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   options.AddPositional("out", &out, "folder of the new capture", true);
   choice.AddTo(&options);
   options.Add("board", &board,
-              "board.json of the board round the sample (default: a frame on A4), or none: a "
+              "board.json of the board around the sample (default: a frame on A4), or none: a "
               "patterned table, for --poses colmap");
   options.AddRange("photos", &plan.photos, 1, 1000,
                    "number of photographs; the first is roughly a top view");
   options.AddRange("megapixels", &plan.megapixels, 0.05, 60, "size of a photograph, 4:3");
   options.AddRange("sample-mm", &plan.sample_mm, 10, 1000, "side of the square sample");
   options.AddRange("texels", &texels, 16, 8192, "texels per side of a procedural material");
-  options.Add(
-      "distance-mm", &distance_mm,
-      "camera's distance: nearest,farthest (default: 270,330 for a sample of 100 mm and for "
-      "boards of your own, in proportion for others)");
+  options.Add("distance-mm", &distance_mm,
+              "camera's distance: nearest,farthest (default: 270,330 for a sample of 100 mm and "
+              "for your own boards; in proportion to --sample-mm otherwise)");
   options.AddRange("tilt-deg", &plan.largest_tilt_deg, 0, 65, "largest tilt of the later views");
   options.Add("flash-offset-mm", &flash_mm, "flash in the camera frame: right,down,forward");
   options.Add("flash-tint", &tint, "colour of the flash: r,g,b in (0, 1]");
@@ -258,17 +257,20 @@ int RunDome(int argc, char** argv, const ProgramInfo& info) {
   options.AddRange("lowest-deg", &dome.lowest_deg, 1, 89, "elevation of the lowest lamp");
   options.AddRange("highest-deg", &dome.highest_deg, 1, 90, "elevation of the highest lamp");
   options.AddRange("sample-mm", &dome.sample_mm, 1, 10000, "side of the square sample");
-  options.AddRange("distance-mm", &dome.distance_mm, 0, 1e6,
-                   "of the lamps from the sample's centre; 0: ten sides of the sample");
+  options.AddRange(
+      "distance-mm", &dome.distance_mm, 0, 1e6,
+      "distance of the lamps from the sample's centre; 0: ten times the sample's side");
   options.AddRange("uneven", &dome.uneven, 0, 2,
-                   "standard deviation of the logarithm of the lamps' strengths");
-  options.AddRange("lamp-colours", &dome.colours, 0, 1,
-                   "standard deviation of the logarithm of red and blue over green of the lamps");
-  options.AddRange("jitter-deg", &dome.jitter_deg, 0, 30,
-                   "by how much dirs.lp is off, standard deviation of each of two components");
+                   "standard deviation of the logarithm of the lamps' intensities");
+  options.AddRange(
+      "lamp-colours", &dome.colours, 0, 1,
+      "standard deviation of the logarithms of the lamps' red/green and blue/green ratios");
+  options.AddRange(
+      "jitter-deg", &dome.jitter_deg, 0, 30,
+      "standard deviation of the error of the directions in dirs.lp, in each of two components");
   options.Add("shadows", &dome.shadows, "the relief casts shadows");
   options.AddRange("blur-px", &dome.blur_px, 0, 10,
-                   "standard deviation by which lens and pixel spread a point");
+                   "standard deviation of the point-spread function of lens and pixel");
   options.AddRange("noise", &dome.noise.scale, 0, 100, "sensor noise; 0: none, 1: a phone's");
   options.AddChoice("format", &dome.format, {"png", "jpg"}, "file format of the photographs");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
@@ -324,8 +326,8 @@ int main(int argc, char** argv) {
        "Renders rectified views from maps, as a capture with its rectify stage already done.",
        "Example: glint-synth views procedural:7 set --count 5 && glint-fit set", RunViews},
       {"dome",
-       "Renders photographs of a camera that stands still under the lamps of a dome, or one that a "
-       "hand holds, with their dirs.lp.",
+       "Renders photographs taken by a fixed camera under the lamps of a dome or under a hand-held "
+       "lamp, with their dirs.lp.",
        "Example: glint-synth dome icon --family wood --lights 60 --uneven 0.2\n"
        "Then: glint init icon --lights icon/dirs.lp --width-mm 100 && glint run icon",
        RunDome},

@@ -172,7 +172,7 @@ int main(int argc, char** argv) {
   glint::AddRefineOptions(&set, &options);
   const glint::ProgramInfo info{"glint-refine",
                                 "Refines the fitted maps texel by texel, staying close to them "
-                                "where the photographs say little.",
+                                "where the photographs determine little.",
                                 GLINT_VERSION,
                                 "Example: glint refine wood --exclude view_003,view_007"};
   return glint::RunProgram(argc, argv, info, &set, [&](const glint::CommonOptions& common) {

@@ -20,8 +20,7 @@ void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
   options->Add("sample-mm", &o->sample_mm, "WIDTH,HEIGHT of the sample");
   options->AddRange(
       "resolution", &o->resolution_px, 0, 16384,
-      "width of the maps in texels; 0: 1024, with --lights that of the picture, up to "
-      "2048");
+      "width of the maps in texels; 0: 1024, or with --lights the picture's width, at most 2048");
   options->Add("encoding", &o->encoding,
                "how the photographs store radiance: auto, srgb, gamma2.2, linear, or the path of "
                "a response-curve file (as written by glint-response)");
@@ -33,10 +32,9 @@ void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
                     "with --single or --lights: width of the area that the picture shows");
   options->AddRange("distance-mm", &o->distance_mm, 0, 1e5,
                     "with --single: distance from the lens to the sample");
-  options->Add(
-      "lights", &o->lights,
-      "camera fixed, light moved (RTI): the file with the lights' directions or positions, "
-      ".lp, .relight or .dome, inside of DIR; with --width-mm or --sample-mm");
+  options->Add("lights", &o->lights,
+               "camera fixed, light moved (RTI): the file with the lights' directions or "
+               "positions, .lp, .relight or .dome, inside DIR; with --width-mm or --sample-mm");
   options->Add(
       "balls-px", &o->balls_px,
       "the same without such a file: X,Y of three points on the rim of a reflecting ball in "

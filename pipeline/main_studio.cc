@@ -65,8 +65,7 @@ int main(int argc, char** argv) {
   options.AddPositional("FOLDER", &o.folder, "folder of captures", false);
   options.AddRange("port", &o.port, 0, 65535, "port on 127.0.0.1; 0: any free one");
   options.Add("lan", &o.lan,
-              "let other machines of the network in as well, at a second address with a secret "
-              "of its own");
+              "also allow other machines on the network, at a second address with its own secret");
   options.Add("no-browser", &no_browser, "only print the address");
   return glint::RunProgram(
       argc, argv,

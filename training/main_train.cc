@@ -31,7 +31,7 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
   app->add_option("--checkpoint", files->checkpoint, "checkpoint file (default: OUT.checkpoint)");
   app->add_option("--log", files->log_csv, "loss log, CSV (default: OUT.csv)");
   app->add_option("--float32", files->float32,
-                  "also write the averaged weights in float32 to this file (default: bf16 alone)");
+                  "also write the averaged weights in float32 to this file (default: bf16 only)");
   app->add_flag("--resume", files->resume, "continue from the checkpoint if there is one");
   app->add_option("--steps", o->steps, "number of optimiser steps");
   app->add_option("--minutes", o->minutes,
@@ -87,8 +87,8 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
   app->add_flag("--supervise", o->supervise,
                 "when the loss jumps, return to the last good weights and halve the learning rate");
   app->add_option("--test-jump", o->test_jump_step,
-                  "for tests: spoil the weights once, after this step");
-  app->add_option("--batches-ahead", o->batches_ahead, "number of batches cut ahead of use")
+                  "for tests: corrupt the weights once, after this step");
+  app->add_option("--batches-ahead", o->batches_ahead, "number of batches prepared in advance")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   app->add_option("--seed", o->seed, "seed of weights, materials and crops")->capture_default_str();
@@ -134,8 +134,8 @@ void AddEstimatorOptions(CLI::App* app, EstimatorTrainOptions* o) {
       ->capture_default_str();
   app->add_option("--network", o->network,
                   "pooled: mean and maximum over the photographs; attended: attention over them; "
-                  "descent: also improved by the gradient of the photographs' likelihood, from "
-                  "pooled weights too")
+                  "descent: pooled, then improved by learned descent on the photographs' "
+                  "likelihood; --from also takes pooled weights")
       ->check(CLI::IsMember({"pooled", "attended", "descent"}))
       ->capture_default_str();
   app->add_option(
@@ -188,8 +188,8 @@ struct MaterialOptions {
         ->check(CLI::Range(-1.0, 1.0))
         ->capture_default_str();
     app->add_option("--varnish-share", varnish_share,
-                    "fraction of wood and paint given a clear varnish; of all else without metal a "
-                    "fifth of it")
+                    "fraction of wood and paint given a clear varnish; of all other non-metals, a "
+                    "fifth of that fraction")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
   }

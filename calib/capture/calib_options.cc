@@ -81,16 +81,16 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
       "significantly above that of the best; with --poses colmap, which has no board to hold out, "
       "auto is OPENCV");
   set->AddChoice("cameras", &options->cameras, {"auto", "one", "each"},
-                 "auto: photos of the same size and EXIF focal length share their intrinsics; one: "
-                 "all photos share one set; each: every photo has its own");
+                 "auto: photographs of the same size and EXIF focal length share their intrinsics; "
+                 "one: all photographs share one set; each: every photograph has its own");
   set->Add("hold", &options->hold, "distortion parameters held at 0, such as p1,p2");
   set->Add("fix-intrinsics", &options->fix_intrinsics,
            "manifest of another calibration whose intrinsics are used unchanged",
            Invalidates::kNo);  // its content is an input, and the place of the file tells nothing
-  set->Add(
-      "library", &options->library,
-      "folder of calib manifests: a camera whose EXIF matches one of them is given its intrinsics",
-      Invalidates::kNo);  // likewise
+  set->Add("library", &options->library,
+           "folder of calib manifests; a camera whose EXIF matches one of them takes its "
+           "intrinsics from it",
+           Invalidates::kNo);  // likewise
   set->AddChoice("board-shape", &options->board_shape, {"flat", "bent"},
                  "bent: also estimate how far the board bulges in the middle");
   set->AddRange("reject-sigmas", &options->reject_sigmas, 2, 1000,
@@ -98,11 +98,10 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   set->AddRange("min-reject-px", &options->min_reject_px, 0, 1000,
                 "corners off by less than this are never rejected");
   set->AddRange("min-corners", &options->min_corners, 4, 10000,
-                "photos with fewer corners are rejected");
-  set->AddRange(
-      "detect-px", &options->detect_px, 200, 20000,
-      "boards are detected in a copy whose longer side has this many pixels; corners are then "
-      "located in the full-resolution photo");
+                "photographs with fewer corners are rejected");
+  set->AddRange("detect-px", &options->detect_px, 200, 20000,
+                "boards are detected in a copy whose longer side has this many pixels; corners are "
+                "then located in the full-resolution photograph");
   set->AddChoice(
       "light", &options->light, {"board", "camera"},
       "board: flash position, lens fall-off, exposures and ambient illumination from the board's "

@@ -91,7 +91,7 @@ std::string Verdict::Summary() const {
       "{:.0f} % of the sample",
       views.size(), views.size() == 1 ? "" : "s", top_views, limits.top_deg, low, high,
       100 * highlight_share);
-  if (sharpest_texel_px > 0) text += fmt::format("; {:.1f} pixels a texel", sharpest_texel_px);
+  if (sharpest_texel_px > 0) text += fmt::format("; {:.1f} pixels per texel", sharpest_texel_px);
   return text;
 }
 

@@ -71,7 +71,7 @@ struct ViewFacts {
   double distance_mm = 0;
   double least_half_angle_deg = 0;  // over the sample
   double shown_share = 0, clipped_share = 0;
-  double texel_px = 0;  // pixels a texel; 0: unknown
+  double texel_px = 0;  // pixels per texel; 0: unknown
 };
 
 struct Verdict {

@@ -40,8 +40,9 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
                  "ambient illumination of 5 %");
   }
   if (paper.name == "table1" || paper.name == "table2") {
-    options->Add("environment", &views->disturbance.environment,
-                 "equirectangular radiance map, .hdr or .exr (default: a white surround)");
+    options->Add(
+        "environment", &views->disturbance.environment,
+        "equirectangular radiance map, .hdr or .exr (default: uniform white surroundings)");
   }
   if (paper.name == "exposure") {
     options->Add("stops", &experiment->stops, "exposures in stops, as in --stops=-6,0,2");

@@ -55,7 +55,7 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
   options.Add("shown", &fitted,
               "views to fit; all others are held out; numbers, names and groups as in --pairs");
   options.AddRange("size", &experiment.size, 0, 16384,
-                   "texels across at which sets are imported; 0: as the images are");
+                   "width in texels at which sets are imported; 0: the images' width");
   options.Add(
       "methods", &experiment.methods,
       "any of: start (the initial maps), classic, latent, refined, direct (the initial maps, "

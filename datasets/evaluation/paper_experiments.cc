@@ -345,7 +345,7 @@ const std::vector<PaperExperiment>& PaperExperiments() {
        {},
        Degradation},
       {"start",
-       "Errors by initialisation (figs. 6 and 16).",
+       "Errors by initial maps (figs. 6 and 16).",
        "glint-eval start procedural:1000000000 --starts heuristic,truth --work /tmp/start",
        {1, 5},
        with_start,

@@ -215,8 +215,8 @@ int RunRelight(int argc, char** argv, const ProgramInfo& info) {
   OptionSet options;
   options.AddPositional("captures", &sets, "captures with a fixed camera, rectified", true);
   options.Add("work", &work, "folder in which captures and results are kept (required)");
-  options.AddRange("every", &every, 2, 1000, "hold each Nth photograph out");
-  options.AddRange("first", &first, 0, 999, "the first one that is held out, counted from 0");
+  options.AddRange("every", &every, 2, 1000, "hold out every Nth photograph");
+  options.AddRange("first", &first, 0, 999, "index of the first held-out photograph, from 0");
   options.Add("pairs", &pairs,
               "also write pictures: photograph, relit, 4 × difference, of every method");
   options.Add("fit-args", &fit_arguments, "additional arguments for glint-fit, comma-separated");
@@ -257,12 +257,11 @@ int RunRelight(int argc, char** argv, const ProgramInfo& info) {
 }  // namespace
 
 Verb RelightVerb() {
-  return {
-      "relight",
-      "Fits maps to some photographs of a fixed camera and compares renderings under the lights "
-      "held out with interpolations of the photographs: polynomial texture maps, spherical "
-      "harmonics, radial basis functions.",
-      "Example: glint-eval relight icon door --work relit", RunRelight};
+  return {"relight",
+          "Fits maps to some photographs of a fixed camera and compares renderings under the "
+          "held-out lights with interpolations of the photographs: polynomial texture maps, "
+          "spherical harmonics, radial basis functions.",
+          "Example: glint-eval relight icon door --work relit", RunRelight};
 }
 
 }  // namespace glint

@@ -216,7 +216,7 @@ void AddViewSetOptions(ViewSetOptions* options, OptionSet* set) {
                 "strength of effects that the reflectance model cannot represent (other lobes, "
                 "relief, diffuse blur, capture errors, JPEG); 1: as in real samples");
   set->Add("environment", &disturbance->environment,
-           "equirectangular radiance map, .hdr or .exr (default: a white surround)");
+           "equirectangular radiance map, .hdr or .exr (default: uniform white surroundings)");
 }
 
 PlannedViews PlanViews(const ViewSetOptions& options, std::uint64_t seed, int width, int height) {

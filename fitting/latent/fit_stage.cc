@@ -229,9 +229,9 @@ Json Data(const FitResult& fit, const RectifiedSet& set, const FitStageOptions& 
 
 void AddFitOptions(OptionSet* set, FitStageOptions* options) {
   set->AddChoice("method", &options->method, {"latent", "classic", "start"},
-                 "latent: in the auto-encoder's latent space, but for one photograph, which is "
-                 "explained better by the initial maps, unless --iterations is given; classic: the "
-                 "maps themselves, texel by texel; start: the initial maps, unfitted");
+                 "latent: in the auto-encoder's latent space (a single photograph keeps the "
+                 "initial maps, which explain it better, unless --iterations is given); classic: "
+                 "the maps themselves, texel by texel; start: the initial maps, unfitted");
   set->AddChoice(
       "initial-maps", &options->initial_maps, {"estimator", "rules"},
       "how the initial maps are estimated; estimator: a trained network; rules: lobes fitted "
@@ -240,8 +240,8 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
                  "how dark, glossy areas are interpreted, by the estimator, in refinement and in "
                  "export; rare: glass, lacquer, print and the like; possible: perhaps metal");
   set->AddRange("estimator-size", &options->estimator_size, 0, kFullSize,
-                "texels along the longer side at which the estimator is shown the photographs, at "
-                "most; 0: by their number, which is then recorded in the manifest");
+                "maximum number of texels along the longer side of the estimator's input; 0: "
+                "chosen by the number of photographs and recorded in the manifest");
   set->AddRange(
       "iterations", &options->iterations, 0, 1e6,
       "maximum number of steps at the first, coarse level; 0: the method's default, which "

@@ -17,7 +17,7 @@ int PrintHelp(std::FILE* stream, int code) {
       "Usage: glint VERB [ARGUMENTS]\n\nVerbs:\n",
       stream);
   for (const ProgramVerb& verb : ListVerbs()) {
-    std::fprintf(stream, "  %-9s %s\n", verb.name.c_str(), verb.summary.c_str());
+    std::fprintf(stream, "  %-10s %s\n", verb.name.c_str(), verb.summary.c_str());
   }
   std::fputs(
       "\nFor details, run glint help VERB. A capture, step by step:\n"

@@ -23,8 +23,8 @@ struct KnownVerb {
 // In the order in which a person meets them; the stages stand where "stages" does.
 constexpr std::string_view kStagesHere = "stages";
 constexpr KnownVerb kKnownVerbs[] = {
-    {"studio", "take photographs, run and look at materials in the browser"},
-    {"demo", "make a synthetic capture and run everything on it"},
+    {"studio", "take photographs, run the stages and view the material in the browser"},
+    {"demo", "make a synthetic capture and run every stage on it"},
     {"board", "make a calibration board to print"},
     {"init", "write a capture.toml for a folder of photographs"},
     {"run", "run every stage that is out of date"},

@@ -16,17 +16,18 @@ void AddRectifyOptions(OptionSet* set, RectifyOptions* options) {
   set->AddChoice(
       "filter", &options->filter, {"sharp", "soft", "lanczos"},
       "resampling kernel: sharp, soft (least ringing) or lanczos (best low-pass, slower)");
-  set->AddRange(
-      "saturation-level", &options->saturation_level, 0.5, 1.01,
-      "stored value (full scale is 1) at or above which a pixel of an 8- or 16-bit photo counts as "
-      "clipped; above 1: never");
+  set->AddRange("saturation-level", &options->saturation_level, 0.5, 1.01,
+                "stored value (full scale is 1) at or above which a pixel of an 8- or 16-bit "
+                "photograph counts as clipped; above 1: never");
   set->AddRange("float-saturation-level", &options->float_saturation_level, 0, 1e9,
-                "the same for float photos; 0: they never clip");
-  set->AddChoice("exposure", &options->exposure, {"calib", "exif", "equal"},
-                 "relative exposure of the photos; calib: from calib, or like exif if calib "
-                 "estimated none; exif: from EXIF if all photos have it; equal: the same for all");
-  set->AddRange("frame-height-mm", &options->frame_height_mm, 0, 100,
-                "thickness of the board round the sample: what it shadows or hides is masked");
+                "the same for float photographs; 0: they never clip");
+  set->AddChoice(
+      "exposure", &options->exposure, {"calib", "exif", "equal"},
+      "relative exposure of the photographs; calib: from calib, or like exif if calib estimated "
+      "none; exif: from EXIF if all photographs have it; equal: the same for all");
+  set->AddRange(
+      "frame-height-mm", &options->frame_height_mm, 0, 100,
+      "thickness of the board around the sample; texels that it shadows or hides are masked");
   set->AddRange("frame-margin-mm", &options->frame_margin_mm, 0, 1000,
                 "width of the strip along the inside of the window's edge that is masked");
 }

@@ -180,7 +180,7 @@ TEST(Verdict, ARectifiedSetIsJudgedByPositionsAlone) {
   GuidanceInput input = GoodCapture();
   for (GuidancePhoto& photo : input.photos) photo.posed.reset();
   EXPECT_EQ(Judge(input).Word(), "good");
-  EXPECT_THAT(Judge(input).Summary(), Not(HasSubstr("pixels a texel")));
+  EXPECT_THAT(Judge(input).Summary(), Not(HasSubstr("pixels per texel")));
 }
 
 TEST(Verdict, SaysSixLinesAtMostTheMostImportantFirst) {

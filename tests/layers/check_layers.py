@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Checks that #include goes down the house only: check_floors.py [ROOT].
+"""Checks that #include only points down the layers: check_layers.py [ROOT].
 
-Floors and their rooms, bottom to top, are the table below; docs/architecture.md says what lives in
-each. A source may include its own room, rooms listed before it on its floor, and all lower floors.
-A floor's own sources (programs' mains) may include every room of the floor. Tests may include all.
+Layers and their modules, bottom to top, are the table below; docs/architecture.md says what lives in
+each. A source may include its own module, modules listed before it in its layer, and all lower layers.
+A layer's own sources (programs' mains) may include every module of the layer. Tests may include all.
 Prints every include that goes up, and folders that the table does not know; exits 1 if any.
 """
 
@@ -11,7 +11,7 @@ import pathlib
 import re
 import sys
 
-FLOORS = {
+LAYERS = {
     "base": "errors text model colour statistics cpu memory parallel resampling reflectance files images canvas "
     "photos camera board stages formats programs linearize",
     "calib": "chart registration printing corners bundle uncertainty validation light moving_light response "
@@ -28,26 +28,26 @@ INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
 
 def places():
-    """(floor, room) to its height; "" is a floor's own sources, above its rooms."""
+    """(layer, module) to its height; "" is a layer's own sources, above its modules."""
     order = []
-    for floor, rooms in FLOORS.items():
-        order += [(floor, room) for room in [*rooms.split(), ""]]
+    for layer, modules in LAYERS.items():
+        order += [(layer, module) for module in [*modules.split(), ""]]
     return {place: height for height, place in enumerate(order)}
 
 
 def place_of(path):
-    """The floor and room of a path relative to the root; None outside the house."""
+    """The layer and module of a path relative to the root; None outside the layers."""
     parts = path.split("/")
-    if parts[0] not in FLOORS or len(parts) < 2:
+    if parts[0] not in LAYERS or len(parts) < 2:
         return None
-    has_rooms = bool(FLOORS[parts[0]])
-    return parts[0], parts[1] if has_rooms and len(parts) > 2 else ""
+    has_modules = bool(LAYERS[parts[0]])
+    return parts[0], parts[1] if has_modules and len(parts) > 2 else ""
 
 
 def findings(root):
     height = places()
-    for floor in FLOORS:
-        for source in sorted((root / floor).rglob("*")):
+    for layer in LAYERS:
+        for source in sorted((root / layer).rglob("*")):
             if source.suffix not in {".h", ".cc", ".inl"}:
                 continue
             path = source.relative_to(root).as_posix()
@@ -55,7 +55,7 @@ def findings(root):
                 continue
             here = place_of(path)
             if here not in height:
-                yield f"{path}: {'/'.join(here)} is no room of the table in tests/floors/check_floors.py"
+                yield f"{path}: {'/'.join(here)} is not in the table of tests/layers/check_layers.py"
                 continue
             for number, line in enumerate(source.read_text(encoding="utf-8").splitlines(), 1):
                 found = INCLUDE.match(line)
@@ -63,7 +63,7 @@ def findings(root):
                 if not there:
                     continue
                 if there not in height:
-                    yield f"{path}:{number}: includes {found[1]}, in no room that is known"
+                    yield f"{path}:{number}: includes {found[1]}, which is in no module of the table"
                 elif height[there] > height[here]:
                     yield f"{path}:{number}: includes {found[1]}, which lies above {'/'.join(filter(None, here))}"
 
@@ -71,7 +71,7 @@ def findings(root):
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
     upward = list(findings(root))
-    print("\n".join(upward) if upward else "every include goes down")
+    print("\n".join(upward) if upward else "every include points down")
     return 1 if upward else 0
 
 
