@@ -288,6 +288,13 @@ FitResult Fit(const PhotographSet& set, const SvbrdfMaps& start, const FitOption
 
 }  // namespace
 
+FitOptions FitOptions::LatentForRefinement() {
+  FitOptions options;
+  options.coarse_iterations = 100;
+  options.fine_iterations = 30;
+  return options;
+}
+
 FitOptions FitOptions::Classic() {
   FitOptions options;
   options.coarse_iterations = 3000;  // it ends by its tolerance, after 300 to 1500

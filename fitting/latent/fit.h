@@ -37,6 +37,9 @@ struct FitOptions {
   int threads = 1;
 
   static FitOptions Latent() { return {}; }
+  // Of three photographs and more, where refinement follows: it comes to the same from maps that
+  // have not converged (docs/experiments/latent-fitting.md).
+  static FitOptions LatentForRefinement();
   static FitOptions Classic();
   // Empty: all is well; otherwise what is wrong.
   std::string Check() const;

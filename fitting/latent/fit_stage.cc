@@ -281,7 +281,8 @@ void ResolveFitOptions(const fs::path& rectify_manifest, FitStageOptions* option
   // (docs/experiments/one-photograph.md): no step is best.
   if (IsLatent(*options) && photographs == 1 && options->iterations == 0) options->method = "start";
   if (options->method == "start") return;  // without iterations
-  const FitOptions own = IsLatent(*options) ? FitOptions::Latent() : FitOptions::Classic();
+  FitOptions own = IsLatent(*options) ? FitOptions::Latent() : FitOptions::Classic();
+  if (IsLatent(*options) && photographs > kFewPhotographs) own = FitOptions::LatentForRefinement();
   if (options->iterations == 0) options->iterations = own.coarse_iterations;
   if (options->fine_iterations == 0) options->fine_iterations = own.fine_iterations;
 }

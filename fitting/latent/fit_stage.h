@@ -11,7 +11,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kFitVersion = 11;
+inline constexpr int kFitVersion = 12;
 
 struct FitStageOptions {
   // latent: in the learned space; classic: texel by texel; start: no fitting, the start as it is
@@ -23,7 +23,7 @@ struct FitStageOptions {
   // Texels along the longer side of what the estimator is shown, at most; 0: by the number of
   // photographs.
   int estimator_size = 0;
-  int iterations = 0;       // at the first level; 0: the method's own (few from one photo)
+  int iterations = 0;       // at the first level; 0: the method's own, by the number of photographs
   int fine_iterations = 0;  // at each later level; 0: the method's own
   int finest_size = 256;    // latent: of the last level, texels, or the photographs'
   double learning_rate = FitOptions().learning_rate;

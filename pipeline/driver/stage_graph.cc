@@ -112,9 +112,12 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
   if (!method.empty()) {
     steps.back().arguments = {"--method", method == "refined" ? "latent" : method};
     if (method == "start") steps.back().cost = "start";
-    // Nothing comes after it that finds what is finer.
-    if (method == "latent")
-      steps.back().arguments.insert(steps.back().arguments.end(), {"--finest-size", "1048576"});
+    // Nothing comes after it that finds what is finer, or that converges.
+    if (method == "latent") {
+      steps.back().arguments.insert(
+          steps.back().arguments.end(),
+          {"--finest-size", "1048576", "--iterations", "300", "--fine-iterations", "80"});
+    }
   }
   AddSelection(choices, &steps.back());
   if (choices.refines()) {

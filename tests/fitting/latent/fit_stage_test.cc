@@ -87,12 +87,14 @@ TEST(ResolveFitOptions, PutsTheMethodsOwnNumbersWhereNoneAreGiven) {
     ResolveFitOptions(manifest, &options);
     return std::pair(options.iterations, options.fine_iterations);
   };
-  FitStageOptions latent, classic, given;
+  FitStageOptions latent, classic, given, two;
   classic.method = "classic";
+  two.exclude = {"view_002"};
   given.iterations = 17;
-  EXPECT_EQ(resolved(latent), std::pair(300, 80));
+  EXPECT_EQ(resolved(latent), std::pair(100, 30));
+  EXPECT_EQ(resolved(two), std::pair(300, 80));
   EXPECT_EQ(resolved(classic), std::pair(3000, 200));
-  EXPECT_EQ(resolved(given), std::pair(17, 80));
+  EXPECT_EQ(resolved(given), std::pair(17, 30));
 }
 
 // Fitting makes what is estimated of one photograph worse; who asks for steps gets them.
