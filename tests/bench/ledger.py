@@ -11,7 +11,9 @@ run took, and in brackets the floor of a figure where there is one:
                  The whole run: what no stage has written
   written        what the stage's manifest lists as written, and the manifest. The whole run: all that
 
-"between" is the whole run less its stages: starting and ending processes, Ninja, hashes.
+"between" is the whole run less its stages: starting and ending processes, Ninja, hashes. Idle is the
+share of the cores' time that the run did not use; what other processes used of it, which slows the
+run, stands above the table. Figures are comparable only where that is little.
 """
 
 import argparse
@@ -202,6 +204,13 @@ def bytes_moved() -> tuple[int, int]:
     return int(facts["rchar"]), int(facts["wchar"])
 
 
+def busy_s() -> float:
+    """Of all processors, all processes together, since the machine started."""
+    names = ("user", "nice", "system", "idle", "iowait", "irq", "softirq", "steal")
+    ticks = dict(zip(names, map(int, pathlib.Path("/proc/stat").read_text().split()[1:])))
+    return (sum(ticks.values()) - ticks["idle"] - ticks["iowait"]) / os.sysconf("SC_CLK_TCK")
+
+
 def program(folder: pathlib.Path, name: str) -> str:
     file = folder / name
     if not os.access(file, os.X_OK):
@@ -217,11 +226,12 @@ def output_of(command: list[str]) -> str:
     return done.stdout
 
 
-def timed_run(programs: pathlib.Path, capture: pathlib.Path) -> tuple[list[str], Figures]:
-    """Every stage anew; their names, and what the whole run took."""
+def timed_run(programs: pathlib.Path, capture: pathlib.Path) -> tuple[list[str], Figures, float]:
+    """Every stage anew; their names, what the whole run took, and what other processes took meanwhile, in seconds."""
     shutil.rmtree(capture / "glint", ignore_errors=True)
     command = [program(programs, "glint-run"), str(capture), "--json"]
     read_before, written_before = bytes_moved()
+    busy_before_s = busy_s()
     began_s = time.monotonic()
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
@@ -232,14 +242,17 @@ def timed_run(programs: pathlib.Path, capture: pathlib.Path) -> tuple[list[str],
     if process.returncode != 0:
         raise LedgerError(f"{' '.join(command)}: ended with exit code {process.returncode}; see its message above")
     read_after, written_after = bytes_moved()
+    processor_s = usage.ru_utime + usage.ru_stime
+    others_s = max(0.0, busy_s() - busy_before_s - processor_s)
     stages = [entry["stage"] for entry in json.loads(said)["stages"]]
-    return stages, Figures(
+    whole = Figures(
         wall_s=wall_s,
-        processor_s=usage.ru_utime + usage.ru_stime,
+        processor_s=processor_s,
         bytes_read=read_after - read_before,
         bytes_written=written_after - written_before,
         peak_memory_bytes=usage.ru_maxrss * 1024,
     )
+    return stages, whole, others_s
 
 
 def measure_decoding(programs: pathlib.Path, photographs: list[pathlib.Path]) -> Decoding:
@@ -378,8 +391,8 @@ def measure(o: argparse.Namespace, folder: pathlib.Path) -> dict[str, Any]:
     for size_px in o.sizes:
         text = description.read_text(encoding="utf-8")
         description.write_text(with_resolution(text, size_px, description), encoding="utf-8")
-        load = os.getloadavg()[0]
-        stages, whole = timed_run(o.bin, capture)
+        stages, whole, others_s = timed_run(o.bin, capture)
+        others_share = others_s / ((os.cpu_count() or cores) * (whole.wall_s or 1))
         if decoding is None:
             photographs = sorted({file for stage in stages for file in photographs_of(capture / "glint", stage)})
             if not photographs:
@@ -390,14 +403,15 @@ def measure(o: argparse.Namespace, folder: pathlib.Path) -> dict[str, Any]:
         megapixels = decoding.pixels / decoding.photographs / 1e6
         print(
             f"\n{size_px}²: {decoding.photographs} photographs of {megapixels:.1f} MP, {cores} cores of "
-            f"{ledger['processor']}, {ledger['date']}, load average before {load:.2f}\n\n{table(rows, cores)}",
+            f"{ledger['processor']}, {ledger['date']}; other processes took {100 * others_share:.0f} % of the "
+            f"cores\n\n{table(rows, cores)}",
             flush=True,
         )
         as_dicts = [as_json(row, cores) for row in rows]
         ledger["runs"].append(
             {
                 "size_px": size_px,
-                "load_average_before": load,
+                "other_processes_share": others_share,
                 "stages": as_dicts[:-2],
                 "between": as_dicts[-2],
                 "run": as_dicts[-1],
