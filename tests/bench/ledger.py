@@ -9,7 +9,8 @@ run took, and in brackets the floor of a figure where there is one:
   decodes        the number of photographs
   read           what the stage's manifest lists as read, once; of an earlier stage its views or maps.
                  The whole run: what no stage has written
-  written        what the stage's manifest lists as written, and the manifest. The whole run: all that
+  written        what the stage's manifest lists as written (the manifest itself comes after run.json).
+                 The whole run: all that, and the manifests
 
 "between" is the whole run less its stages: starting and ending processes, Ninja, hashes. Idle is the
 share of the cores' time that the run did not use; what other processes used of it, which slows the
@@ -146,8 +147,8 @@ def read_from_stages(work: pathlib.Path, stage: str) -> list[pathlib.Path]:
 
 
 def written_by(work: pathlib.Path, stage: str) -> list[pathlib.Path]:
-    manifest = work / stage / "manifest.json"
-    return [manifest] + [manifest.parent / output["path"] for output in read_json(manifest)["outputs"]]
+    folder = work / stage
+    return [folder / output["path"] for output in read_json(folder / "manifest.json")["outputs"]]
 
 
 def stage_floor(work: pathlib.Path, stage: str, decoding: Decoding) -> Figures:
@@ -171,7 +172,9 @@ def run_floor(work: pathlib.Path, stages: list[str], decoding: Decoding) -> Figu
         wall_s=decoding.wall_s,
         processor_s=decoding.processor_s,
         bytes_read=size_of(inputs),
-        bytes_written=sum(size_of(written_by(work, stage)) for stage in stages),
+        bytes_written=size_of(
+            file for stage in stages for file in [work / stage / "manifest.json", *written_by(work, stage)]
+        ),
         photographs_decoded=decoding.photographs,
     )
 
