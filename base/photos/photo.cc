@@ -12,6 +12,7 @@
 #include "base/images/image_format.h"
 #include "base/images/jpeg_segments.h"
 #include "base/images/oiio.h"
+#include "base/photos/decode_count.h"
 #include "base/photos/exif.h"
 #include "base/photos/heif_facts.h"
 #include "base/photos/jpeg_end.h"
@@ -171,9 +172,7 @@ std::shared_ptr<OIIO::ImageInput> OpenPhoto(const std::filesystem::path& file) {
   return input;
 }
 
-}  // namespace
-
-Photo ReadPhoto(const std::filesystem::path& file) {
+Photo DecodeFile(const std::filesystem::path& file) {
   const PhotoName name = SplitPhotoName(file);
   if (name.frame >= 0) return ReadVideoFrame(name.file, name.frame);
   const auto input = OpenPhoto(file);
@@ -188,6 +187,16 @@ Photo ReadPhoto(const std::filesystem::path& file) {
   RequireWholeRaw(file, photo);
   return photo;
 }
+
+}  // namespace
+
+Photo ReadPhoto(const std::filesystem::path& file) {
+  Photo photo = DecodeFile(file);
+  CountDecodedPhoto();
+  return photo;
+}
+
+Image ReadPicture(const std::filesystem::path& file) { return DecodeFile(file).image; }
 
 PhotoHeader ReadPhotoHeader(const std::filesystem::path& file) {
   PhotoHeader header;

@@ -13,12 +13,15 @@
 #include <chrono>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 #include <map>
+#include <sstream>
 
 #include "base/cpu/instruction_set.h"
 #include "base/errors/errors.h"
 #include "base/files/hash.h"
 #include "base/images/image.h"
+#include "base/photos/decode_count.h"
 #include "base/programs/run_progress.h"
 
 namespace glint {
@@ -44,6 +47,37 @@ ResourceUse UsedResources() {
         std::max(use.peak_memory_bytes, std::int64_t{1024} * usage.ru_maxrss);  // Linux: kilobytes
   }
   return use;
+}
+
+// Since the kernel began this process; 0: it does not tell.
+double SecondsSinceStart() {
+  constexpr int kStartTime = 20;  // the 22nd field; the second may hold spaces, and ends with ')'
+  std::ifstream stream("/proc/self/stat");
+  std::string text, field;
+  if (!std::getline(stream, text) || text.rfind(')') == std::string::npos) return 0;
+  std::istringstream fields(text.substr(text.rfind(')') + 1));
+  for (int i = 0; i < kStartTime; ++i) fields >> field;
+  timespec now{};
+  if (!fields || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return 0;
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) -
+         std::stod(field) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+struct BytesMoved {
+  std::int64_t read = 0, written = 0;
+};
+
+// By this process and its children that have ended, from the page cache or from a disk; files that
+// are mapped into memory (libraries) are not counted. Zeros: the kernel does not count.
+BytesMoved MovedBytes() {
+  BytesMoved bytes;
+  std::ifstream stream("/proc/self/io");
+  std::string name;
+  for (std::int64_t value = 0; stream >> name >> value;) {
+    if (name == "rchar:") bytes.read = value;
+    if (name == "wchar:") bytes.written = value;
+  }
+  return bytes;
 }
 
 void MakeFolder(const fs::path& folder) {
@@ -228,10 +262,17 @@ void Stage::WriteRunFacts() const {
   char host[256] = "";
   gethostname(host, sizeof(host) - 1);
   const ResourceUse use = UsedResources();
+  const BytesMoved bytes = MovedBytes();
+  const DecodeCounts decoded = PhotosDecoded();
   const Json facts = {{"started", text},
                       {"seconds", finished_s - started_s_},
+                      {"process_seconds", SecondsSinceStart()},
                       {"processor_seconds", use.processor_s},
                       {"peak_memory_bytes", use.peak_memory_bytes},
+                      {"bytes_read", bytes.read},
+                      {"bytes_written", bytes.written},
+                      {"photographs_decoded", decoded.whole},
+                      {"photographs_decoded_reduced", decoded.reduced},
                       {"host", host},
                       {"instruction_sets", InstructionSetNames()},
                       {"threads", threads_},

@@ -6,6 +6,7 @@
 
 #include "base/errors/errors.h"
 #include "base/files/files.h"
+#include "base/photos/decode_count.h"
 #include "base/photos/jpeg_end.h"
 #include "base/photos/photo_header.h"
 
@@ -40,6 +41,7 @@ cv::Mat Decode(const std::filesystem::path& file, int reduction) {
     throw UserError(file, "", "a JPEG file that cannot be decoded",
                     "copy the photograph again, or take it out");
   }
+  CountReducedPhoto();
   return picture;
 }
 

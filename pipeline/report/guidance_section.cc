@@ -18,7 +18,7 @@ std::string PictureUri(const fs::path& file) {
   if (file.extension() == ".svg") {
     return "data:image/svg+xml;base64," + Base64(ReadTextFile(file, kMaxSvgBytes));
   }
-  return PngUri(ReadPhoto(file).image);
+  return PngUri(ReadPicture(file));
 }
 
 std::string Caption(const std::string& name) {

@@ -98,8 +98,7 @@ std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
   const Trace views{ViewsLink(), "data"};
   std::string figures = "<div class=\"figures\">\n";
   figures += HeadFigure("photographs fitted", input.used_views.size(), own.Field("views[].fitted"));
-  figures +=
-      HeadFigure("width of the maps", input.set.plane.width, views.Field("width"), "texels");
+  figures += HeadFigure("width of the maps", input.set.plane.width, views.Field("width"), "texels");
   figures += HeadFigure("a texel", input.set.plane.width_mm / input.set.plane.width,
                         views.Field("width_mm"), "mm");
   if (input.Has("calib")) {
@@ -197,7 +196,7 @@ std::string TileSection(const ReportInput& input, const ReportOptions& options) 
                                          [&](const ManifestInput& in) { return in.hash == maps; });
   if (!of_these_maps) return "";
   const Trace data{ManifestLink("tile"), "data"}, metrics{ManifestLink("tile"), "metrics"};
-  const Image preview = ReadPhoto(input.work / "tile" / "preview.png").image;
+  const Image preview = ReadPicture(input.work / "tile" / "preview.png");
   return Section("Repeated", ManifestLink("tile"),
                  "<p>A piece of " +
                      FigureHtml(manifest.data["size_mm"][0], data.Field("size_mm[0]")) + " × " +
@@ -316,8 +315,8 @@ std::string StageSection(const ReportInput& input, const std::string& stage) {
     const std::string extension = fs::path(output.path).extension();
     if (extension != ".png" && extension != ".jpg") continue;
     if (output.path.compare(0, sizeof(kGuidancePrefix) - 1, kGuidancePrefix) == 0) continue;
-    const Photo photo = ReadPhoto(input.work / stage / output.path);
-    pictures += Figure(PngUri(Shrunk(photo.image, kStagePicture_px)), output.path, "wide");
+    const Image picture = ReadPicture(input.work / stage / output.path);
+    pictures += Figure(PngUri(Shrunk(picture, kStagePicture_px)), output.path, "wide");
   }
   body += pictures;
   std::string files;

@@ -8,6 +8,7 @@
 #include "base/files/files.h"
 #include "base/images/image.h"
 #include "base/images/oiio.h"
+#include "base/photos/decode_count.h"
 #include "base/photos/heic_turn.h"
 #include "base/photos/photo.h"
 #include "base/photos/photo_name.h"
@@ -175,6 +176,20 @@ TEST(Photo, HeicAndRawAreReadWithTheirExif) {
   folder.Write("cut.dng", bytes.substr(0, bytes.size() / 2));
   EXPECT_THAT(test::MessageOf<UserError>([&] { ReadPhoto(folder / "cut.dng"); }),
               HasSubstr("copy the photograph again"));
+}
+
+TEST(Photo, OnlyDecodedPhotographsAreCounted) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder / "a.png";
+  WritePng(file, Image(64, 48, {"R", "G", "B"}));
+  const std::int64_t before = PhotosDecoded().whole;
+  PhotoSize(file);
+  ReadPicture(file);
+  EXPECT_THROW(ReadPhoto(folder / "none.png"), UserError);
+  EXPECT_EQ(PhotosDecoded().whole, before);
+  ReadPhoto(file);
+  ReadPhoto(file);
+  EXPECT_EQ(PhotosDecoded().whole, before + 2);
 }
 
 TEST(Photo, RawThatIsNoneIsRefused) {

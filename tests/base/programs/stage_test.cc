@@ -3,6 +3,8 @@
 
 #include "base/errors/errors.h"
 #include "base/files/files.h"
+#include "base/files/json.h"
+#include "base/photos/decode_count.h"
 #include "base/programs/stage.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
@@ -100,6 +102,26 @@ TEST_F(StageTest, AnInputOutsideTheCaptureIsKnownByNameAndContent) {
   EXPECT_TRUE(make().UpToDate());
   elsewhere.Write("weights.bin", "2");
   EXPECT_FALSE(make().UpToDate());
+}
+
+TEST_F(StageTest, RunFactsCountBytesAndPhotographs) {
+  const auto facts = [&] { return Json::parse(ReadTextFile(folder_ / "glint/demo/run.json")); };
+  Run("one");
+  const Json small = facts();
+  CountDecodedPhoto();
+  CountReducedPhoto();
+  CountReducedPhoto();
+  alpha_ = 3;
+  Run(std::string(1'000'000, 'x'));  // written here, and read for its hash
+  const Json large = facts();
+  const auto grown = [&](const char* field) {
+    return large[field].get<double>() - small[field].get<double>();
+  };
+  EXPECT_EQ(grown("photographs_decoded"), 1);
+  EXPECT_EQ(grown("photographs_decoded_reduced"), 2);
+  EXPECT_GE(grown("bytes_written"), 1e6);
+  EXPECT_GE(grown("bytes_read"), 1e6);
+  EXPECT_GE(large["process_seconds"].get<double>() + 0.01, large["seconds"].get<double>());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/errors/errors.h"
+#include "base/photos/decode_count.h"
 #include "tests/support/process.h"
 
 namespace glint {
@@ -68,6 +69,19 @@ TEST(ReducedPhoto, IsTheWholePhotographShrunkForEveryOrientation) {
       }
     }
   }
+}
+
+TEST(ReducedPhoto, IsCountedApartFromWholeOnes) {
+  const test::TemporaryFolder folder;
+  WriteJpeg(folder.path() / "a.jpg", 1);
+  const DecodeCounts before = PhotosDecoded();
+  int reduction = 0;
+  ReadReducedPhoto(folder.path() / "a.jpg", 110, &reduction);
+  EXPECT_EQ(PhotosDecoded().reduced, before.reduced + 1);
+  EXPECT_EQ(PhotosDecoded().whole, before.whole);
+  ReadReducedPhoto(folder.path() / "a.jpg", 416, &reduction);  // small enough to be read whole
+  EXPECT_EQ(PhotosDecoded().reduced, before.reduced + 1);
+  EXPECT_EQ(PhotosDecoded().whole, before.whole + 1);
 }
 
 TEST(ReducedPhoto, IsWholeWhereItIsSmallEnough) {
