@@ -46,41 +46,56 @@ struct Window {
   double radius_px = 0;
 };
 
-// Model value and its gradient. Ramps are per window radius, so that all parameters are of one
+// The model at given parameters. Ramps are per window radius, so that all parameters are of one
 // size.
-double Evaluate(const Vector& p, double radius, double x, double y, Vector* gradient) {
-  const double dx = x - p[kCx], dy = y - p[kCy];
-  const double scale = 1.0 / (std::sqrt(2.0) * std::exp(p[kLogBlur]));
-  const double c1 = std::cos(p[kTurn1]), s1 = std::sin(p[kTurn1]);
-  const double c2 = std::cos(p[kTurn2]), s2 = std::sin(p[kTurn2]);
-  const double d1 = c1 * dx + s1 * dy, d2 = c2 * dx + s2 * dy;
-  const double e1 = std::erf(d1 * scale), e2 = std::erf(d2 * scale);
-  const double ux = dx / radius, uy = dy / radius;
-  const double gain = p[kContrast] + p[kGainX] * ux + p[kGainY] * uy;
-  if (gradient != nullptr) {
-    const double slope = 2.0 / std::sqrt(std::numbers::pi) * scale;
-    const double g1 = slope * std::exp(-d1 * d1 * scale * scale) * e2 * gain;
-    const double g2 = slope * std::exp(-d2 * d2 * scale * scale) * e1 * gain;
-    Vector& g = *gradient;
-    g[kCx] = -(p[kRampX] + p[kGainX] * e1 * e2) / radius - c1 * g1 - c2 * g2;
-    g[kCy] = -(p[kRampY] + p[kGainY] * e1 * e2) / radius - s1 * g1 - s2 * g2;
-    g[kTurn1] = g1 * (c1 * dy - s1 * dx);
-    g[kTurn2] = g2 * (c2 * dy - s2 * dx);
-    g[kLogBlur] = -(d1 * g1 + d2 * g2);
-    g[kMean] = 1;
-    g[kRampX] = ux;
-    g[kRampY] = uy;
-    g[kContrast] = e1 * e2;
-    g[kGainX] = ux * e1 * e2;
-    g[kGainY] = uy * e1 * e2;
+class CornerModel {
+ public:
+  CornerModel(const Vector& p, double radius)
+      : p_(p),
+        radius_(radius),
+        scale_(1.0 / (std::sqrt(2.0) * std::exp(p[kLogBlur]))),
+        c1_(std::cos(p[kTurn1])),
+        s1_(std::sin(p[kTurn1])),
+        c2_(std::cos(p[kTurn2])),
+        s2_(std::sin(p[kTurn2])) {}
+
+  // The value at a pixel and, unless null, its gradient.
+  double At(double x, double y, Vector* gradient) const {
+    const double dx = x - p_[kCx], dy = y - p_[kCy];
+    const double d1 = c1_ * dx + s1_ * dy, d2 = c2_ * dx + s2_ * dy;
+    const double e1 = std::erf(d1 * scale_), e2 = std::erf(d2 * scale_);
+    const double ux = dx / radius_, uy = dy / radius_;
+    const double gain = p_[kContrast] + p_[kGainX] * ux + p_[kGainY] * uy;
+    if (gradient != nullptr) {
+      const double slope = 2.0 / std::sqrt(std::numbers::pi) * scale_;
+      const double g1 = slope * std::exp(-d1 * d1 * scale_ * scale_) * e2 * gain;
+      const double g2 = slope * std::exp(-d2 * d2 * scale_ * scale_) * e1 * gain;
+      Vector& g = *gradient;
+      g[kCx] = -(p_[kRampX] + p_[kGainX] * e1 * e2) / radius_ - c1_ * g1 - c2_ * g2;
+      g[kCy] = -(p_[kRampY] + p_[kGainY] * e1 * e2) / radius_ - s1_ * g1 - s2_ * g2;
+      g[kTurn1] = g1 * (c1_ * dy - s1_ * dx);
+      g[kTurn2] = g2 * (c2_ * dy - s2_ * dx);
+      g[kLogBlur] = -(d1 * g1 + d2 * g2);
+      g[kMean] = 1;
+      g[kRampX] = ux;
+      g[kRampY] = uy;
+      g[kContrast] = e1 * e2;
+      g[kGainX] = ux * e1 * e2;
+      g[kGainY] = uy * e1 * e2;
+    }
+    return p_[kMean] + p_[kRampX] * ux + p_[kRampY] * uy + gain * e1 * e2;
   }
-  return p[kMean] + p[kRampX] * ux + p[kRampY] * uy + gain * e1 * e2;
-}
+
+ private:
+  const Vector& p_;
+  double radius_, scale_, c1_, s1_, c2_, s2_;
+};
 
 double SumOfSquares(const Window& window, const Vector& p) {
+  const CornerModel model(p, window.radius_px);
   double sum = 0;
   for (const Pixel& pixel : window.pixels) {
-    const double r = Evaluate(p, window.radius_px, pixel.x, pixel.y, nullptr) - pixel.value;
+    const double r = model.At(pixel.x, pixel.y, nullptr) - pixel.value;
     sum += pixel.weight * r * r;
   }
   return sum;
@@ -90,9 +105,10 @@ double SumOfSquares(const Window& window, const Vector& p) {
 void Normal(const Window& window, const Vector& p, int active, Matrix* jtj, Vector* jtr) {
   jtj->setZero();
   jtr->setZero();
+  const CornerModel model(p, window.radius_px);
   Vector g;
   for (const Pixel& pixel : window.pixels) {
-    const double r = Evaluate(p, window.radius_px, pixel.x, pixel.y, &g) - pixel.value;
+    const double r = model.At(pixel.x, pixel.y, &g) - pixel.value;
     jtj->selfadjointView<Eigen::Lower>().rankUpdate(g, pixel.weight);
     *jtr += pixel.weight * r * g;
   }
@@ -169,13 +185,13 @@ bool Minimize(const Window& window, int active, Vector* p) {
 
 // Mean residuals of eight sectors round the centre; what hides a part of a corner stands out.
 double WorstSector(const Window& window, const Vector& p) {
+  const CornerModel model(p, window.radius_px);
   std::array<double, 8> sum{}, count{};
   for (const Pixel& pixel : window.pixels) {
     const double angle = std::atan2(pixel.y - p[kCy], pixel.x - p[kCx]);
     const int sector =
         std::clamp(static_cast<int>((angle + std::numbers::pi) / (2 * std::numbers::pi) * 8), 0, 7);
-    sum[sector] +=
-        pixel.weight * (pixel.value - Evaluate(p, window.radius_px, pixel.x, pixel.y, nullptr));
+    sum[sector] += pixel.weight * (pixel.value - model.At(pixel.x, pixel.y, nullptr));
     count[sector] += pixel.weight;
   }
   double worst = 0;
