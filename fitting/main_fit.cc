@@ -38,8 +38,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, FitStageO
   Stage stage(capture.work() / "fit", {"fit", kFitVersion}, *set, common, inputs);
   if (stage.UpToDate()) return stage.UpToDateResult();
   RequireMemoryForStage("fit", capture, common.threads);
-  return Summarise(stage, *options,
-                   RunFitStage(views_manifest, *options, common.threads, &stage));
+  return Summarise(stage, *options, RunFitStage(views_manifest, *options, common.threads, &stage));
 }
 
 }  // namespace

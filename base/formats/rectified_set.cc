@@ -8,8 +8,8 @@
 #include "base/errors/errors.h"
 #include "base/formats/rectified_rows.h"
 #include "base/model/constants.h"
-#include "base/stages/stages.h"
 #include "base/photos/photo_name.h"
+#include "base/stages/stages.h"
 
 namespace glint {
 namespace {

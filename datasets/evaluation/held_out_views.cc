@@ -101,9 +101,7 @@ HoldoutFigures FiguresOf(const FittedMaps& fit, const std::optional<StatedDeviat
   return figures;
 }
 
-bool HasRectifiedViews(const fs::path& set) {
-  return fs::exists(ViewsManifest(set / "glint"));
-}
+bool HasRectifiedViews(const fs::path& set) { return fs::exists(ViewsManifest(set / "glint")); }
 
 // One set's runs.
 class SetRuns {

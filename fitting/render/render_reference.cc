@@ -31,7 +31,8 @@ Tensor LobeFactor(const Tensor& normal, const Tensor& half, const Tensor& n_dot_
   return ratio * ratio * (0.25 * kInversePi) / masking;
 }
 
-// Of the sample's lobes (base/reflectance/convention.h), with the specular map's F0 and with a coat's.
+// Of the sample's lobes (base/reflectance/convention.h), with the specular map's F0 and with a
+// coat's.
 struct SpecularFactors {
   Tensor mapped, coat;
 };

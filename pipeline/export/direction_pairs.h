@@ -24,8 +24,8 @@ DirectionPair MakePair(const std::array<double, 3>& light, const std::array<doub
 // masking (Heitz, JCGT 2014) of α = roughness², and Schlick's (1 − VoH)⁵.
 double SmithSpecular(const DirectionPair& pair, double roughness);
 double SchlickWeight(double cosine);
-// The first of a mix of lobes (base/reflectance/convention.h), each with its own roughness: of those
-// that have the specular map's F0; and what a coat reflects, with its Fresnel term.
+// The first of a mix of lobes (base/reflectance/convention.h), each with its own roughness: of
+// those that have the specular map's F0; and what a coat reflects, with its Fresnel term.
 double SmithSpecular(const DirectionPair& pair, double roughness, const SpecularLobes& lobes);
 double SmithCoat(const DirectionPair& pair, double roughness, const SpecularLobes& lobes,
                  double schlick_weight);

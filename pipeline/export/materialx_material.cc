@@ -26,8 +26,8 @@ std::string Picture(const std::string& name, const std::string& type, const std:
   return Node("image", name, type, Input("file", "filename", Value(file) + space));
 }
 
-// The specular lobe `name` of the roughness map times `scale`, at most 1, with the F0 `f0`: a picture
-// or a value; α is the roughness's square.
+// The specular lobe `name` of the roughness map times `scale`, at most 1, with the F0 `f0`: a
+// picture or a value; α is the roughness's square.
 std::string Glossy(const std::string& name, double scale, const std::string& f0) {
   std::string nodes;
   std::string roughness = "roughness", of = name == "glossy" ? "" : "_" + name;
@@ -45,8 +45,7 @@ std::string Glossy(const std::string& name, double scale, const std::string& f0)
       Node("combine2", "alpha_both" + of, "vector2",
            Input("in1", "float", From("alpha" + of)) + Input("in2", "float", From("alpha" + of)));
   return nodes + Node("generalized_schlick_bsdf", name, "BSDF",
-                      Input("color0", "color3", f0) +
-                          Input("color90", "color3", Value("1, 1, 1")) +
+                      Input("color0", "color3", f0) + Input("color90", "color3", Value("1, 1, 1")) +
                           Input("exponent", "float", Value("5")) +
                           Input("roughness", "vector2", From("alpha_both" + of)) +
                           Input("normal", "vector3", From("bent")) +

@@ -36,10 +36,9 @@ inline void ShadeTexel(const TexelSvbrdf<double>& texel, const TexelGeometry<dou
     row[kRoughness] = by.by_roughness;
     const double lit = lobe.lobes[0].free.n_dot_l > kDotClamp ? slopes.by_n_dot_l : 0.0;
     for (int i = 0; i < 3; ++i) {
-      row[kNormalX + i] =
-          lit * geometry.light[i] +
-          by.by_n_dot_l * geometry.light[i] + by.by_n_dot_v * geometry.camera[i] +
-          by.by_n_dot_h * geometry.half[i] + 2.0 * by.by_n_dot_n * texel.normal[i];
+      row[kNormalX + i] = lit * geometry.light[i] + by.by_n_dot_l * geometry.light[i] +
+                          by.by_n_dot_v * geometry.camera[i] + by.by_n_dot_h * geometry.half[i] +
+                          2.0 * by.by_n_dot_n * texel.normal[i];
     }
   }
 }
