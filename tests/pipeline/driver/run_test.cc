@@ -216,7 +216,7 @@ TEST_F(RunTest, AwkwardFileNamesAreFine) {
 TEST_F(RunTest, GlintListsAndSuggestsVerbs) {
   const Outcome help = Glint({"--help"});
   EXPECT_EQ(help.code, 0);
-  EXPECT_THAT(help.out, HasSubstr("  run       run every stage that is out of date\n"));
+  EXPECT_THAT(help.out, HasSubstr("  run        run every stage that is out of date\n"));
   const Outcome typo = Glint({"ran"});
   EXPECT_EQ(typo.code, 2);
   EXPECT_THAT(typo.err, HasSubstr("unknown verb 'ran'; did you mean: glint run"));
