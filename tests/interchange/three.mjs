@@ -18,8 +18,17 @@ const kPage = `<script type="importmap">{"imports": {"three": "/three/build/thre
   import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
   Object.assign(window, { THREE, GLTFLoader });</script>`;
 
+// The sample's specular lobes by its convention's text: share, factor on roughness, F0 (null: the map's).
+function lobesOf(convention) {
+  const found = /narrow_lobe=([\d.e-]+)x([\d.e-]+)(?:@([\d.e-]+))?/.exec(convention);
+  if (!found) return [{ share: 1, scale: 1, f0: null }];
+  const [share, ratio, f0] = found.slice(1).map((text) => (text === undefined ? null : Number(text)));
+  const wide = ratio ** -share;
+  return [{ share: 1 - share, scale: wide, f0: null }, { share, scale: wide * ratio, f0 }];
+}
+
 // In the page. Returns the mean log-L1.
-async function compare({ glb, maps, size, whole, unchanged }) {
+async function compare({ glb, maps, size, whole, lobes, unchanged }) {
   const { THREE, GLTFLoader } = window;
   const [width, height] = size, distance = 3 * width;
   const light = [0.8 * width, 0.4 * width, distance];
@@ -69,15 +78,22 @@ async function compare({ glb, maps, size, whole, unchanged }) {
       const to = [light[0] - x, light[1] - y, light[2]], squared = to[0] ** 2 + to[1] ** 2 + to[2] ** 2;
       const l = unit(to), v = [0, 0, 1], h = unit([l[0], l[1], l[2] + 1]);
       const nl = dot(n, l), nv = dot(n, v), nh = dot(n, h), vh = dot(v, h);
-      const alpha = Math.max(roughness.data[i] / 255, 0.03) ** 2;
-      const lobe = (alpha / (nh * nh * (alpha * alpha - 1) + 1)) ** 2 / Math.PI;
-      const masking = (nl * (1 - alpha / 2) + alpha / 2) * (nv * (1 - alpha / 2) + alpha / 2);
+      const mirrored = lobes.map(({ share, scale }) => {
+        const alpha = Math.min(Math.max(roughness.data[i] / 255, 0.03) * scale, 1) ** 2;
+        const lobe = (alpha / (nh * nh * (alpha * alpha - 1) + 1)) ** 2 / Math.PI;
+        const masking = (nl * (1 - alpha / 2) + alpha / 2) * (nv * (1 - alpha / 2) + alpha / 2);
+        return share * lobe / (4 * masking);
+      });
+      const rim = 2 ** (vh * (-5.55473 * vh - 6.98316));
       for (let c = 0; c < 3; ++c) {
         const f0 = linear(specular.data[i + c] / 255);
         const albedo = linear(diffuse.data[i + c] / 255) * (whole ? 1 : 1 - f0);
-        const fresnel = f0 + (1 - f0) * 2 ** (vh * (-5.55473 * vh - 6.98316));
-        const ours = Math.PI * distance * distance / squared * nl *
-          (albedo / Math.PI + lobe * fresnel / (4 * masking));
+        let brdf = albedo / Math.PI;
+        lobes.forEach((lobe, k) => {
+          const own = lobe.f0 ?? f0;
+          brdf += mirrored[k] * (own + (1 - own) * rim);
+        });
+        const ours = Math.PI * distance * distance / squared * nl * brdf;
         sum += Math.abs(Math.log(theirs[j + c] + 0.01) - Math.log(ours + 0.01));
       }
     }
@@ -106,7 +122,7 @@ for (const folder of process.argv.slice(2)) {
   const error = (unchanged) => page.evaluate(compare, {
     glb: `/export/${glb}`, maps: ['diffuse', 'specular', 'roughness', 'normal_gl'].map(file),
     size: data.size_mm.map((mm) => mm / 1000), whole: data.convention.includes('diffuse=one '),
-    unchanged,
+    lobes: lobesOf(data.convention), unchanged,
   });
   const [byFormulas, shown] = [await error(false), await error(true)];
   const fine = byFormulas <= stated + kQuantisation;
