@@ -25,6 +25,7 @@ await page.getByRole('button', { name: 'Create capture' }).click();
 await page.waitForSelector('.drop, .notice.error');
 verdict(fs.readdirSync(folder).every((name) => name !== 'etc') && !fs.existsSync(path.join(work, '../etc/passwd.d')), `a name with slashes stays in the folder (${fs.readdirSync(folder).filter((n) => !n.startsWith('.')).join(', ') || 'refused'})`);
 await page.goto(`${studio.home}/#/new`);
+await page.waitForFunction(() => document.querySelector('#name')?.value);
 await page.getByLabel('Name').fill('wood');
 await page.getByRole('button', { name: 'Create capture' }).click();
 await page.waitForSelector('.drop');
