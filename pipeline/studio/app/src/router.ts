@@ -41,6 +41,7 @@ export function useRoute(): Route {
   useEffect(() => {
     const changed = () => setHash(location.hash);
     addEventListener('hashchange', changed);
+    changed();  // it may have changed before this was listening
     return () => removeEventListener('hashchange', changed);
   }, []);
   return routeOf(hash);
