@@ -74,6 +74,7 @@ std::vector<SpecularLobes> SearchLobes(double coat_f0, const Predict& predict) {
     return a.errors.sum() < b.errors.sum();
   });
   std::vector<SpecularLobes> lobes;
+  lobes.reserve(found.size());
   for (const LobeChoice& choice : found) lobes.push_back(choice.lobes);
   return lobes;
 }
