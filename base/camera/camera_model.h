@@ -49,6 +49,7 @@ struct CameraModelInfo {
   // Focal lengths (one or two), the principal point, the lens's terms.
   std::array<CameraParameter, kMostCameraParameters> parameters;
   Calibrated calibrated = Calibrated::kNo;
+  bool equidistant = false;  // distorts a ray's angle from the axis, not its tangent
 };
 
 namespace camera_parameter {
@@ -80,12 +81,18 @@ inline constexpr auto kCameraModels = [] {
       {CameraModel::kOpenCvFisheye,
        "OPENCV_FISHEYE",
        {fx, fy, cx, cy, k1, k2, k3, k4},
-       Calibrated::kOnDemand},
+       Calibrated::kOnDemand,
+       true},
       {CameraModel::kSimpleRadialFisheye,
        "SIMPLE_RADIAL_FISHEYE",
        {f, cx, cy, k},
-       Calibrated::kOnDemand},
-      {CameraModel::kRadialFisheye, "RADIAL_FISHEYE", {f, cx, cy, k1, k2}, Calibrated::kOnDemand},
+       Calibrated::kOnDemand,
+       true},
+      {CameraModel::kRadialFisheye,
+       "RADIAL_FISHEYE",
+       {f, cx, cy, k1, k2},
+       Calibrated::kOnDemand,
+       true},
   });
 }();
 

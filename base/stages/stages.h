@@ -35,8 +35,8 @@ enum class Gives { kCalibration, kViews, kMaps, kFiles };
 struct StageKind {
   std::string_view name;
   std::string_view summary;  // one line, for lists of commands
-  Gives gives = Gives::kFiles;
   StageCost cost;
+  Gives gives = Gives::kFiles;
   bool by_parts = false;  // whether several jobs can share it: --part K/N, then --join N
 };
 

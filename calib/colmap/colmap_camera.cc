@@ -192,7 +192,7 @@ ConvertedCamera ConvertCamera(const std::filesystem::path& file, const ColmapCam
   if (const auto own = CameraModelFromName(kModels[camera.model].name)) {
     converted.camera = {*own, static_cast<int>(camera.width_px), static_cast<int>(camera.height_px),
                         camera.parameters};
-    if (kModels[camera.model].name.ends_with("FISHEYE")) GridRays(file, camera);
+    if (InfoOf(*own).equidistant) GridRays(file, camera);  // which refuses rays beyond kWidestRay
     return converted;
   }
   const std::vector<Ray> rays = GridRays(file, camera);

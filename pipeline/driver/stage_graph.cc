@@ -5,6 +5,7 @@
 #include "base/errors/errors.h"
 #include "base/photos/photo_name.h"
 #include "base/stages/stages.h"
+#include "fitting/latent/fit.h"
 
 namespace glint {
 namespace {
@@ -114,9 +115,11 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
     if (method == "start") steps.back().cost = "start";
     // Nothing comes after it that finds what is finer, or that converges.
     if (method == "latent") {
-      steps.back().arguments.insert(
-          steps.back().arguments.end(),
-          {"--finest-size", "1048576", "--iterations", "300", "--fine-iterations", "80"});
+      const FitOptions whole = FitOptions::Latent();
+      steps.back().arguments.insert(steps.back().arguments.end(),
+                                    {"--finest-size", std::to_string(whole.finest_size),
+                                     "--iterations", std::to_string(whole.coarse_iterations),
+                                     "--fine-iterations", std::to_string(whole.fine_iterations)});
     }
   }
   AddSelection(choices, &steps.back());
