@@ -7,7 +7,7 @@
 
 #include "base/errors/errors.h"
 #include "base/formats/rectified_rows.h"
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
 #include "base/photos/photo_name.h"
 #include "base/stages/stages.h"
 

@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/view_correction.h"
 #include "base/reflectance/brdf.h"
 
 namespace glint {

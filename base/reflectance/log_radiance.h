@@ -1,7 +1,7 @@
 // Radiances are compared by their logarithms.
 #pragma once
 
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
 
 namespace glint {
 

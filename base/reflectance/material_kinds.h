@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "base/model/constants.h"
+#include "base/model/substances.h"
 
 namespace glint {
 

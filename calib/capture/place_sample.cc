@@ -7,7 +7,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "base/model/constants.h"
+#include "base/model/registration.h"
 #include "base/parallel/parallel.h"
 #include "calib/capture/pose_source.h"
 

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/registration.h"
+#include "base/model/solver.h"
 #include "calib/registration/place_fit.h"
 #include "calib/registration/window_heights.h"
 #include "calib/registration/window_textures.h"

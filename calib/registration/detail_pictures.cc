@@ -5,7 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
+#include "base/model/solver.h"
 
 namespace glint {
 namespace {

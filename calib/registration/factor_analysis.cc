@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/model/constants.h"
+#include "base/model/registration.h"
+#include "base/model/solver.h"
 
 namespace glint {
 

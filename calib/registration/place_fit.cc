@@ -5,7 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/model/constants.h"
+#include "base/model/registration.h"
+#include "base/model/solver.h"
 #include "calib/registration/robust_fit.h"
 
 namespace glint {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/model/constants.h"
+#include "base/model/registration.h"
 #include "calib/registration/robust_fit.h"
 
 namespace glint {

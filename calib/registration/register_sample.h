@@ -15,7 +15,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/registration.h"
 #include "calib/registration/sample_place.h"
 
 namespace glint {

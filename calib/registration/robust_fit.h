@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
 #include "base/statistics/median.h"
 
 namespace glint {

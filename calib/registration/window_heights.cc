@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/model/constants.h"
+#include "base/model/registration.h"
+#include "base/model/solver.h"
 #include "base/parallel/parallel.h"
 #include "calib/registration/factor_analysis.h"
 #include "calib/registration/window_textures.h"

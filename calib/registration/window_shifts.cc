@@ -4,7 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "base/model/constants.h"
+#include "base/model/registration.h"
+#include "base/model/solver.h"
 #include "base/parallel/parallel.h"
 
 namespace glint {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "base/model/constants.h"
+#include "base/model/registration.h"
 
 namespace glint {
 std::vector<cv::Rect> WindowsOf(const DetailPictures& pictures, const cv::Size& size, int width,

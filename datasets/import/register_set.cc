@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/model/constants.h"
+#include "base/model/registration.h"
 #include "base/parallel/parallel.h"
 #include "datasets/import/read_image.h"
 #include "rectify/views/rectify_photo.h"

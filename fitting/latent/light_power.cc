@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "base/model/constants.h"
+#include "base/model/estimate.h"
 #include "base/resampling/resampling.h"
 #include "fitting/encoding/encoding.h"
 #include "fitting/latent/fit_loss.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/cpu/instruction_set.h"
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
 #include "base/reflectance/log_radiance.h"
 #include "base/reflectance/texel_at.h"
 #include "fitting/refine/estimate_sample.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
 
 namespace glint {
 void TexelCovariance::operator+=(const TexelCovariance& other) {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/view_correction.h"
 #include "fitting/photographs/photographs.h"
 #include "fitting/refine/refine.h"
 #include "fitting/view_correction/view_correction.h"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <tuple>
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
 #include "fitting/refine/gather.h"
 #include "fitting/refine/refine_worker.h"
 #include "fitting/texel/texel_parameters.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
 #include "base/reflectance/texel_at.h"
 
 namespace glint {

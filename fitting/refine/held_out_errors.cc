@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
 
 namespace glint {
 namespace {

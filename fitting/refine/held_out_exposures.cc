@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
+#include "base/model/uncalibrated_light.h"
 #include "base/parallel/parallel.h"
 #include "base/reflectance/brdf.h"
 #include "base/reflectance/log_radiance.h"

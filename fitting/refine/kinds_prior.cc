@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
+#include "base/model/substances.h"
 
 namespace glint {
 namespace {

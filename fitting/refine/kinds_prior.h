@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/substances.h"
 #include "base/reflectance/material_kinds.h"
 
 namespace glint {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/model/constants.h"
+#include "base/model/estimate.h"
 
 namespace glint {
 namespace {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
+#include "base/model/solver.h"
 #include "base/reflectance/log_radiance.h"
 #include "base/resampling/resampling.h"
 #include "fitting/texel/texel_batch.h"

@@ -23,7 +23,10 @@
 #include <string>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/estimate.h"
+#include "base/model/photographs.h"
+#include "base/model/solver.h"
+#include "base/model/substances.h"
 #include "base/reflectance/convention.h"
 #include "base/reflectance/environment_lighting.h"
 #include "base/reflectance/svbrdf_deviations.h"

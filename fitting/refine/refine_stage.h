@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
+#include "base/model/substances.h"
+#include "base/model/uncalibrated_light.h"
 #include "base/programs/stage.h"
 #include "fitting/refine/correct_views.h"
 #include "fitting/refine/refine.h"

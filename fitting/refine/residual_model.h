@@ -11,7 +11,7 @@
 
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
 #include "fitting/refine/refine.h"
 
 namespace glint {

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
+#include "base/model/substances.h"
 #include "base/parallel/parallel.h"
 #include "base/reflectance/brdf.h"
 #include "base/reflectance/log_radiance.h"

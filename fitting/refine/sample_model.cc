@@ -10,7 +10,9 @@
 #include <set>
 #include <utility>
 
-#include "base/model/constants.h"
+#include "base/model/estimate.h"
+#include "base/model/initial_maps.h"
+#include "base/model/substances.h"
 #include "base/parallel/parallel.h"
 #include "fitting/refine/neighbours.h"
 #include "fitting/refine/sample_blocks.h"

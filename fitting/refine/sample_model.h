@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/substances.h"
 #include "fitting/refine/confidence.h"
 #include "fitting/refine/held_out_errors.h"
 #include "fitting/refine/refine.h"

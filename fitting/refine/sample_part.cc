@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "base/model/constants.h"
+#include "base/model/substances.h"
 #include "base/parallel/parallel.h"
 #include "base/reflectance/log_radiance.h"
 #include "fitting/refine/gather.h"

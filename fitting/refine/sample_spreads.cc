@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/estimate.h"
 #include "base/reflectance/material_kinds.h"
 #include "fitting/refine/lobe_search.h"
 #include "fitting/refine/neighbours.h"

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include "base/model/constants.h"
+#include "base/model/estimate.h"
 
 namespace glint {
 namespace {

@@ -6,7 +6,8 @@
 #include <limits>
 
 #include "base/cpu/vector_clones.h"
-#include "base/model/constants.h"
+#include "base/model/solver.h"
+#include "base/model/substances.h"
 #include "fitting/texel/texel_parameters.h"
 #include "fitting/view_correction/bounded_step.h"
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/substances.h"
 #include "base/reflectance/svbrdf_maps.h"
 #include "fitting/refine/kinds_prior.h"
 #include "fitting/texel/texel_prior.h"

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
+#include "base/model/uncalibrated_light.h"
 
 namespace glint {
 namespace {

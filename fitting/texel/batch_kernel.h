@@ -11,7 +11,7 @@
 #pragma once
 
 #include "base/cpu/instruction_set.h"
-#include "base/model/constants.h"
+#include "base/model/solver.h"
 #include "fitting/texel/texel_batch.h"
 
 namespace glint::kernel {

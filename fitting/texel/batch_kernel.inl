@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
 #include "base/reflectance/brdf_core.h"
 #include "base/reflectance/log_radiance.h"
 #include "fitting/texel/batch_kernel.h"

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
 #include "base/reflectance/log_radiance.h"
 #include "fitting/texel/texel_albedos.h"
 #include "fitting/texel/texel_parameters.h"

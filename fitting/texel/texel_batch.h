@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
 #include "base/reflectance/lobe_mix.h"
 #include "base/reflectance/view.h"
 #include "fitting/texel/texel_albedos.h"

@@ -9,7 +9,7 @@
 // Constants alone: the vector kernels include this (base/cpu/vectors.inl).
 #pragma once
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
 
 namespace glint {
 

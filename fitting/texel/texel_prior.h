@@ -10,7 +10,7 @@
 
 #include <array>
 
-#include "base/model/constants.h"
+#include "base/model/initial_maps.h"
 #include "fitting/texel/texel_parameters.h"
 
 namespace glint {

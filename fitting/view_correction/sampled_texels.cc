@@ -11,7 +11,9 @@
 #include <optional>
 #include <span>
 
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
+#include "base/model/solver.h"
+#include "base/model/view_correction.h"
 #include "base/parallel/parallel.h"
 #include "base/reflectance/log_radiance.h"
 #include "base/reflectance/texel_at.h"

@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
 
 namespace glint {
 

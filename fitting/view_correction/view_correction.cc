@@ -7,7 +7,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "base/model/constants.h"
+#include "base/model/solver.h"
+#include "base/model/view_correction.h"
 #include "base/parallel/parallel.h"
 #include "fitting/view_correction/bounded_step.h"
 #include "fitting/view_correction/sampled_texels.h"

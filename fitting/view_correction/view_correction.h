@@ -21,7 +21,9 @@
 #include <string>
 #include <vector>
 
-#include "base/model/constants.h"
+#include "base/model/photographs.h"
+#include "base/model/solver.h"
+#include "base/model/view_correction.h"
 #include "base/reflectance/environment_lighting.h"
 #include "base/reflectance/svbrdf_maps.h"
 #include "base/reflectance/systematic_deviations.h"

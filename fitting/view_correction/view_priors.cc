@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/model/constants.h"
+#include "base/model/view_correction.h"
 
 namespace glint {
 namespace {

@@ -5,7 +5,14 @@
 #include <cstdlib>
 #include <span>
 
-#include "base/model/constants.h"
+#include "base/model/estimate.h"
+#include "base/model/initial_maps.h"
+#include "base/model/photographs.h"
+#include "base/model/registration.h"
+#include "base/model/solver.h"
+#include "base/model/substances.h"
+#include "base/model/uncalibrated_light.h"
+#include "base/model/view_correction.h"
 
 namespace glint::test {
 namespace {

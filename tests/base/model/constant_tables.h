@@ -1,4 +1,4 @@
-// The tables of docs/model.md, in Markdown, from base/model/constants.h.
+// The tables of docs/model.md, in Markdown, from the headers of base/model.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // Refinement as a solver: what it finds, leaves alone and refuses.
 #include "fitting/refine/refine.h"
-#include "base/model/constants.h"
+#include "base/model/substances.h"
 #include "fitting/refine/substances.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 #include "fitting/refine/substances.h"
-#include "base/model/constants.h"
+#include "base/model/substances.h"
 
 #include <gtest/gtest.h>
 

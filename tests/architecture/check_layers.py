@@ -55,7 +55,7 @@ def findings(root):
                 continue
             here = place_of(path)
             if here not in height:
-                yield f"{path}: {'/'.join(here)} is not in the table of tests/layers/check_layers.py"
+                yield f"{path}: {'/'.join(here)} is not in the table of tests/architecture/check_layers.py"
                 continue
             for number, line in enumerate(source.read_text(encoding="utf-8").splitlines(), 1):
                 found = INCLUDE.match(line)
