@@ -1,7 +1,8 @@
-// One row of the tables of docs/model.md: numbers of the statistical model that can change a map, as
-// they are compiled in, with their unit and where they come from. The other headers of this folder
-// have the numbers, by subject, and beside them their rows, which name the constants themselves;
-// tests/base/model compares the tables, and GLINT_UPDATE=1 ctest -R model_page writes them anew.
+// One row of the tables of docs/model.md: numbers of the statistical model that can change a map,
+// as they are compiled in, with their unit and where they come from. The other headers of this
+// folder have the numbers, by subject, and beside them their rows, which name the constants
+// themselves; tests/base/model compares the tables, and GLINT_UPDATE=1 ctest -R model_page writes
+// them anew.
 //
 // Defaults of options are these constants. Not here: the reflectance model (docs/conventions.md),
 // what makes the initial maps, and sizes of memory and work that change no value.
