@@ -19,7 +19,7 @@ inline constexpr int kBlockSide_texel = 4;
 // is scaled first and then alone. The initial maps were fitted to the photographs that are held
 // out, so that their errors would be estimated too small.
 inline constexpr std::array<int, 6> kLeastSdOctaves = {-2, -4, -2, -3, 0, -2};
-inline constexpr std::array<int, 6> kMostSdOctaves = {2, 2, 1, 1, 4, 1};
+inline constexpr std::array<int, 6> kMostSdOctaves = {2, 2, 2, 1, 4, 1};
 inline constexpr double kInitialisationOctaves = 1;
 inline constexpr double kImprobable = 3;
 inline constexpr size_t kLeastViewsForTwoLobes = 5;
@@ -54,7 +54,7 @@ inline constexpr ModelConstant kEstimateRows[] = {
         "albedo, initial maps' errors, neighbours)",
         "specular albedo's reaches further: it is scaled with roughness's first, then alone"),
     Row("kMostSdOctaves", {kMostSdOctaves}, "log₂", "largest factors",
-        "normals × 4 let tiles' joints bend the tiles"),
+        "normals × 2 leave a foam's pores too flat, × 8 are no better"),
     Row("kInitialisationOctaves", {kInitialisationOctaves}, "log₂",
         "prior standard deviation of the factor on the initial maps' errors",
         "1, 1.5 and 2 compared"),

@@ -232,8 +232,9 @@ int Main() {
     const SampleEstimate estimate = EstimateSample(scene.problem, scene.start, options, 1);
     fmt::print("the sample's estimate, whatever the maps' size: {:.2f} s\n", Now() - began);
     began = Now();
-    RowRefiner refiner(estimate, options, kSize, 1, {});
-    refiner.Refine(scene.problem, scene.start, 0, 0);
+    RowRefiner refiner(estimate, options, scene.problem, {0, kSize}, {}, 1, {});
+    refiner.Take(scene.problem, scene.start, 0, 0);
+    for (int step = 0; step < refiner.steps(); ++step) refiner.Do(step);
     const double seconds = Now() - began;
     const RefineSummary summary = Summarise(estimate, refiner.sums(), kSize);
     const Side refine{static_cast<double>(scene.start.texels()) / seconds, summary.final_cost};

@@ -114,9 +114,11 @@ RefineResult Refine(const RefineProblem& problem, const SvbrdfMaps& start,
   if (!wrong.empty()) throw std::invalid_argument("refine: " + wrong);
   CheckProblem(problem, start);
   const SampleEstimate estimate = EstimateFrom(problem, start, options, std::max(threads, 1));
-  RowRefiner refiner(estimate, options, start.height, threads, progress);
-  RowRefiner::Rows rows = refiner.Refine(problem, start, 0, 0);
-  return {std::move(rows.maps), std::move(rows.confidence),
+  RowRefiner refiner(estimate, options, problem, {0, start.height}, {}, threads, progress);
+  std::optional<RowRefiner::Rows> rows;
+  refiner.Take(problem, start, 0, 0);
+  for (int step = 0; step < refiner.steps(); ++step) rows = refiner.Do(step);
+  return {std::move(rows->maps), std::move(rows->confidence),
           Summarise(estimate, refiner.sums(), start.width)};
 }
 

@@ -1,21 +1,23 @@
-// Refinement by rows of the sample, so that a large one is never whole in memory: texels are solved
-// as if all of them were there, and rows may be cut anywhere. The loop over texels, in which a
-// version for another processor would take rows at a time, is PartRefiner's in the .cc file.
+// Refinement by rows of the sample, so that a large one is never whole in memory. It goes over the
+// sample in steps: texels by themselves, passes in which they look at their neighbours and at the
+// relief of all of them, and the conclusion. Rows may be cut anywhere in each.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <vector>
 
+#include "base/files/scratch_rows.h"
 #include "fitting/refine/estimate_sample.h"
+#include "fitting/refine/part_refiner.h"
 #include "fitting/refine/refine.h"
+#include "fitting/relief/relief_slopes.h"
 
 namespace glint {
-
-// Rows above and below that rows of `problem` depend on: each half pass looks at neighbours, and so
-// does the prior in the end; where photographs are blurred, each pass looks as far as the blur
-// reaches, there and back (point_spread.h).
-int DependentRows(const RefineProblem& problem, const RefineOptions& options);
 
 // What is added up over texels, a list a row, so that sums over any parts of the sample are to the
 // bit those over the whole: the cost at the start; how many texels converged, came from another
@@ -30,27 +32,57 @@ class RowRefiner {
  public:
   using ReportProgress = std::function<void(std::int64_t done, std::int64_t total)>;
 
-  // `estimate` and `options` must outlive this. `rows`: how many it will be given in all.
-  RowRefiner(const SampleEstimate& estimate, const RefineOptions& options, int rows, int threads,
-             ReportProgress progress);
+  // Of the rows `asked` of a sample with the problem's plane; its views need no pixels. Between
+  // steps texels lie in `scratch` (ScratchRows). `estimate` and `options` must outlive this.
+  RowRefiner(const SampleEstimate& estimate, const RefineOptions& options,
+             const RefineProblem& sample, RowSpan asked, const std::filesystem::path& scratch,
+             int threads, ReportProgress progress);
 
-  struct Rows {
-    SvbrdfMaps maps;
-    std::vector<float> confidence;  // kConfidencePlanes planes of H·W
-  };
-  // Of `problem`, views as they are said to be, all but its first `above` and last `below` rows:
-  // DependentRows() where the sample goes on, 0 at its border. From the top, each row once.
-  Rows Refine(const RefineProblem& problem, const SvbrdfMaps& start, int above, int below);
+  int steps() const { return options_.neighbour_passes + 2; }
+  // To be done in a step: the rows asked for, and those that later steps depend on.
+  RowSpan RowsOf(int step) const { return rows_[static_cast<size_t>(step)]; }
+  // How many above and below must be given where the sample goes on.
+  int RowsAbout(int step) const;
 
-  // Of the rows so far.
+  // Takes rows of the sample in hand, with views as they are said to be; `above` and `below` of
+  // them are there for the others: RowsAbout(step), or as many as there are. They must stay where
+  // they are until others are taken.
+  void Take(const RefineProblem& problem, const SvbrdfMaps& start, int above, int below);
+  // A step of the rows in hand: steps in turn, and in each RowsOf(step) from the top, each row
+  // once. The last step gives its rows, others nothing.
+  using Rows = PartRefiner::Result;
+  std::optional<Rows> Do(int step);
+
+  // Of the rows concluded so far.
   const RowSums& sums() const { return sums_; }
 
  private:
+  struct Part {  // rows in hand
+    RefineProblem said;
+    int first_row, height, above, below;
+    std::optional<PartRefiner> refiner;
+    RowSpan rows() const { return {first_row, first_row + height}; }
+  };
+  void Write(int step, const SolvedTexels& solved);
+  SolvedTexels Read(int step) const;
+  void FindRelief(int step);
+  std::array<std::vector<float>, 2> Relief() const;
+  Rows Conclude();
+
   const SampleEstimate& estimate_;
   const RefineOptions& options_;
-  const int rows_, threads_;
+  const RefineProblem sample_;
+  const int threads_;
   const ReportProgress progress_;
-  std::int64_t done_ = 0;
+  const bool has_relief_;
+  std::vector<RowSpan> rows_;  // by step
+  // Texels as an even or an odd step leaves them: maps and flags, rows of the whole sample.
+  std::array<ScratchRows, 2> solved_;
+  ScratchRows relief_;               // slopes, as the pass at hand takes them
+  int relief_of_ = 0;                // that pass; 0: none yet
+  std::vector<double> start_costs_;  // by row of the first step
+  std::unique_ptr<Part> part_;
+  std::int64_t done_ = 0, visits_ = 0;
   RowSums sums_;
 };
 

@@ -1,9 +1,11 @@
 #include "fitting/refine/refine_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "base/errors/errors.h"
 #include "base/files/hash.h"
@@ -315,6 +317,41 @@ void AddHeldOut(const Sample& sample, const fs::path& maps_file, const Vec3d& li
   }
 }
 
+// Rows of a sample, some at a time. Those that were taken last are kept: of a sample that fits in
+// memory nothing is read twice.
+class RowReader {
+ public:
+  RowReader(SampleSource* source, int rows_at_once, int threads)
+      : source_(*source), rows_at_once_(rows_at_once), threads_(threads) {}
+
+  // Has the refiner take, and then visit(), all rows of its step.
+  template <class Visit>
+  void ForEach(int step, RowRefiner* refiner, const Visit& visit) {
+    const RowSpan rows = refiner->RowsOf(step);
+    for (int first = rows.first; first < rows.last; first += rows_at_once_) {
+      Take({first, std::min(first + rows_at_once_, rows.last)}, refiner->RowsAbout(step), refiner);
+      visit();
+    }
+  }
+
+ private:
+  void Take(RowSpan rows, int about, RowRefiner* refiner) {
+    const int above = std::min(rows.first, about);
+    const int below = std::min(source_.plane().height - rows.last, about);
+    const std::array<int, 4> these = {rows.first, rows.last, above, below};
+    if (part_ && these == taken_) return;
+    part_.reset();
+    part_.emplace(source_.Rows(rows.first - above, above + rows.size() + below, threads_));
+    refiner->Take(part_->Problem(), part_->start, above, below);
+    taken_ = these;
+  }
+
+  SampleSource& source_;
+  const int rows_at_once_, threads_;
+  std::optional<SampleSource::Part> part_;
+  std::array<int, 4> taken_{};
+};
+
 // Writes the part's rows of svbrdf.exr and confidence.exr, albedos as under a light of `power`.
 RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
                    const RefineOptions& options, double power, int rows_at_once, int threads,
@@ -322,30 +359,33 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
   const SamplePlane& plane = source->plane();
   const ReflectanceConvention convention =
       ConventionOf(estimate, power, source->Views().convention);
-  const int end = part.last(plane.height), rows = end - part.first(plane.height);
+  const RowSpan rows{part.first(plane.height), part.last(plane.height)};
   std::unique_ptr<Progress> bar;
   const RowRefiner::ReportProgress progress = [&](std::int64_t done, std::int64_t total) {
     if (!bar) bar = std::make_unique<Progress>("refine", total, Progress::Part{kViewsShare, 1});
     bar->Set(done);
   };
-  RowRefiner refiner(estimate, options, rows, threads, progress);
-  SvbrdfWriter maps(stage->Output(kMapsFile), plane.width, rows, convention);
-  ExrWriter confidence(stage->Output(kConfidenceFile), plane.width, rows, ConfidenceChannels(),
-                       {{"convention", ToString(convention)}}, ExrPrecision::kHalf);
-  const int reached = DependentRows(ProblemOf(source->Views()), options);
-  for (int first = part.first(plane.height); first < end; first += rows_at_once) {
-    const int last = std::min(first + rows_at_once, end);
-    const int above = std::min(first, reached), below = std::min(plane.height - last, reached);
-    const SampleSource::Part some =
-        source->Rows(first - above, above + last - first + below, threads);
-    RowRefiner::Rows refined = refiner.Refine(some.Problem(), some.start, above, below);
+  SvbrdfWriter maps(stage->Output(kMapsFile), plane.width, rows.size(), convention);
+  ExrWriter confidence(stage->Output(kConfidenceFile), plane.width, rows.size(),
+                       ConfidenceChannels(), {{"convention", ToString(convention)}},
+                       ExrPrecision::kHalf);
+  const fs::path scratch = rows_at_once < plane.height ? stage->StagedOutput("") : fs::path();
+  RowRefiner refiner(estimate, options, ProblemOf(source->Views()), rows, scratch, threads,
+                     progress);
+  RowReader reader(source, rows_at_once, threads);
+  const auto write = [&](RowRefiner::Rows refined) {
     SetUnderPower(power, convention.diffuse_weight, &refined.maps, &refined.confidence);
-    Image deviations(plane.width, last - first, {});
+    Image deviations(plane.width, refined.maps.height, {});
     deviations.channels = ConfidenceChannels();
     deviations.samples = std::move(refined.confidence);
     // Compressing takes as long as reading the photographs.
     ForEachPiece(2, threads, [&](int file) {
       file == 0 ? maps.Write(refined.maps) : confidence.Write(deviations);
+    });
+  };
+  for (int step = 0; step < refiner.steps(); ++step) {
+    reader.ForEach(step, &refiner, [&] {
+      if (auto refined = refiner.Do(step)) write(std::move(*refined));
     });
   }
   maps.Close();

@@ -212,7 +212,8 @@ TexelPrior SampleModel::StatedPriorOf(size_t texel) const {
   return Scaled(Knowledge(texel), measured_residuals_);
 }
 
-TexelPrior SampleModel::PriorOf(size_t texel, const SvbrdfMaps& maps) const {
+TexelPrior SampleModel::PriorOf(size_t texel, const SvbrdfMaps& maps,
+                                const ReliefSlope* relief) const {
   std::array<Neighbour, 4> neighbours;
   size_t count = 0;
   ForEachNeighbour(texel, maps.width, maps.height, [&](size_t neighbour) {
@@ -220,6 +221,13 @@ TexelPrior SampleModel::PriorOf(size_t texel, const SvbrdfMaps& maps) const {
   });
   TexelGaussian gaussian = Knowledge(texel);
   MultiplyNeighbours(texel, std::span(neighbours).first(count), &gaussian);
+  if (relief != nullptr) {
+    double normal[2];
+    NormalOfSlopes((*relief)[0], (*relief)[1], normal);
+    const double variance =
+        constants::kReliefSd * constants::kReliefSd / NormalPrecision(texel) + facet_variance_;
+    for (int i = 0; i < 2; ++i) gaussian.Set(kSlopeX + i, normal[i], 1 / variance);
+  }
   return Scaled(gaussian, residuals_);
 }
 
@@ -487,23 +495,30 @@ void SampleModel::Estimate(const SamplePart* other, const SampleSolver& solver, 
   learns_normals_ = has_sample_priors_;
   Fit(&sampling);
   learns_normals_ = false;
-  if (all_views_.size() < constants::kLeastValidatedViews) return;
-  FreezeViews(constants::kDiffuseSd, sampling);
-  ChooseSubstances(other, sampling);
+  if (!has_sample_priors_) return;
   const Sampling blocks = SampleBlocks(constants::kSampledTexels, solver, threads);
+  if (all_views_.size() >= constants::kLeastValidatedViews) Validate(other, blocks, &sampling);
+  MeasureFacets(blocks);
+}
+
+// What is chosen by cross-validation, and all else once more by that.
+void SampleModel::Validate(const SamplePart* other, const Sampling& blocks, Sampling* sampling) {
+  FreezeViews(constants::kDiffuseSd, *sampling);
+  ChooseSubstances(other, *sampling, blocks);
   ChooseLobesAndSpreads(blocks);
   if (deviations_.any()) {
     // Views are found while nothing is known of how far diffuse albedo departs from its substances:
     // its departures are alike in neighbouring texels, and views would be moved to make them even.
     const double chosen = std::exchange(means_.diffuse_spread, kUnknownSpread);
     finds_views_ = true;
-    Fit(&sampling);
-    FreezeViews(chosen, sampling);
+    Fit(sampling);
+    FreezeViews(chosen, *sampling);
   }
-  Fit(&sampling);
+  Fit(sampling);
 }
 
-void SampleModel::ChooseSubstances(const SamplePart* other, const Sampling& sampling) {
+void SampleModel::ChooseSubstances(const SamplePart* other, const Sampling& sampling,
+                                   const Sampling& blocks) {
   if (other == nullptr) return;
   SampleModel model(*this);
   model.part_ = other;
@@ -513,8 +528,6 @@ void SampleModel::ChooseSubstances(const SamplePart* other, const Sampling& samp
     model.Solve({.views = all_views_, .near_minimum = true}, &solved);
     model.UpdateSubstances(solved);
   }
-  const Sampling blocks =
-      SampleBlocks(constants::kSampledTexels, *sampling.solver, sampling.threads);
   const double energy = model.CrossValidate(blocks).EnergyAgainst(CrossValidate(blocks));
   if (energy < -constants::kGlossLogOdds) *this = model;
 }

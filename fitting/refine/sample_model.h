@@ -40,6 +40,8 @@ struct SampleTask {
   TexelValues from{};
 };
 
+using ReliefSlope = std::array<float, 2>;  // n_x/n_z, n_y/n_z
+
 // How sampled texels are to be solved.
 struct SampleRequest {
   std::span<const int> views;  // those to take
@@ -85,10 +87,14 @@ class SampleModel {
   const ResidualModel& measured_residuals() const { return measured_residuals_; }
   const ViewDeviations& deviations() const { return deviations_; }
   const SpecularLobes& lobes() const { return lobes_; }
+  bool knows_normals() const { return has_sample_priors_; }  // whether anything is expected of them
+  double facet_variance() const { return facet_variance_; }
 
-  // The texel's prior: without what its neighbours know, and with their values in `maps`.
+  // The texel's prior: without what its neighbours know, and with their values in `maps`. Of a
+  // relief (may be null) of all that was found by texels themselves, its slope there says all that
+  // is known of the normal.
   TexelPrior PriorOf(size_t texel) const;
-  TexelPrior PriorOf(size_t texel, const SvbrdfMaps& maps) const;
+  TexelPrior PriorOf(size_t texel, const SvbrdfMaps& maps, const ReliefSlope* relief) const;
   // The first of them, to be added to residuals that are judged as they were measured.
   TexelPrior StatedPriorOf(size_t texel) const;
 
@@ -129,15 +135,17 @@ class SampleModel {
   void UpdateResiduals(const Sampling& sampling);
   void UpdateNormalSpreads(const Sampling& sampling);
   double NormalPrecision(size_t texel) const;
+  void MeasureFacets(Sampling blocks);
   void UpdateDeviations(const Sampling& sampling);
   // Takes other substances where photographs held out are predicted far better by them.
-  void ChooseSubstances(const SamplePart* other, const Sampling& sampling);
+  void ChooseSubstances(const SamplePart* other, const Sampling& sampling, const Sampling& blocks);
   // What is believed of the part's substances, from texels solved.
   void BeginSubstances(const Sampling& sampling);
   // From now on views stay as they are, the residuals' variance is measured rather than believed,
   // and diffuse albedo is shared too, from what was found of it without.
   void FreezeViews(double diffuse_spread, const Sampling& sampling);
   SampleWorth WorthOf(const Sampling& sampling) const;
+  void Validate(const SamplePart* other, const Sampling& blocks, Sampling* sampling);
   // By cross-validation, sample_spreads.cc.
   // visit(model, sampling, fitted, held_out) with what is found of the sampled texels without the
   // views held out, one fold after the other.
@@ -179,6 +187,8 @@ class SampleModel {
   std::vector<double> normal_spreads_;
   // By how much neighbours' departures from their substances differ, in spreads of departures.
   double neighbour_spread_ = constants::kNeighbourSd;
+  // Of either slope of facets smaller than a texel, which are no height field's.
+  double facet_variance_ = 0;
   bool learns_normals_ = false;  // whether Fit estimates them …
   bool finds_views_ = true;      // … and views' deviations
   ViewDeviations deviations_;

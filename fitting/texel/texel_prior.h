@@ -45,6 +45,12 @@ class TexelGaussian {
   // Multiplies with a Gaussian of one value. precision ≥ 0.
   void Multiply(int parameter, double mean, double precision);
 
+  // In place of what was known of the value.
+  void Set(int parameter, double mean, double precision) {
+    mean_[static_cast<size_t>(parameter)] = mean;
+    precision_[static_cast<size_t>(parameter)] = precision;
+  }
+
   double mean(int i) const { return mean_[i]; }
   double precision(int i) const { return precision_[i]; }
 

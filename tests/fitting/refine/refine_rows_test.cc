@@ -60,18 +60,22 @@ class RefineRowsTest : public ::testing::Test {
 
   RefineResult ByRows(int at_once, int threads) const {
     const SampleEstimate estimate = EstimateSample(Problem(), start_, options_, threads);
-    RowRefiner refiner(estimate, options_, kSize, threads, {});
+    RowRefiner refiner(estimate, options_, Problem(), {0, kSize}, {}, threads, {});
     RefineResult result;
     result.maps = SvbrdfMaps(kSize, kSize);
     result.confidence.resize(kConfidencePlanes * start_.texels());
-    const int reached = DependentRows(Problem(), options_);
-    for (int first = 0; first < kSize; first += at_once) {
-      const int rows = std::min(at_once, kSize - first);
-      const int above = std::min(first, reached), below = std::min(kSize - first - rows, reached);
-      const Part part(scene_, Problem(), start_, first - above, above + rows + below);
-      const RowRefiner::Rows refined = refiner.Refine(part.problem, part.start, above, below);
-      Put(refined.maps.planes, first, rows, &result.maps.planes);
-      Put(refined.confidence, first, rows, &result.confidence);
+    for (int step = 0; step < refiner.steps(); ++step) {
+      const int about = refiner.RowsAbout(step);
+      for (int first = 0; first < kSize; first += at_once) {
+        const int rows = std::min(at_once, kSize - first);
+        const int above = std::min(first, about), below = std::min(kSize - first - rows, about);
+        const Part part(scene_, Problem(), start_, first - above, above + rows + below);
+        refiner.Take(part.problem, part.start, above, below);
+        const auto refined = refiner.Do(step);
+        if (!refined) continue;
+        Put(refined->maps.planes, first, rows, &result.maps.planes);
+        Put(refined->confidence, first, rows, &result.confidence);
+      }
     }
     result.summary = Summarise(estimate, refiner.sums(), kSize);
     return result;

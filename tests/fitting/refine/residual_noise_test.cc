@@ -82,11 +82,12 @@ TEST(ResidualNoise, DeviationsHoldWhereChannelsShareTheirErrors) {
   EXPECT_LT(ratio, 1.2);
 }
 
-// Where photographs are few, neighbours would say most.
+// Where photographs are few, neighbours would say most. Deviations leave out what they and the
+// relief say, so that errors are smaller.
 TEST(ResidualNoise, DeviationsHoldWhereNeighboursShareTheirErrors) {
   for (const int views : {2, 3, 4}) {
     const double ratio = ErrorOverSigma(Refined(Alike::kNeighbours, views));
-    EXPECT_GT(ratio, 0.5) << views;
+    EXPECT_GT(ratio, 0.35) << views;
     EXPECT_LT(ratio, 1.2) << views;
   }
 }
