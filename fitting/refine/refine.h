@@ -127,6 +127,7 @@ struct RefineSummary {
   double initialisation_error = 0;  // in expected ones of one photograph
   double neighbour_spread = 0;      // between neighbours' departures from those means, in spreads
   double normal_spread = 0;         // of n_x, n_y about 0, and between neighbours; likewise
+  double facet_spread = 0;          // of slopes of facets that are no height field's
   // By how much the light is stronger than stated, if dielectrics reflect what they do (of use
   // where its power was not calibrated): specular albedos over what they should be.
   double light_power = 1;

@@ -5,12 +5,14 @@
 #include <utility>
 
 #include "base/resampling/resampling.h"
+#include "fitting/texel/texel_parameters.h"
 
 namespace glint {
 namespace {
 
 // Relief is found of so many rows at once.
-constexpr int kReliefRows = 4 * kMostTileSide;
+constexpr int kReliefRows = 2 * kMostTileSide;
+constexpr int kSlopeRows = 64;
 // Of a texel between steps: its maps, and PartRefiner's flags.
 constexpr int kSolvedPlanes = kSvbrdfPlanes + 1;
 
@@ -18,20 +20,17 @@ RowSpan Widened(RowSpan rows, int about, int height) {
   return {std::max(rows.first - about, 0), std::min(rows.last + about, height)};
 }
 
-// None where nothing is expected of normals.
 bool HasRelief(const SampleEstimate& estimate, const SamplePlane& plane) {
-  return estimate.model.knows_normals() && SampleHasRelief(plane.width, plane.height);
+  return estimate.model.finds_relief() && SampleHasRelief(plane.width, plane.height);
 }
 
-// Slopes n_x/n_z and n_y/n_z, of planes that begin with those of maps.
-std::array<std::vector<float>, 2> SlopesOf(std::span<const float> planes) {
-  const size_t texels = planes.size() / kSolvedPlanes;
+// Slopes n_x/n_z and n_y/n_z of the texels.
+std::array<std::vector<float>, 2> SlopesOf(const SvbrdfMaps& maps) {
   std::array<std::vector<float>, 2> slopes;
-  for (size_t axis = 0; axis < 2; ++axis) {
-    slopes[axis].resize(texels);
-    for (size_t t = 0; t < texels; ++t) {
-      slopes[axis][t] = planes[(kNormalX + axis) * texels + t] / planes[kNormalZ * texels + t];
-    }
+  for (size_t t = 0; t < maps.texels(); ++t) {
+    const TexelValues values = ReadTexel(maps, t);
+    slopes[0].push_back(static_cast<float>(values[kSlopeX]));
+    slopes[1].push_back(static_cast<float>(values[kSlopeY]));
   }
   return slopes;
 }
@@ -80,9 +79,9 @@ RowRefiner::RowRefiner(const SampleEstimate& estimate, const RefineOptions& opti
     rows_[static_cast<size_t>(step) - 1] =
         by_relief ? RowsOfRelief(sample.plane.height, about) : about;
   }
-  // Half a pass takes as long as all of another step.
   for (int step = 0; step < steps(); ++step) {
-    visits_ += static_cast<std::int64_t>(RowsOf(step).size()) * sample.plane.width;
+    const int times = step == 0 || step == steps() - 1 ? 1 : 2;  // a pass goes over halves
+    visits_ += static_cast<std::int64_t>(times) * RowsOf(step).size() * sample.plane.width;
   }
 }
 
@@ -113,11 +112,10 @@ void RowRefiner::Write(int step, const SolvedTexels& solved) {
       CutRows(planes, solved.maps.width, part_->height, part_->above, rows));
 }
 
-// The rows in hand as the step left them.
-SolvedTexels RowRefiner::Read(int step) const {
-  std::vector<float> planes =
-      solved_[static_cast<size_t>(step % 2)].Read(part_->first_row, part_->height);
-  SolvedTexels solved{SvbrdfMaps(sample_.plane.width, part_->height), {}};
+// As the step left them.
+SolvedTexels RowRefiner::Read(int step, RowSpan rows) const {
+  std::vector<float> planes = solved_[static_cast<size_t>(step % 2)].Read(rows.first, rows.size());
+  SolvedTexels solved{SvbrdfMaps(sample_.plane.width, rows.size()), {}};
   const auto flags =
       planes.begin() + static_cast<std::ptrdiff_t>(kSvbrdfPlanes * solved.maps.texels());
   solved.origin.assign(flags, planes.end());
@@ -126,15 +124,24 @@ SolvedTexels RowRefiner::Read(int step) const {
   return solved;
 }
 
+// Of all rows' texels as the step left them, a few rows in memory.
+std::array<std::vector<float>, 2> RowRefiner::SlopesAfter(int step, RowSpan rows) const {
+  std::array<std::vector<float>, 2> slopes;
+  for (int first = rows.first; first < rows.last; first += kSlopeRows) {
+    const auto some = SlopesOf(Read(step, {first, std::min(first + kSlopeRows, rows.last)}).maps);
+    for (size_t i = 0; i < 2; ++i)
+      slopes[i].insert(slopes[i].end(), some[i].begin(), some[i].end());
+  }
+  return slopes;
+}
+
 // Of the texels as the step before left them.
 void RowRefiner::FindRelief(int step) {
   const SamplePlane& plane = sample_.plane;
   const RowSpan all = Widened(RowsOf(step), RowsAbout(step), plane.height);
   for (int first = all.first; first < all.last; first += kReliefRows) {
     const RowSpan some{first, std::min(first + kReliefRows, all.last)};
-    const RowSpan rows = RowsOfRelief(plane.height, some);
-    const auto slopes =
-        SlopesOf(solved_[static_cast<size_t>((step - 1) % 2)].Read(rows.first, rows.size()));
+    const auto slopes = SlopesAfter(step - 1, RowsOfRelief(plane.height, some));
     auto relief = SlopesOfRelief({slopes[0], slopes[1]}, plane.width, plane.height,
                                  estimate_.model.facet_variance(), some, threads_);
     relief[0].insert(relief[0].end(), relief[1].begin(), relief[1].end());
@@ -161,14 +168,14 @@ std::optional<RowRefiner::Rows> RowRefiner::Do(int step) {
     return std::nullopt;
   }
   if (has_relief_ && relief_of_ != step) FindRelief(step);
-  Write(step, part.Pass(Read(step - 1), Relief()));
+  Write(step, part.Pass(Read(step - 1, part_->rows()), Relief()));
   return std::nullopt;
 }
 
 RowRefiner::Rows RowRefiner::Conclude() {
   PartRefiner& part = *part_->refiner;
   const int above = part_->above, last = part_->height - part_->below;
-  Rows concluded = part.Conclude(Read(steps() - 2), Relief());
+  Rows concluded = part.Conclude(Read(steps() - 2, part_->rows()), Relief());
   for (int row = above; row < last; ++row) {
     std::vector<double>& sums = sums_.emplace_back(part.SumsOf(row));
     const int started = part_->first_row + row - RowsOf(0).first;

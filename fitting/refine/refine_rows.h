@@ -64,7 +64,8 @@ class RowRefiner {
     RowSpan rows() const { return {first_row, first_row + height}; }
   };
   void Write(int step, const SolvedTexels& solved);
-  SolvedTexels Read(int step) const;
+  SolvedTexels Read(int step, RowSpan rows) const;
+  std::array<std::vector<float>, 2> SlopesAfter(int step, RowSpan rows) const;
   void FindRelief(int step);
   std::array<std::vector<float>, 2> Relief() const;
   Rows Conclude();

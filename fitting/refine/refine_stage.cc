@@ -76,6 +76,7 @@ Json EstimateJson(const RefineSummary& summary) {
           {"initialisation_error", summary.initialisation_error},
           {"neighbour_spread", summary.neighbour_spread},
           {"normal_spread", KnownOrNull(summary.normal_spread)},
+          {"facet_spread", summary.facet_spread},
           {"exposure_spread", summary.exposure_spread},
           {"light_spread", summary.light_spread}};
 }
@@ -197,8 +198,9 @@ SampleEstimate EstimateFrom(const RefineOptions& options, int threads, SampleSou
 int RowsAtOnce(const SamplePlane& plane, size_t views) {
   constexpr double kMostBytes = 1e9, kShareOfLimit = 0.25;
   // Of a texel: a photograph's colour and mask, what is shifted of it or read ahead, its colour
-  // without blur; maps at the start and in the end, confidence, substances.
-  const double texel_bytes = 32.0 * static_cast<double>(views) + 200;
+  // without blur; maps at the start, between steps (twice, copied as they are read and written) and
+  // in the end, relief, confidence, substances.
+  const double texel_bytes = 32.0 * static_cast<double>(views) + 400;
   const double bytes =
       std::min(kMostBytes, kShareOfLimit * static_cast<double>(MemoryLimit_bytes()));
   return static_cast<int>(std::clamp(bytes / texel_bytes / plane.width, 16.0, 1e9));

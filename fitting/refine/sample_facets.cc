@@ -9,7 +9,8 @@
 namespace glint {
 namespace {
 
-// Once round four texels by the trapezoidal rule, y up: 0 on a height field. Errors of a texel's
+// Once round four texels by the trapezoidal rule, y up: 0 on a height field (nearly, where waves
+// are as short as two texels). Errors of a texel's
 // slopes, independent and of variance v, give it the variance 2v.
 double AroundFour(const TexelValues& top_left, const TexelValues& top_right,
                   const TexelValues& bottom_left, const TexelValues& bottom_right) {
@@ -22,8 +23,10 @@ double AroundFour(const TexelValues& top_left, const TexelValues& top_right,
 
 }  // namespace
 
-// The curl of texels solved by themselves, beyond what their errors explain.
+// The curl of texels solved by themselves, beyond what their errors explain. Of a large sample one
+// texel in several is at hand, whose slopes have curl whatever they are: 0.
 void SampleModel::MeasureFacets(Sampling blocks) {
+  if (part_->problem().plane.whole.stride > 1) return;
   Solve({.views = all_views_}, &blocks);
   std::map<size_t, const SampledTexel*> seen;
   double errors = 0;
@@ -41,10 +44,10 @@ void SampleModel::MeasureFacets(Sampling blocks) {
   for (const auto& [texel, solved] : seen) {
     if ((texel + 1) % width == 0) continue;
     const auto right = seen.find(texel + 1), below = seen.find(texel + width),
-               across = seen.find(texel + width + 1);
-    if (right == seen.end() || below == seen.end() || across == seen.end()) continue;
+               diagonal = seen.find(texel + width + 1);
+    if (right == seen.end() || below == seen.end() || diagonal == seen.end()) continue;
     const double around = AroundFour(solved->values, right->second->values, below->second->values,
-                                     across->second->values);
+                                     diagonal->second->values);
     squares += around * around;
     loops += 1;
   }

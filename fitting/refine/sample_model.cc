@@ -495,9 +495,9 @@ void SampleModel::Estimate(const SamplePart* other, const SampleSolver& solver, 
   learns_normals_ = has_sample_priors_;
   Fit(&sampling);
   learns_normals_ = false;
-  if (!has_sample_priors_) return;
+  if (all_views_.size() < constants::kLeastValidatedViews) return;
   const Sampling blocks = SampleBlocks(constants::kSampledTexels, solver, threads);
-  if (all_views_.size() >= constants::kLeastValidatedViews) Validate(other, blocks, &sampling);
+  Validate(other, blocks, &sampling);
   MeasureFacets(blocks);
 }
 
@@ -572,6 +572,7 @@ void SampleModel::Describe(RefineSummary* summary) const {
   summary->diffuse_spread = means_.diffuse_spread;
   summary->initialisation_error = initial_errors_.diffuse / InitialisationErrors().diffuse;
   summary->neighbour_spread = neighbour_spread_;
+  summary->facet_spread = std::sqrt(facet_variance_);
   summary->light_power = has_sample_priors_ ? means_.LightPower() : 1;
   summary->exposure_spread = deviations_.spreads()[kLogExposure];
   summary->light_spread = deviations_.spreads()[kLightAcrossX];

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/model/estimate.h"
 #include "base/model/substances.h"
 #include "fitting/refine/confidence.h"
 #include "fitting/refine/held_out_errors.h"
@@ -87,7 +88,9 @@ class SampleModel {
   const ResidualModel& measured_residuals() const { return measured_residuals_; }
   const ViewDeviations& deviations() const { return deviations_; }
   const SpecularLobes& lobes() const { return lobes_; }
-  bool knows_normals() const { return has_sample_priors_; }  // whether anything is expected of them
+  // Whether photographs tell both slopes of a texel, so that what has no curl can be told from
+  // errors.
+  bool finds_relief() const { return all_views_.size() >= constants::kLeastValidatedViews; }
   double facet_variance() const { return facet_variance_; }
 
   // The texel's prior: without what its neighbours know, and with their values in `maps`. Of a

@@ -76,6 +76,8 @@ class Spectrum {
     curl_.assign(rings, 0);
     rest_.assign(rings, 0);
     ForEach([&](const Frequency& at, double& p, double& q) {
+      // Along the axes there is one slope alone, which has no curl: ribs and joints, which people
+      // lay straight, count as relief. Without them, their rings lose what they have.
       const double curl = at.x * q - at.y * p, rest = at.x * p + at.y * q;
       curl_[at.ring] += curl * curl;
       rest_[at.ring] += rest * rest;

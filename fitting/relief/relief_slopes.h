@@ -20,7 +20,7 @@
 namespace glint {
 
 inline constexpr int kMostTileSide = 512;
-// Of a tile's coefficients along its longer side, in one ring: its innermost has 78.
+// Of a tile's coefficients along its longer side, in one ring: its innermost has 85.
 inline constexpr int kRingWidth = 10;
 
 // Where tiles lie along an axis of `length` texels.

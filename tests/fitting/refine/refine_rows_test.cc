@@ -4,6 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/resampling/resampling.h"
 
 #include "tests/fitting/refine/synthetic_scene.h"
 
@@ -131,6 +138,19 @@ TEST_F(RefineRowsTest, CutAnywhereBlurredPhotographsGiveTheSame) {
   }
 }
 
+TEST_F(RefineRowsTest, ProgressEndsWithAllThatWasToBeDone) {
+  for (const int passes : {0, 2}) {
+    options_.neighbour_passes = passes;
+    std::int64_t last = 0, all = -1;
+    Refine(Problem(), start_, options_, 2, [&](std::int64_t done, std::int64_t total) {
+      EXPECT_GT(done, last);
+      last = done;
+      all = total;
+    });
+    EXPECT_EQ(last, all) << passes;
+  }
+}
+
 // A few of the texels say of the sample as a whole nearly what all say.
 TEST_F(RefineRowsTest, EvenlySpacedTexelsStandForTheSample) {
   const RefineResult all = Refine(scene_.Problem(), start_, options_, 1);
@@ -143,6 +163,74 @@ TEST_F(RefineRowsTest, EvenlySpacedTexelsStandForTheSample) {
   for (size_t v = 0; v < scene_.views.size(); ++v) {
     EXPECT_NEAR(few.summary.exposures[v], all.summary.exposures[v], 0.05);
   }
+}
+
+// Taller than a tile of the relief, so that rows depend on some of the others alone.
+class TallSampleTest : public ::testing::Test {
+ protected:
+  static constexpr int kWidth = 12, kHeight = 1500;
+  TallSampleTest() : scene_(test::Photograph(Tall(), 3)) {
+    options_.estimation_rounds = 2;
+    estimate_.emplace(EstimateSample(scene_.Problem(), scene_.truth, options_, 2));
+  }
+
+  static SvbrdfMaps Tall() {
+    SvbrdfMaps maps = test::LevelSubstance(kWidth, 0.4f), tall(kWidth, kHeight);
+    for (int row = 0; row < kHeight; ++row) {
+      const float slope = 0.1f * std::sin(0.3f * static_cast<float>(row));
+      for (int p = 0; p < kSvbrdfPlanes; ++p) {
+        for (int x = 0; x < kWidth; ++x) tall.at(p, row, x) = maps.at(p, row % kWidth, x);
+      }
+      for (int x = 0; x < kWidth; ++x) {
+        tall.at(kNormalY, row, x) = slope;
+        tall.at(kNormalZ, row, x) = std::sqrt(1 - slope * slope);
+      }
+    }
+    return tall;
+  }
+
+  // `first`: of the rows solved by themselves.
+  std::vector<float> MapsOf(RowSpan asked, int* first) const {
+    RowRefiner refiner(*estimate_, options_, scene_.Problem(), asked, {}, 2, {});
+    *first = refiner.RowsOf(0).first;
+    std::optional<RowRefiner::Rows> rows;
+    for (int step = 0; step < refiner.steps(); ++step) {
+      const RowSpan of = refiner.RowsOf(step);
+      const int about = refiner.RowsAbout(step);
+      const int above = std::min(of.first, about), below = std::min(kHeight - of.last, about);
+      const RowSpan read{of.first - above, of.last + below};
+      RefineProblem part = scene_.Problem();
+      part.plane = scene_.plane.Rows(read.first, read.size());
+      std::vector<std::vector<float>> held;
+      const auto cut = [&](std::span<const float> planes) {
+        return CutRows(planes, kWidth, kHeight, read.first, read.size());
+      };
+      held.reserve(2 * part.views.size());
+      for (RefineView& view : part.views) {
+        view.rgb = held.emplace_back(cut(view.rgb));
+        view.mask = held.emplace_back(cut(view.mask));
+      }
+      SvbrdfMaps start(kWidth, read.size());
+      start.planes = cut(scene_.truth.planes);
+      refiner.Take(part, start, above, below);
+      rows = refiner.Do(step);
+    }
+    EXPECT_EQ(refiner.sums().size(), static_cast<size_t>(asked.size()));
+    return rows->maps.planes;
+  }
+
+  test::SyntheticScene scene_;
+  RefineOptions options_;
+  std::optional<SampleEstimate> estimate_;
+};
+
+TEST_F(TallSampleTest, APartIsWhatTheWholeHasThere) {
+  int first = 0;
+  const std::vector<float> whole = MapsOf({0, kHeight}, &first);
+  const RowSpan asked{1400, 1440};
+  const std::vector<float> part = MapsOf(asked, &first);
+  EXPECT_GT(first, 0);
+  EXPECT_EQ(part, CutRows(whole, kWidth, kHeight, asked.first, asked.size()));
 }
 
 TEST(EstimationStride, IsOddAndLeavesAtMostTheSize) {

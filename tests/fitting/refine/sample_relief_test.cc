@@ -34,6 +34,17 @@ void AddWhiteNoise(float sd, test::SyntheticScene* scene) {
   }
 }
 
+// By whether all texels are at hand for the estimate, or one in three by three.
+TEST(SampleRelief, AReliefHasNoFacets) {
+  const test::SyntheticScene scene = test::Photograph(WaveMaps(), 7);
+  for (const int size : {kSide, kSide / 3}) {
+    RefineOptions options;
+    options.estimation_size = size;
+    options.second_lobe = false;
+    EXPECT_LT(Refine(scene.Problem(), scene.truth, options, 2).summary.facet_spread, 0.01) << size;
+  }
+}
+
 // Mean square of what refinement leaves wrong with normals, with as many passes.
 double NormalError(const test::SyntheticScene& scene, int passes) {
   RefineOptions options;
