@@ -1,11 +1,9 @@
 #include "fitting/refine/refine_stage.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <optional>
 
 #include "base/errors/errors.h"
 #include "base/files/hash.h"
@@ -21,6 +19,7 @@
 #include "fitting/refine/light_power.h"
 #include "fitting/refine/refine_rows.h"
 #include "fitting/refine/residual_model.h"
+#include "fitting/refine/row_reader.h"
 #include "fitting/refine/sample_source.h"
 #include "fitting/refine/substances.h"
 #include "fitting/view_correction/corrections_json.h"
@@ -319,41 +318,6 @@ void AddHeldOut(const Sample& sample, const fs::path& maps_file, const Vec3d& li
   }
 }
 
-// Rows of a sample, some at a time. Those that were taken last are kept: of a sample that fits in
-// memory nothing is read twice.
-class RowReader {
- public:
-  RowReader(SampleSource* source, int rows_at_once, int threads)
-      : source_(*source), rows_at_once_(rows_at_once), threads_(threads) {}
-
-  // Has the refiner take, and then visit(), all rows of its step.
-  template <class Visit>
-  void ForEach(int step, RowRefiner* refiner, const Visit& visit) {
-    const RowSpan rows = refiner->RowsOf(step);
-    for (int first = rows.first; first < rows.last; first += rows_at_once_) {
-      Take({first, std::min(first + rows_at_once_, rows.last)}, refiner->RowsAbout(step), refiner);
-      visit();
-    }
-  }
-
- private:
-  void Take(RowSpan rows, int about, RowRefiner* refiner) {
-    const int above = std::min(rows.first, about);
-    const int below = std::min(source_.plane().height - rows.last, about);
-    const std::array<int, 4> these = {rows.first, rows.last, above, below};
-    if (part_ && these == taken_) return;
-    part_.reset();
-    part_.emplace(source_.Rows(rows.first - above, above + rows.size() + below, threads_));
-    refiner->Take(part_->Problem(), part_->start, above, below);
-    taken_ = these;
-  }
-
-  SampleSource& source_;
-  const int rows_at_once_, threads_;
-  std::optional<SampleSource::Part> part_;
-  std::array<int, 4> taken_{};
-};
-
 // Writes the part's rows of svbrdf.exr and confidence.exr, albedos as under a light of `power`.
 RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
                    const RefineOptions& options, double power, int rows_at_once, int threads,
@@ -442,104 +406,6 @@ RowSums JoinParts(const std::vector<fs::path>& folders, const Sample& sample, St
 }
 
 }  // namespace
-
-void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
-  RefineOptions* refine = &options->refine;
-  set->AddRange("iterations", &refine->iterations, 1, 1000,
-                "maximum number of Levenberg-Marquardt steps per solve");
-  set->AddRange("starts", &refine->starts, 1, 8,
-                "solver runs per texel: one from the initial maps, the others from other initial "
-                "roughness values; with two or more, also from values that all texels share and "
-                "from other initial normals");
-  set->AddRange("neighbour-passes", &refine->neighbour_passes, 0, 16,
-                "how many times a texel tries its neighbours' solutions");
-  set->AddRange("substances", &refine->substances, 1, kMostSubstances,
-                "maximum number of substances (clusters of texels of one material); the texels of "
-                "a substance share roughness and albedos");
-  set->AddRange("estimation-rounds", &refine->estimation_rounds, 0, 100,
-                "rounds of estimating variances and substances from sampled texels; repeated once "
-                "the prior standard deviations are chosen");
-  set->AddRange(
-      "estimation-size", &refine->estimation_size, 16, 1 << 20,
-      "longer side, in texels, of the grid from which texels are drawn for the estimation; "
-      "larger maps are uniformly subsampled to this size");
-  set->Add("second-lobe", &refine->second_lobe,
-           "look for a second, narrow specular lobe of the whole sample (varnish, polish); it is "
-           "accepted only if it predicts held-out photographs clearly better, which takes at least "
-           "five photographs");
-  set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the weight of the priors; 0: none");
-  set->AddRange(
-      "point-spread", &refine->point_spread_px, 0, 100,
-      "standard deviation of the photographs' point-spread function in pixels (lens, pixel, "
-      "demosaicking and resampling together); where texels are finer than that, renderings of the "
-      "maps are blurred before they are compared with the photographs; 0: no blur");
-  set->AddRange(
-      "robust-scale", &refine->robust_scale, 1e-3, 100,
-      "log-radiance residuals larger than this are penalised linearly instead of quadratically");
-  set->AddChoice(
-      "correct-views", &options->correction.when, {"auto", "always", "never"},
-      "estimate errors in lights, registration and ambient illumination from the photographs; "
-      "auto: with five or more distinct views; a correction is applied only where it lowers the "
-      "cost by at least 2 %");
-  set->AddRange("flash-offset", &options->flash_offset, 0, 1,
-                "prior standard deviation of the flash's offset from its stated position, "
-                "relative to its distance, if the light was not calibrated; one offset is "
-                "estimated for all photographs; 0: none");
-  set->AddRange(
-      "exposure-spread", &options->exposure_spread, 0, 1,
-      "expected standard deviation (a weak prior) of individual photographs' log exposures, if the "
-      "light was not calibrated; it and the exposures are then estimated from the "
-      "photographs; 0: keep the stated exposures");
-  set->AddRange(
-      "light-spread", &options->light_spread, 0, 1,
-      "expected standard deviation (a weak prior) of each photograph's light position, "
-      "perpendicular to the light's direction, relative to its distance, if the light was "
-      "not calibrated; it and the positions are then estimated from the photographs; 0: keep "
-      "the stated positions");
-  set->AddRange(
-      "level-spread", &options->level_spread, 0, 10,
-      "prior standard deviation of the sample's mean slope, if the camera was fixed and the light "
-      "moved; lamps that are brighter on one side look like a tilted sample; 0: none");
-  set->AddRange(
-      "lamp-gradient", &options->lamp_gradient, 0, 10,
-      "prior standard deviation of the gradient of the lamps' log intensities with respect to x "
-      "and y of their directions, if the camera was fixed and the light moved; 0: none");
-  set->AddRange("residual-sigma", &options->residual_sigma, 1e-3, 10,
-                "expected standard deviation (a weak prior) of the log-radiance residuals, if the "
-                "light was not calibrated (otherwise 0.05); it is then estimated from the "
-                "photographs, and matters where there are few");
-  set->AddRange(
-      "flash-beam", &options->flash_beam, 0, 10,
-      "prior standard deviation of the slope of the flash's log intensity across its "
-      "beam (with respect to the tangent of the angle from its axis), if the light was not "
-      "calibrated; one slope is "
-      "estimated for all photographs; 0: none");
-  set->AddRange(
-      "distance-power", &options->distance_power, 0, 10,
-      "prior standard deviation of p, where the light's intensity varies as distance^p "
-      "(automatic exposure, uncertain distances), if the light was not calibrated; 0: none");
-  set->AddRange("light-power-spread", &options->light_power_spread, 0.01, 10,
-                "prior standard deviation of the logarithm of the light's power, if the light was "
-                "not calibrated; all specular albedos may be off by this common factor");
-  set->AddRange("rows-at-once", &options->rows_at_once, 0, 1 << 20,
-                "rows of texels held in memory at once; the result does not depend on it; 0: as "
-                "memory allows",
-                Invalidates::kNo);
-  set->Add("part", &options->part,
-           "K/N: refine only the K-th of N parts of the maps, from the top, as a job of its own; "
-           "its result is kept in glint/refine-KofN until --join",
-           Invalidates::kNo);
-  set->AddRange("join", &options->join, 0, kMostRowParts,
-                "join the results of this many parts, made with --part; the result is identical to "
-                "a run without parts; 0: refine",
-                Invalidates::kNo);
-  set->Add("correct-exposures", &options->correction.view.exposure,
-           "let corrections change the photographs' relative exposures too");
-  set->Add("views", &options->views,
-           "views to use, by view name or photograph name (default: those that glint-fit used)");
-  set->Add("exclude", &options->exclude, "views to hold out, by view name or photograph name");
-  set->Add("from", &options->from, "initial maps, an svbrdf.exr (default: the fit's)");
-}
 
 RefineStart ResolveRefineStart(const fs::path& work, const RefineStageOptions& options) {
   const std::string wrong = options.refine.Check();
