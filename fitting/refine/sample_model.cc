@@ -277,7 +277,9 @@ void SampleModel::Fit(Sampling* sampling) {
 
 void SampleModel::UpdateSubstances(const Sampling& sampling) {
   std::vector<SubstanceSample> samples;
-  const double variance = residuals_.scale() * residuals_.scale();
+  // With priors of weight w a texel says w(P − P·wC·P) of its mean, and wP times its departure.
+  const double weight = options_.prior;
+  const double variance = weight * residuals_.scale() * residuals_.scale();
   for (size_t i = 0; i < sampling.solved.size(); ++i) {
     const SampledTexel& solved = sampling.solved[i];
     if (solved.views == 0) continue;
@@ -293,7 +295,10 @@ void SampleModel::UpdateSubstances(const Sampling& sampling) {
     }
     samples.push_back(sample);
   }
-  UpdateMeans(samples, WorthOf(sampling), &means_);
+  SampleWorth worth = WorthOf(sampling);
+  worth.shared_by_half_vector *= weight;
+  worth.shared_by_view *= weight;
+  UpdateMeans(samples, worth, &means_);
 }
 
 // Of half the length scale over which discrepancy stays alike.
@@ -383,7 +388,8 @@ TexelCovariance SampleModel::CommonCovariance(size_t texel, const BatchInverse& 
   const auto follows = [&](int value) {
     SharedValues by;
     for (size_t p = 0; p < kShared; ++p) {
-      by[p] = variance / variances[p] * inverse.at(kSharedParameters[p], value, lane);
+      by[p] =
+          options_.prior * variance / variances[p] * inverse.at(kSharedParameters[p], value, lane);
     }
     return by;
   };

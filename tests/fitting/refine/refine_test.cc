@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "tests/fitting/refine/synthetic_scene.h"
@@ -52,6 +53,27 @@ TEST(Refine, RecoversKnownMapsFromNoiseFreePhotographs) {
   EXPECT_GT(ShareWithin(result.maps, scene.truth, kSpecularG, 1e-2), 0.85);
   EXPECT_GT(ShareWithin(result.maps, scene.truth, kRoughness, 1e-2), 0.85);
   EXPECT_LT(ShareWithin(start, scene.truth, kRoughness, 1e-2), 0.2);
+}
+
+// Substances' means are found by what texels say of them under priors of that weight. By what they
+// would say under whole ones the means run away, and residuals grow.
+TEST(Refine, PriorsOfLessWeightLeaveNoLargerResiduals) {
+  SyntheticScene scene = Photograph(QuarteredMaps(20, 32), 7, 8);
+  std::mt19937 random(31);
+  std::normal_distribution<float> normal(0.0f, 0.25f);  // log radiance that no maps explain
+  for (std::vector<float>& photograph : scene.photographs) {
+    for (size_t t = 0; t < scene.truth.texels(); ++t) {
+      const float factor = std::exp(normal(random));
+      for (size_t c = 0; c < 3; ++c) photograph[c * scene.truth.texels() + t] *= factor;
+    }
+  }
+  const SvbrdfMaps start = DisturbedMaps(scene.truth, 0.5f, 33);
+  const double whole = Refine(scene.Problem(), start, {}, 1).summary.residual_sigma;
+  for (const double weight : {0.5, 0.1}) {
+    RefineOptions options;
+    options.prior = weight;
+    EXPECT_LT(Refine(scene.Problem(), start, options, 1).summary.residual_sigma, whole) << weight;
+  }
 }
 
 // Fig. 16 of the paper: too rough with too little specular holds a single descent.
