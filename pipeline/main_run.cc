@@ -24,13 +24,13 @@ void AddOptions(glint::OptionSet* options, RunArguments* o) {
                "list the stages that would run, and why, without running them");
   options->AddRange("jobs,-j", &o->jobs, 0, 1024, "same as --threads");
   options->AddChoice(
-      "method", &o->run.choices.method, {"start", "classic", "latent", "refined"},
-      "start: maps as estimated by a network, without fitting; classic: maps "
+      "method", &o->run.choices.method, {"initial", "classic", "latent", "refined"},
+      "initial: maps as estimated by a network, without fitting; classic: maps "
       "fitted texel by texel; latent: in the auto-encoder's latent space; refined (default): "
       "latent, then per texel");
   options->Add("quick", &o->quick,
                "a first look in seconds, before you put the sample away: the same as "
-               "--method start; run again without it to fit the maps");
+               "--method initial; run again without it to fit the maps");
   options->Add("exclude", &o->run.choices.exclude,
                "photographs (file or view names) held out from fit and refine");
   options->Add("views", &o->run.choices.views, "use only these photographs in fit and refine");
@@ -49,10 +49,10 @@ glint::ProgramResult DryRun(const RunArguments& o) {
 void ApplyQuick(RunArguments* o) {
   std::string& method = o->run.choices.method;
   if (!o->quick) return;
-  if (!method.empty() && method != "start") {
+  if (!method.empty() && method != "initial") {
     throw glint::UserError("--quick: found with --method " + method + "; give one of the two");
   }
-  method = "start";
+  method = "initial";
 }
 
 int ThreadsForStages(int argc, char** argv, const glint::CommonOptions& common, int jobs) {

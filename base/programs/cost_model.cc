@@ -22,11 +22,11 @@ constexpr double kMega = 1e6;
 // fitting/view_correction).
 constexpr int kMostPaired = 40;
 
-// Stage fit with the method "start": no fitting.
-constexpr StageCost kStart = {0.6, 0, 0.3, 0, 2, 0.2, 330, 0, 146, 17, 0};
+// Stage fit with the method "initial": no fitting.
+constexpr StageCost kInitialMaps = {0.6, 0, 0.3, 0, 2, 0.2, 330, 0, 146, 17, 0};
 
 const StageCost* CostOf(const std::string& stage) {
-  if (stage == "start") return &kStart;
+  if (stage == "initial") return &kInitialMaps;
   const StageKind* kind = FindStage(stage);
   return kind == nullptr ? nullptr : &kind->cost;
 }

@@ -22,8 +22,8 @@ struct CaptureSize {
 // By capture.toml and the first photograph's header; an imported capture's by its rectified views.
 CaptureSize SizeOf(const Capture& capture);
 
-// Of a stage, or of "start": the stage fit with its method of that name, which fits nothing. 0 for
-// any other.
+// Of a stage, or of "initial": the stage fit with its method of that name, which fits nothing. 0
+// for any other.
 double PredictedSeconds(const std::string& stage, const CaptureSize& size);
 
 // The most memory that a stage's program holds at once with `threads` threads, bytes; likewise 0.

@@ -242,18 +242,18 @@ bool AppendRange(const std::string& text, std::vector<std::string>* list) {
 
 Method NamedMethod(const std::string& name, const std::vector<std::string>& fit_arguments,
                    const std::vector<std::string>& refine_arguments) {
-  static const std::vector<std::string> known{"start",   "classic", "latent",
+  static const std::vector<std::string> known{"initial", "classic", "latent",
                                               "refined", "direct",  "uncorrected"};
   if (std::find(known.begin(), known.end(), name) == known.end()) {
     throw UserError("methods: found \"" + name +
-                    "\"; use start, classic, latent, refined, direct, uncorrected");
+                    "\"; use initial, classic, latent, refined, direct, uncorrected");
   }
   const bool uncorrected = name == "uncorrected", direct = name == "direct";
   Method method;
   method.name = name;
   method.refine = name == "refined" || direct || uncorrected;
   method.capture = name == "refined" ? "latent" : name;
-  method.fit = direct ? "start" : method.refine ? "latent" : name;
+  method.fit = direct ? "initial" : method.refine ? "latent" : name;
   method.fit_arguments = fit_arguments;
   method.refine_arguments = refine_arguments;
   if (uncorrected) {

@@ -42,7 +42,7 @@ void WriteResult(const HoldoutExperiment& experiment, const HoldoutResult& resul
 
 int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
   HoldoutExperiment experiment;
-  experiment.methods = {"start", "classic", "latent", "refined"};
+  experiment.methods = {"initial", "classic", "latent", "refined"};
   std::vector<std::string> sets, programs;
   std::string pairs, fitted;
   OptionSet options;

@@ -301,7 +301,7 @@ Disturbance EverydayDisturbance() { return {5, 0.5, 5, {}}; }
 const std::vector<PaperExperiment>& PaperExperiments() {
   static const std::vector<std::string> three{"classic", "latent", "refined"};
   static const std::vector<std::string> learned{"latent", "refined"};
-  static const std::vector<std::string> with_start{"start", "latent", "refined"};
+  static const std::vector<std::string> with_initial{"initial", "latent", "refined"};
   static const std::vector<PaperExperiment> all = {
       {"table1",
        "Errors by number of views and method (table 1 of Gao et al. 2019).",
@@ -348,7 +348,7 @@ const std::vector<PaperExperiment>& PaperExperiments() {
        "Errors by initial maps (figs. 6 and 16).",
        "glint-eval start procedural:1000000000 --starts heuristic,truth --work /tmp/start",
        {1, 5},
-       with_start,
+       with_initial,
        Starts,
        {},
        {}},
@@ -356,7 +356,7 @@ const std::vector<PaperExperiment>& PaperExperiments() {
        "Errors without a view from above (fig. 17).",
        "glint-eval topview procedural:1000000000 --counts 5 --work /tmp/topview",
        {1, 5},
-       with_start,
+       with_initial,
        TopView,
        {},
        Degradation},

@@ -73,7 +73,7 @@ using Size = std::pair<int, int>;  // width, height
 
 // Of what is fitted, or of initial maps that are kept; finer detail is left to refinement.
 Size FittedSize(const SamplePlane& plane, const FitStageOptions& options, const FitOptions& fit) {
-  if (options.method == "start") {
+  if (options.method == "initial") {
     return SizeAtMost(plane.width, plane.height,
                       Estimates(options) ? options.estimator_size : kFullSize);
   }
@@ -84,7 +84,7 @@ Size FittedSize(const SamplePlane& plane, const FitStageOptions& options, const 
 // is kept than it can hold.
 Size ShownSize(const SamplePlane& plane, const FitStageOptions& options, const FitOptions& fit) {
   if (Estimates(options)) return SizeAtMost(plane.width, plane.height, options.estimator_size);
-  if (options.method == "start" || !options.start.empty()) return {plane.width, plane.height};
+  if (options.method == "initial" || !options.start.empty()) return {plane.width, plane.height};
   return LevelSizes(plane.width, plane.height, fit.coarse_size, fit.finest_size).front();
 }
 
@@ -228,10 +228,10 @@ Json Data(const FitResult& fit, const RectifiedSet& set, const FitStageOptions& 
 }  // namespace
 
 void AddFitOptions(OptionSet* set, FitStageOptions* options) {
-  set->AddChoice("method", &options->method, {"latent", "classic", "start"},
+  set->AddChoice("method", &options->method, {"latent", "classic", "initial"},
                  "latent: in the auto-encoder's latent space (a single photograph keeps the "
                  "initial maps, which explain it better, unless --iterations is given); classic: "
-                 "the maps themselves, texel by texel; start: the initial maps, unfitted");
+                 "the maps themselves, texel by texel; initial: the initial maps, unfitted");
   set->AddChoice(
       "initial-maps", &options->initial_maps, {"estimator", "rules"},
       "how the initial maps are estimated; estimator: a trained network; rules: lobes fitted "
@@ -279,8 +279,9 @@ void ResolveFitOptions(const fs::path& rectify_manifest, FitStageOptions* option
   }
   // From one photograph roughness and specular drift along ambiguities while the loss falls
   // (docs/experiments/one-photograph.md): no step is best.
-  if (IsLatent(*options) && photographs == 1 && options->iterations == 0) options->method = "start";
-  if (options->method == "start") return;  // without iterations
+  if (IsLatent(*options) && photographs == 1 && options->iterations == 0)
+    options->method = "initial";
+  if (options->method == "initial") return;  // without iterations
   FitOptions own = IsLatent(*options) ? FitOptions::Latent() : FitOptions::Classic();
   if (IsLatent(*options) && photographs > kFewPhotographs) own = FitOptions::LatentForRefinement();
   if (options->iterations == 0) options->iterations = own.coarse_iterations;
@@ -327,7 +328,7 @@ FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptio
       if (bar == nullptr) bar = std::make_unique<Progress>("fit", total);
       bar->Set(done, "log-L1 " + std::to_string(loss));
     };
-    if (options.method == "start") {
+    if (options.method == "initial") {
       result.fit = KeepStart(photographs, start, threads);
     } else if (IsLatent(options)) {
       const Autoencoder network = AsUserError(

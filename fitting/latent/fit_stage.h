@@ -14,7 +14,7 @@ namespace glint {
 inline constexpr int kFitVersion = 12;
 
 struct FitStageOptions {
-  // latent: in the learned space; classic: texel by texel; start: no fitting, the start as it is
+  // latent: in the learned space; classic: texel by texel; initial: no fitting
   std::string method = "latent";
   std::string initial_maps = "estimator";  // estimator: the trained network; rules: rules.h
   // rare or possible: what the estimator is told of dark, glossy texels (estimator_conditions.h).

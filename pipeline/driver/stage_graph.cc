@@ -112,7 +112,7 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
   const std::string& method = choices.method;
   if (!method.empty()) {
     steps.back().arguments = {"--method", method == "refined" ? "latent" : method};
-    if (method == "start") steps.back().cost = "start";
+    if (method == "initial") steps.back().cost = "initial";
     // Nothing comes after it that finds what is finer, or that converges.
     if (method == "latent") {
       const FitOptions whole = FitOptions::Latent();

@@ -13,8 +13,8 @@ namespace glint {
 
 // What a person chose for the whole run; capture.toml's tables hold everything else.
 struct RunChoices {
-  // "refined": latent fit, then refinement per texel; "latent", "classic", "start": the fit alone,
-  // with that method; "": as "refined", but the fit's method is left to capture.toml.
+  // "refined": latent fit, then refinement per texel; "latent", "classic", "initial": the fit
+  // alone, with that method; "": as "refined", but the fit's method is left to capture.toml.
   std::string method;
   std::vector<std::string> exclude;  // photographs held out from fit and refine
   std::vector<std::string> views;    // the only photographs fit and refine see; empty: all

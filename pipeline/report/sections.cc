@@ -136,7 +136,7 @@ std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
 // Maps that nothing was fitted to must not pass for the result.
 std::string FirstLookNote(const ReportInput& input) {
   if (input.Has("refine") || !input.Has("fit")) return "";
-  if (input.manifests.at("fit").data.value("method", "") != "start") return "";
+  if (input.manifests.at("fit").data.value("method", "") != "initial") return "";
   return "<p><strong>A first look:</strong> these maps are what a network estimates; they were not "
          "fitted to the photographs. <code>glint run</code> without <code>--quick</code> fits "
          "them.</p>\n";

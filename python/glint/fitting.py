@@ -133,7 +133,7 @@ def fit(photographs: Sequence[ArrayLike], camera_mm: ArrayLike, light_mm: ArrayL
         convention: reflectance convention, as of `Maps`.
         registration: "auto" brings photographs into one frame; "none" takes them as they are.
         method: "refined" (the most probable maps, with standard deviations), "latent", "classic",
-            or "start" (the estimator's maps, unfitted).
+            or "initial" (the estimator's maps, unfitted).
         folder: keep the capture here, and use it with `Capture`; None: a temporary folder.
         progress, options: as for `call`; options of `glint run` (`threads`, `seed`, `exclude`).
 

@@ -117,7 +117,7 @@ def make(base, folder, space, ending):
 
 def refined(programs, folder):
     environment = dict(os.environ, PATH=f"{programs}:{os.environ['PATH']}")
-    for stage in (["calib"], ["rectify"], ["fit", "--method", "start"], ["refine"]):
+    for stage in (["calib"], ["rectify"], ["fit", "--method", "initial"], ["refine"]):
         command = [f"{programs}/glint-{stage[0]}", str(folder), *stage[1:], "--log-level", "error"]
         subprocess.check_call(command, env=environment, stdout=subprocess.DEVNULL)
     maps = oiio.ImageBuf(str(folder / "glint/refine/svbrdf.exr"))

@@ -12,7 +12,7 @@ def synthetic(tmp_path_factory):
     folder = tmp_path_factory.mktemp("captures") / "set"
     glint.call("synth", "views", "procedural:7", folder, count=4, rule="photo", bits="float",
                resolution=64)
-    glint.run(folder, from_="fit", until="fit", method="start")
+    glint.run(folder, from_="fit", until="fit", method="initial")
     glint.run(folder, "refine")
     return folder
 

@@ -74,7 +74,7 @@ def test_a_stage_that_ran_again_is_read_again(synthetic, tmp_path):
     shutil.copytree(synthetic, folder)
     capture = glint.Capture(folder)
     before = capture.maps("fit")
-    glint.run(folder, "fit", method="start", views=["view_000"])
+    glint.run(folder, "fit", method="initial", views=["view_000"])
     assert not np.array_equal(capture.maps("fit").planes, before.planes)
 
 

@@ -73,7 +73,7 @@ def test_photographs_of_8_and_16_bits_keep_their_values(tmp_path):
         photograph = np.random.default_rng(7).integers(0, levels // 2, (32, 32, 3)).astype(dtype)
         folder = tmp_path / dtype.__name__
         glint.fit([photograph], [(0, 0, 300)], size_mm=50, encoding="linear", light_rgb=1e5,
-                  method="start", folder=folder)
+                  method="initial", folder=folder)
         radiance = glint.Capture(folder).view(0).radiance
         np.testing.assert_allclose(radiance, photograph / levels, rtol=1e-3, atol=1e-4)
 

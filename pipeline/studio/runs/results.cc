@@ -221,7 +221,7 @@ Json ResultJson(const fs::path& capture, const std::string& base) {
   const Json data = exported.value("data", Json::object());
   bool quick = false;
   try {
-    quick = ReadChoices(work / "build.ninja").method == "start";
+    quick = ReadChoices(work / "build.ninja").method == "initial";
   } catch (const Error&) {
   }
   Json result = {{"quick", quick},

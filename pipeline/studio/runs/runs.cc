@@ -54,7 +54,7 @@ std::string LastLine(const fs::path& file) {
 
 std::vector<RunStage> StagesOf(const fs::path& folder, bool quick) {
   RunChoices choices;
-  if (quick) choices.method = "start";
+  if (quick) choices.method = "initial";
   std::vector<RunStage> stages;
   for (const StageStep& step : StageSteps(ReadCapture(folder), choices)) {
     stages.push_back({step.stage, "waiting", std::nullopt});

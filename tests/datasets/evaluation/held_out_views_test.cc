@@ -104,7 +104,7 @@ class HoldoutRuns : public testing::Test {
     WriteViewSet(folder_ / "sample", {"m", MakeMaterial(77, 32, 32)}, views, common_);
     experiment_.sets = {folder_ / "sample"};
     experiment_.work = folder_ / "work";
-    experiment_.methods = {"start", "refined"};
+    experiment_.methods = {"initial", "refined"};
     experiment_.fit_arguments = {"--iterations", "20"};
     experiment_.splits = ParseSplits("1", false);
   }
@@ -168,7 +168,7 @@ TEST_F(HoldoutRuns, SizesOfASetAreKeptApart) {
   const fs::path set = folder_ / "pictures";
   WriteImportableSet(folder_ / "sample", set);
   experiment_.sets = {set};
-  experiment_.methods = {"start"};
+  experiment_.methods = {"initial"};
   const HoldoutResult whole = Run();
   experiment_.size = 16;
   const HoldoutResult small = Run();

@@ -226,7 +226,7 @@ TEST_F(ExperimentTest, EveryVerbWritesTableFiguresPlotAndPictures) {
 TEST_F(ProgramsTest, ATinyTableEndToEnd) {
   const Outcome outcome =
       Eval({"table1", "procedural:1000000101", "--counts", "2", "--methods",
-            "start,classic,latent,refined", "--size", "32", "--threads", "1",
+            "initial,classic,latent,refined", "--size", "32", "--threads", "1",
             "--fit-args=--initial-maps,rules,--iterations,5", "--work", Path("work"), "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Json means = Json::parse(outcome.out)["means"];

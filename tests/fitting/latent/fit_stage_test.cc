@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 FitStageOptions WithMetals(const std::string& metals) {
   FitStageOptions options;
-  options.method = "start";
+  options.method = "initial";
   options.metals = metals;
   return options;
 }
@@ -107,7 +107,7 @@ TEST(ResolveFitOptions, InitialMapsOfOnePhotographAreKept) {
   fitted.iterations = 8;
   ResolveFitOptions(manifest, &single);
   ResolveFitOptions(manifest, &fitted);
-  EXPECT_EQ(single.method, "start");
+  EXPECT_EQ(single.method, "initial");
   EXPECT_EQ(single.estimator_size, 1024);
   EXPECT_EQ(fitted.method, "latent");
   EXPECT_EQ(fitted.iterations, 8);

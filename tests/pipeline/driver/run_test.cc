@@ -107,8 +107,8 @@ TEST_F(RunTest, MethodsWithoutRefinementLeaveItOut) {
 TEST_F(RunTest, QuickEstimatesAndARunAfterItFits) {
   EXPECT_THAT(RunJson({"--quick"}).computed,
               ElementsAre("calib", "rectify", "fit", "export", "report"));
-  EXPECT_EQ(Json::parse(test::ReadAll(manifest("fit")))["options"]["method"], "start");
-  EXPECT_THAT(RunJson({"--method", "start"}).started, IsEmpty());
+  EXPECT_EQ(Json::parse(test::ReadAll(manifest("fit")))["options"]["method"], "initial");
+  EXPECT_THAT(RunJson({"--method", "initial"}).started, IsEmpty());
   EXPECT_THAT(RunJson().computed, ElementsAre("fit", "refine", "export", "report"));
   const Outcome both = Glint({"run", capture().string(), "--quick", "--method", "latent"});
   EXPECT_EQ(both.code, 2);

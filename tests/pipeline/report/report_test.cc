@@ -160,7 +160,7 @@ TEST_F(ReportTest, TheViewersDataIsJsonThatEndsWhereItShould) {
 
 TEST_F(ReportTest, MapsThatWereNotFittedAreCalledAFirstLook) {
   EXPECT_THAT(Make().html, Not(HasSubstr("first look")));
-  WriteFit(Maps(), "start");
+  WriteFit(Maps(), "initial");
   EXPECT_THAT(Make().html, HasSubstr("<strong>A first look:</strong>"));
 }
 
