@@ -277,7 +277,8 @@ void SampleModel::Fit(Sampling* sampling) {
 
 void SampleModel::UpdateSubstances(const Sampling& sampling) {
   std::vector<SubstanceSample> samples;
-  // With priors of weight w a texel says w(P − P·wC·P) of its mean, and wP times its departure.
+  // Under the prior weight w a texel's marginal information about its mean is w(P − P·wC·P), and
+  // the gradient is wP times its departure.
   const double weight = options_.prior;
   const double variance = weight * residuals_.scale() * residuals_.scale();
   for (size_t i = 0; i < sampling.solved.size(); ++i) {

@@ -55,8 +55,8 @@ TEST(Refine, RecoversKnownMapsFromNoiseFreePhotographs) {
   EXPECT_LT(ShareWithin(start, scene.truth, kRoughness, 1e-2), 0.2);
 }
 
-// Substances' means are found by what texels say of them under priors of that weight. By what they
-// would say under whole ones the means run away, and residuals grow.
+// The means' Newton step must use each texel's information under the same prior weight as the texel
+// was solved with; otherwise it diverges and residuals grow.
 TEST(Refine, PriorsOfLessWeightLeaveNoLargerResiduals) {
   SyntheticScene scene = Photograph(QuarteredMaps(20, 32), 7, 8);
   std::mt19937 random(31);
