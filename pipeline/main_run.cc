@@ -3,6 +3,7 @@
 
 #include "base/errors/errors.h"
 #include "base/programs/program.h"
+#include "base/stages/stages.h"
 #include "pipeline/driver/kept_options.h"
 #include "pipeline/driver/run.h"
 #include "pipeline/driver/status.h"
@@ -72,8 +73,8 @@ int main(int argc, char** argv) {
   return glint::RunProgram(
       argc, argv,
       {"glint-run",
-       "Runs every out-of-date stage of a capture: calib, rectify, fit, refine, tile (with a "
-       "[tile] section in capture.toml), export, report.",
+       "Runs every out-of-date stage of a capture: " + glint::StageNamesText() +
+           " (tile: with a [tile] section in capture.toml).",
        GLINT_VERSION,
        "Examples:\n  glint run wood\n  glint run wood --quick\n  glint run wood --until rectify\n"
        "  glint run wood --exclude img_003.jpg,img_007.jpg --method latent"},

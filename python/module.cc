@@ -24,6 +24,7 @@
 #include "base/images/exr_rows.h"
 #include "base/images/image.h"
 #include "base/reflectance/brdf.h"
+#include "base/stages/stages.h"
 #include "fitting/render/renderer.h"
 
 namespace glint {
@@ -282,6 +283,14 @@ PYBIND11_MODULE(_glint, module) {
         return glint::ToString(glint::ParseReflectanceConvention(text));
       },
       arg("text"), "A reflectance convention in the words of manifests.");
+  module.def(
+      "stages",
+      [] {
+        std::vector<std::string> names;
+        for (const glint::StageKind& stage : glint::Stages()) names.emplace_back(stage.name);
+        return names;
+      },
+      "Names of all stages in their order.");
   module.def("render", &glint::Render, arg("maps"), arg("size_mm"), arg("convention"),
              arg("camera_mm"), arg("light_mm"), arg("light_rgb"), arg("ambient_rgb"),
              arg("exposure"), arg("threads"), "Radiance, [3, height, width].");

@@ -10,6 +10,8 @@ constexpr StageKind kStages[] = {
     {.name = "calib",
      .summary = "cameras, poses and lights from the board",
      .cost = {.start_s = 1.5, .photograph_px_us = 0.025, .start_MB = 200, .decoded_px_bytes = 15},
+     .runs = Runs::kFromPhotographs,
+     .reads = {.photographs = true, .board_photographs = true},
      .gives = Gives::kCalibration},
     {.name = "rectify",
      .summary = "rectified top views of the sample in linear radiance",
@@ -20,6 +22,8 @@ constexpr StageKind kStages[] = {
               .decoded_px_bytes = 8,
               .photograph_texel_bytes = 5,
               .most_MB = 70},
+     .runs = Runs::kFromPhotographs,
+     .reads = {.photographs = true, .calibration = true},
      .gives = Gives::kViews},
     {.name = "fit",
      .summary = "material maps by latent or classic fitting",
@@ -29,6 +33,8 @@ constexpr StageKind kStages[] = {
               .start_MB = 330,
               .texel_bytes = 60,
               .most_MB = 190},
+     .reads = {.views = true},
+     .is_told = {.method = true, .selected_views = true},
      .gives = Gives::kMaps},
     {.name = "refine",
      .summary = "material maps per texel",
@@ -40,16 +46,24 @@ constexpr StageKind kStages[] = {
               .texel_bytes = 300,
               .photograph_texel_bytes = 16,
               .most_MB = 1300},
+     .runs = Runs::kRefining,
+     .reads = {.views = true, .maps = ReadsMaps::kWhole},
+     .is_told = {.selected_views = true},
      .gives = Gives::kMaps,
      .by_parts = true},
     {.name = "tile",
      .summary = "seamlessly tiling maps ([tile] section in capture.toml)",
      .cost = {.start_s = 0.2, .texel_us = 3.2, .start_MB = 140, .texel_bytes = 300},
+     .runs = Runs::kTiling,
+     .reads = {.maps = ReadsMaps::kWhole},
+     .is_told = {.maps_from = true},
      .gives = Gives::kMaps},
     {.name = "export",
      .summary = "maps and materials for other programs",
      .cost =
-         {.start_s = 0.15, .texel_us = 1.7, .start_MB = 136, .texel_bytes = 190, .most_MB = 3000}},
+         {.start_s = 0.15, .texel_us = 1.7, .start_MB = 136, .texel_bytes = 190, .most_MB = 3000},
+     .reads = {.maps = ReadsMaps::kAny},
+     .is_told = {.maps_from = true}},
     {.name = "report",
      .summary = "one HTML page showing the whole result",
      .cost = {.start_s = 0.3,
@@ -58,7 +72,9 @@ constexpr StageKind kStages[] = {
               .start_MB = 280,
               .texel_bytes = 130,
               .photograph_texel_bytes = 3,
-              .most_MB = 520}},
+              .most_MB = 520},
+     .reads = {.maps = ReadsMaps::kWhole, .every_stage = true},
+     .is_told = {.maps_from = true}},
 };
 
 }  // namespace
@@ -74,6 +90,19 @@ const StageKind* FindStage(std::string_view name) {
 const StageKind& LastGiving(Gives what) {
   return *std::find_if(std::rbegin(kStages), std::rend(kStages),
                        [&](const StageKind& stage) { return stage.gives == what; });
+}
+
+bool GivesMaps(const StageKind& stage, ReadsMaps which) {
+  if (stage.gives != Gives::kMaps || which == ReadsMaps::kNone) return false;
+  return which == ReadsMaps::kAny || stage.runs != Runs::kTiling;
+}
+
+std::vector<std::string> StagesWithMaps(ReadsMaps which) {
+  std::vector<std::string> names;
+  for (const StageKind& stage : kStages) {
+    if (GivesMaps(stage, which)) names.emplace_back(stage.name);
+  }
+  return names;
 }
 
 std::string ManifestPath(std::string_view stage) {

@@ -1,10 +1,11 @@
-// The stages of a capture: the one list of them. What each reads and with which options it runs is
-// pipeline/driver/stage_graph.h's to say.
+// The stages of a capture: the one list of them. pipeline/driver/stage_graph.h makes a capture's
+// steps from it.
 #pragma once
 
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace glint {
 
@@ -30,12 +31,45 @@ struct StageCost {
 // What a stage's result is for those that read it.
 enum class Gives { kCalibration, kViews, kMaps, kFiles };
 
+// Which captures go through a stage.
+enum class Runs {
+  kAlways,
+  kFromPhotographs,  // those that were not imported as rectified photographs
+  kRefining,         // those whose run refines
+  kTiling            // those with a table [tile]
+};
+
+// Maps come from the last of the stages before that gives them and runs; whole maps are those that
+// no tiling stage has cut.
+enum class ReadsMaps { kNone, kWhole, kAny };
+
+// What a stage reads beside capture.toml. Of manifests, those of the last stage before that gives
+// it.
+struct StageReads {
+  bool photographs = false;        // with a measured tone curve, if there is one
+  bool board_photographs = false;  // those of the board alone too, and its description
+  bool calibration = false;
+  bool views = false;
+  ReadsMaps maps = ReadsMaps::kNone;
+  bool every_stage = false;  // all that ran before it
+};
+
+// What a stage's program is told of the choices for a run, by options of these names.
+struct StageIsTold {
+  bool method = false;          // --method, of fitting
+  bool selected_views = false;  // --views, --exclude
+  bool maps_from = false;       // --from, the stage whose maps it reads
+};
+
 // A stage's program is glint-NAME, its folder CAPTURE/glint/NAME, its options are the table [NAME]
 // of capture.toml.
 struct StageKind {
   std::string_view name;
   std::string_view summary;  // one line, for lists of commands
   StageCost cost;
+  Runs runs = Runs::kAlways;
+  StageReads reads = {};
+  StageIsTold is_told = {};
   Gives gives = Gives::kFiles;
   bool by_parts = false;  // whether several jobs can share it: --part K/N, then --join N
 };
@@ -48,6 +82,12 @@ const StageKind* FindStage(std::string_view name);
 
 // The last of the stages that give views, say: what later stages read.
 const StageKind& LastGiving(Gives what);
+
+// Whether it gives maps of that kind: whole ones are not those that a tiling stage gives.
+bool GivesMaps(const StageKind& stage, ReadsMaps which);
+
+// Names of the stages that do, in their order.
+std::vector<std::string> StagesWithMaps(ReadsMaps which);
 
 // Relative to the capture's folder: "glint/<stage>/manifest.json".
 std::string ManifestPath(std::string_view stage);

@@ -6,6 +6,7 @@
 #include "base/errors/errors.h"
 #include "base/formats/svbrdf_file.h"
 #include "base/reflectance/border.h"
+#include "base/stages/stages.h"
 #include "fitting/tiling/tile_preview.h"
 
 namespace glint {
@@ -28,7 +29,8 @@ void AddTilingOptions(OptionSet* set, TileOptions* options) {
 }
 
 void AddTileOptions(OptionSet* set, TileStageOptions* options) {
-  set->AddChoice("from", &options->from, {"refine", "fit"}, "stage whose maps are tiled");
+  set->AddChoice("from", &options->from, StagesWithMaps(ReadsMaps::kWhole),
+                 "stage whose maps are tiled");
   set->AddRange(
       "border", &options->border, 0, kMostBorderRings,
       "outermost rings of texels, which may include the sample's surroundings, to replace with "

@@ -35,13 +35,105 @@ std::vector<std::string> NamesOf(const std::vector<StageStep>& steps) {
   return names;
 }
 
-void AddSelection(const RunChoices& choices, StageStep* step) {
+bool RunsHere(const StageKind& stage, const Capture& capture, const RunChoices& choices) {
+  switch (stage.runs) {
+    case Runs::kFromPhotographs:
+      return !capture.imported();
+    case Runs::kRefining:
+      return choices.refines();
+    case Runs::kTiling:
+      return capture.tiles;
+    case Runs::kAlways:
+      break;
+  }
+  return true;
+}
+
+// Stages that come before, in their order, whether this run has them or an import stands for them.
+using EarlierStages = std::vector<const StageKind*>;
+
+std::string LastWith(const EarlierStages& earlier, const auto& has) {
+  const auto found = std::find_if(earlier.rbegin(), earlier.rend(),
+                                  [&](const StageKind* stage) { return has(*stage); });
+  return found == earlier.rend() ? "" : std::string((*found)->name);
+}
+
+std::string LastGivingOf(const EarlierStages& earlier, Gives what) {
+  return LastWith(earlier, [&](const StageKind& stage) { return stage.gives == what; });
+}
+
+std::string MapsFor(const StageKind& stage, const EarlierStages& earlier) {
+  return LastWith(earlier,
+                  [&](const StageKind& other) { return GivesMaps(other, stage.reads.maps); });
+}
+
+std::vector<std::string> FilesFor(const StageKind& stage, const Capture& capture) {
+  std::vector<std::string> files;
+  if (!stage.reads.photographs) return files;
+  std::vector<std::string> photographs = capture.photos;
+  if (stage.reads.board_photographs) {
+    photographs.insert(photographs.end(), capture.board_photos.begin(), capture.board_photos.end());
+  }
+  files = FilesOfPhotos(photographs);
+  if (stage.reads.board_photographs && !capture.board_file.empty()) {
+    files.push_back(capture.board_file);
+  }
+  if (capture.encoding_is_file()) files.push_back(capture.encoding);
+  return files;
+}
+
+std::vector<std::string> StagesFor(const StageKind& stage, const EarlierStages& earlier) {
+  std::vector<std::string> names;
+  if (stage.reads.every_stage) {
+    for (const StageKind* other : earlier) names.emplace_back(other->name);
+    return names;
+  }
+  if (stage.reads.calibration) names.push_back(LastGivingOf(earlier, Gives::kCalibration));
+  if (stage.reads.views) names.push_back(LastGivingOf(earlier, Gives::kViews));
+  if (stage.reads.maps != ReadsMaps::kNone) {
+    const std::string maps = MapsFor(stage, earlier);
+    if (!maps.empty()) names.push_back(maps);
+  }
+  return names;
+}
+
+void TellMethod(const std::string& method, StageStep* step) {
+  if (method.empty()) return;
+  const auto tell = [&](const std::string& option, const std::string& value) {
+    step->arguments.insert(step->arguments.end(), {"--" + option, value});
+  };
+  tell("method", method == "refined" ? "latent" : method);
+  if (method == "initial") step->cost = "initial";
+  if (method != "latent") return;
+  // Nothing comes after it that finds what is finer, or that converges.
+  const FitOptions whole = FitOptions::Latent();
+  tell("finest-size", std::to_string(whole.finest_size));
+  tell("iterations", std::to_string(whole.coarse_iterations));
+  tell("fine-iterations", std::to_string(whole.fine_iterations));
+}
+
+void TellSelection(const RunChoices& choices, StageStep* step) {
   if (!choices.exclude.empty()) {
     step->arguments.insert(step->arguments.end(), {"--exclude", Joined(choices.exclude, ",")});
   }
   if (!choices.views.empty()) {
     step->arguments.insert(step->arguments.end(), {"--views", Joined(choices.views, ",")});
   }
+}
+
+StageStep StepOf(const StageKind& stage, const Capture& capture, const RunChoices& choices,
+                 const EarlierStages& earlier) {
+  StageStep step =
+      Step(std::string(stage.name), FilesFor(stage, capture), StagesFor(stage, earlier));
+  if (stage.is_told.method) TellMethod(choices.method, &step);
+  if (stage.is_told.selected_views) TellSelection(choices, &step);
+  if (stage.is_told.maps_from) {
+    step.arguments.insert(step.arguments.end(), {"--from", MapsFor(stage, earlier)});
+  }
+  if (choices.seed != 0) {
+    step.arguments.insert(step.arguments.end(), {"--seed", std::to_string(choices.seed)});
+  }
+  return step;
 }
 
 size_t Find(const std::vector<StageStep>& steps, const std::string& stage,
@@ -94,59 +186,14 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
                     "write for example: [photos] files = [\"photos/*.jpg\"]");
   }
   std::vector<StageStep> steps;
-  if (!imported) {
-    std::vector<std::string> all = capture.photos;
-    all.insert(all.end(), capture.board_photos.begin(), capture.board_photos.end());
-    std::vector<std::string> calib_files = FilesOfPhotos(all);
-    std::vector<std::string> rectify_files = FilesOfPhotos(capture.photos);
-    if (!capture.board_file.empty()) calib_files.push_back(capture.board_file);
-    if (capture.encoding_is_file()) {
-      calib_files.push_back(capture.encoding);
-      rectify_files.push_back(capture.encoding);
+  EarlierStages earlier;
+  for (const StageKind& stage : Stages()) {
+    if (RunsHere(stage, capture, choices)) {
+      steps.push_back(StepOf(stage, capture, choices, earlier));
+    } else if (!imported || stage.gives != Gives::kViews) {
+      continue;
     }
-    steps.push_back(Step("calib", calib_files, {}));
-    steps.push_back(Step("rectify", rectify_files, {"calib"}));
-  }
-  const std::string views(LastGiving(Gives::kViews).name);
-  steps.push_back(Step("fit", {}, {views}));
-  const std::string& method = choices.method;
-  if (!method.empty()) {
-    steps.back().arguments = {"--method", method == "refined" ? "latent" : method};
-    if (method == "initial") steps.back().cost = "initial";
-    // Nothing comes after it that finds what is finer, or that converges.
-    if (method == "latent") {
-      const FitOptions whole = FitOptions::Latent();
-      steps.back().arguments.insert(steps.back().arguments.end(),
-                                    {"--finest-size", std::to_string(whole.finest_size),
-                                     "--iterations", std::to_string(whole.coarse_iterations),
-                                     "--fine-iterations", std::to_string(whole.fine_iterations)});
-    }
-  }
-  AddSelection(choices, &steps.back());
-  if (choices.refines()) {
-    steps.push_back(Step("refine", {}, {views, "fit"}));
-    AddSelection(choices, &steps.back());
-  }
-  const std::string last = choices.refines() ? "refine" : "fit";
-  if (capture.tiles) {
-    steps.push_back(Step("tile", {}, {last}));
-    steps.back().arguments = {"--from", last};
-  }
-  const std::string exported = capture.tiles ? "tile" : last;
-  steps.push_back(Step("export", {}, {exported}));
-  std::vector<std::string> all_stages = NamesOf(steps);
-  if (imported) all_stages.insert(all_stages.begin(), "rectify");
-  steps.push_back(Step("report", {}, all_stages));
-  for (StageStep& step : steps) {
-    if (step.stage == "export") {
-      step.arguments.insert(step.arguments.end(), {"--from", exported});
-    }
-    if (step.stage == "report") {
-      step.arguments.insert(step.arguments.end(), {"--from", last});
-    }
-    if (choices.seed != 0) {
-      step.arguments.insert(step.arguments.end(), {"--seed", std::to_string(choices.seed)});
-    }
+    earlier.push_back(&stage);
   }
   return steps;
 }

@@ -1,5 +1,5 @@
-// Which stages a capture goes through, what each reads, and with which options it runs. To add a
-// stage: its name and cost in base/stages/stages.cc, its step here, its program.
+// Which stages a capture goes through, what each reads, and with which options it runs, by the list
+// of base/stages/stages.cc.
 #pragma once
 
 #include <filesystem>

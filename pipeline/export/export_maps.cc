@@ -9,6 +9,7 @@
 #include "base/images/png_rows.h"
 #include "base/parallel/parallel.h"
 #include "base/reflectance/border.h"
+#include "base/stages/stages.h"
 #include "pipeline/export/material_formats.h"
 
 namespace glint {
@@ -78,7 +79,7 @@ MapPicture PackedPicture(const std::string& name, int width, int height, const R
 
 void AddExportOptions(OptionSet* set, ExportOptions* options) {
   set->Add("name", &options->name, "prefix of the file names");
-  set->AddChoice("from", &options->from, {"refine", "fit", "tile"},
+  set->AddChoice("from", &options->from, StagesWithMaps(ReadsMaps::kAny),
                  "stage whose maps are exported");
   set->AddChoice("bits", &options->bits, {"8", "16", "both", "exr"},
                  "bits per channel of the PNG files (the height map is always 16-bit); both: 8 and "

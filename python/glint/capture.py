@@ -14,7 +14,7 @@ from .errors import UserError
 from .maps import CHANNELS, Confidence, Maps, channels_last, frozen
 from .rendering import render
 
-STAGES = ("calib", "rectify", "fit", "refine", "tile", "export", "report")
+STAGES: tuple[str, ...] = tuple(_glint.stages())
 _MANIFEST_FORMAT = 1
 _T = TypeVar("_T")
 _ARRAYS = {"rotation": (3, 3), "registration": (3, 3)}  # row-major in files
