@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/board/board_kind.h"
 #include "base/errors/errors.h"
 #include "base/files/files.h"
 #include "base/formats/board_file.h"
@@ -89,12 +90,20 @@ ProgramResult Print(const BoardOptions& options, const CommonOptions& common) {
   return {text, json};
 }
 
+// "charuco: a frame with …; checkerboard: …"
+std::string KindsInWords() {
+  std::string text;
+  for (const BoardKind kind : BoardKinds()) {
+    const KindOfBoard& row = KindOf(kind);
+    text += (text.empty() ? "" : "; ") + std::string(row.name()) + ": " + row.summary();
+  }
+  return text;
+}
+
 void AddOptions(OptionSet* set, BoardOptions* options) {
   SheetOptions& sheet = options->sheet;
   set->AddPositional("DIR", &options->folder, "folder for board.pdf, board.svg, board.json", false);
-  set->AddChoice("kind", &sheet.kind, {"charuco", "checkerboard", "markers"},
-                 "charuco: a frame with a window for the sample; checkerboard: no window for the "
-                 "sample; markers: individual AprilTags around the sample");
+  set->AddChoice("kind", &sheet.kind, BoardKindNames(), KindsInWords());
   set->Add("paper", &sheet.paper,
            "A0 to A6, Letter, Legal, Tabloid, or WIDTHxHEIGHT in millimetres");
   set->Add("landscape", &sheet.landscape, "the paper's longer side is horizontal");

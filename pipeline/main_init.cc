@@ -1,4 +1,5 @@
 // glint-init: writes a capture.toml.
+#include "base/board/board_kind.h"
 #include "base/programs/program.h"
 #include "calib/triage/list_photos.h"
 #include "pipeline/driver/init.h"
@@ -8,8 +9,9 @@ namespace {
 void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
   options->AddPositional("DIR", &o->folder, "the capture's folder", false);
   options->Add("create", &o->create, "make the folder if it does not exist");
-  options->AddChoice("board", &o->board, {"charuco", "checkerboard", "none"},
-                     "kind of board; none: COLMAP finds the cameras");
+  std::vector<std::string> boards = glint::BoardKindNames(true);
+  boards.emplace_back("none");
+  options->AddChoice("board", &o->board, boards, "kind of board; none: COLMAP finds the cameras");
   options->Add("squares", &o->squares, "COLUMNS,ROWS of squares");
   options->AddRange("square-mm", &o->square_mm, 0.1, 1000, "side of a square");
   options->AddRange("marker-mm", &o->marker_mm, 0.1, 1000, "side of a ChArUco marker");

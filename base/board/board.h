@@ -7,14 +7,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace glint {
 
-// To add a kind: its enumerator here, its name in board_geometry.cc, how it is described in
-// base/formats/board_file.cc, found in calib/corners and printed in calib/printing.
+// What a kind is: board_kind.h.
 // kMarkers: single ArUco or AprilTag markers at listed places, as on a frame round the sample.
 enum class BoardKind { kCheckerboard, kCharuco, kMarkers };
 
@@ -80,15 +80,18 @@ struct BoardMarker {  // as ListedMarker, in the sample frame
   Eigen::Vector2d corners_in_sample_mm[4];
 };
 
+// A place of plain paper on the board.
+struct PaperSpot {
+  Eigen::Vector2d squares;    // board coordinates: column to the right, row down
+  double radius_squares = 0;  // of plain paper
+  int block = 0;              // of 3 × 3 squares, in which it lies; of a marker frame: its marker
+};
+
 // Returns what is wrong with the description ("" when nothing): field, found, remedy.
 std::string CheckBoard(const Board& board);
 
 // A marker frame of these markers. Not checked: CheckBoard does that.
 Board MakeMarkerBoard(const std::string& dictionary, std::vector<ListedMarker> markers);
-
-// "charuco", "checkerboard", "markers", as descriptions have it.
-std::string BoardKindName(BoardKind kind);
-std::optional<BoardKind> BoardKindNamed(const std::string& name);  // none: no such kind
 
 // Multiplies every length of the board, as a printer that scales does.
 void ScaleBoard(double factor, Board* board);
@@ -111,8 +114,26 @@ bool SquareIsBlack(const Board& board, int column, int row);
 // The point `column` squares from the board's left edge and `row` squares below its top edge.
 Eigen::Vector2d GridPointInSample(const Board& board, double column, double row);
 
+// Board coordinates in squares (column to the right, row down, from the top left corner); of a
+// marker frame in mean sides of its markers, from the board's centre.
+Eigen::Vector2d SquaresFromSample(const Board& board, const Eigen::Vector2d& position_in_sample_mm);
+
+// Whether it looks the same from the other side of the table.
+bool LooksTheSameUpsideDown(const Board& board);
+
 std::vector<BoardCorner> BoardCorners(const Board& board);
 std::vector<BoardMarker> BoardMarkers(const Board& board);  // empty for a checkerboard
+
+// The places of the board that are farthest from ink, window and border, the largest first: discs
+// of plain paper whose centres keep a radius from each other. The larger the disc, the less of the
+// ink's blur and of JPEG's blocks reaches its middle. Discs of less than 0.45 of the largest radius
+// are left out. Of a marker frame: the rims of its markers.
+std::vector<PaperSpot> PaperSpots(const Board& board);
+
+// "ChArUco frame, 13 x 17 squares of 15 mm, …": what the board is, in ASCII.
+std::string BoardInWords(const Board& board);
+
+class BoardInk;  // board_kind.h
 
 // Reflectance factor in [0, 1] of the printed sheet at a point of the sample plane: ink 0, paper 1,
 // patches their own (paper also outside of squares and markers; nullopt outside the sheet,
@@ -123,20 +144,9 @@ class BoardPainter {
   std::optional<double> ReflectanceAt(double x_mm, double y_mm) const;
 
  private:
-  // A marker with the map from the sample plane to its cells.
-  struct PaintedMarker {
-    Eigen::Matrix3d cells_from_sample;
-    std::vector<unsigned char> paper;
-  };
-  double MarkerFrameAt(const Eigen::Vector2d& in_sample_mm) const;
-
   Board board_;
-  double margin_mm_;
-  BoardRectangle outline_;
-  std::optional<BoardRectangle> opening_;
-  std::vector<std::vector<unsigned char>> marker_bits_;  // per square; empty: no marker
-  std::vector<PaintedMarker> painted_markers_;           // kMarkers
-  int marker_cells_ = 0;                                 // cells a side, border included
+  BoardRectangle sheet_;
+  std::shared_ptr<const BoardInk> ink_;
 };
 
 }  // namespace glint

@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <numbers>
-
-#include "base/board/dictionary.h"
+#include "base/board/board_kind.h"
 #include "base/errors/errors.h"
 #include "base/files/json_file.h"
 #include "base/files/json_object.h"
@@ -31,71 +28,6 @@ BoardRectangle RectangleIn(JsonObject* object, const std::string& key) {
   const auto n = object->Numbers(key, 4, remedy);
   if (!(n[0] < n[2]) || !(n[1] < n[3])) object->Reject(key, remedy);
   return {n[0], n[1], n[2], n[3]};
-}
-
-// Either four corners, or the centre and side of an upright or turned square.
-ListedMarker MarkerIn(JsonObject object) {
-  ListedMarker marker;
-  marker.id = object.Integer("id", "give the marker's number in the dictionary");
-  if (object.Has("corners_mm")) {
-    const Json& list = object.Array("corners_mm", 4, "give four [x, y] in millimetres");
-    for (int k = 0; k < 4; ++k) {
-      const Json& corner = list[static_cast<std::size_t>(k)];
-      if (!corner.is_array() || corner.size() != 2 || !corner[0].is_number() ||
-          !corner[1].is_number()) {
-        object.Reject("corners_mm", "give four [x, y] in millimetres");
-      }
-      marker.corners_in_board_mm[k] = {corner[0].get<double>(), corner[1].get<double>()};
-    }
-  } else {
-    const auto centre =
-        Point(object.Numbers("centre_mm", 2, "give [x, y] in millimetres, or corners_mm"));
-    const double half = 0.5 * object.Number("side_mm", 1e-3, 1e4, "give the printed side");
-    const double turn =
-        object.Has("turn_deg") ? object.Number("turn_deg", -360, 360, "in degrees") : 0;
-    const double c = std::cos(turn * std::numbers::pi / 180);
-    const double s = std::sin(turn * std::numbers::pi / 180);
-    const Eigen::Vector2d right(half * c, half * s), up(-half * s, half * c);
-    marker.corners_in_board_mm[0] = centre - right + up;
-    marker.corners_in_board_mm[1] = centre + right + up;
-    marker.corners_in_board_mm[2] = centre + right - up;
-    marker.corners_in_board_mm[3] = centre - right - up;
-  }
-  object.RejectUnknown();
-  return marker;
-}
-
-Board MarkerBoardIn(JsonObject* object) {
-  const std::string dictionary =
-      DictionaryFromAnyName(object->Text("dictionary", "name it, for example \"tag36h11\""));
-  const Json& list = object->Array("markers", 0, "list the markers");
-  std::vector<ListedMarker> markers;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    markers.push_back(MarkerIn(object->Element("markers", i)));
-  }
-  Board board = MakeMarkerBoard(dictionary, std::move(markers));
-  if (object->Has("opening_mm")) board.opening_in_board = RectangleIn(object, "opening_mm");
-  return board;
-}
-
-Board SquaresIn(JsonObject* object, BoardKind kind) {
-  Board board;
-  board.kind = kind;
-  const std::string remedy = "give [columns, rows] of squares";
-  const auto squares = object->Integers("squares", 2, remedy);
-  board.squares_x = squares[0];
-  board.squares_y = squares[1];
-  board.square_mm = object->Number("square_mm", 1e-3, 1e4, "give the side of a square");
-  if (kind == BoardKind::kCheckerboard) return board;
-  board.marker_mm = object->Number("marker_mm", 1e-3, 1e4, "give the side of a marker");
-  board.dictionary =
-      DictionaryFromAnyName(object->Text("dictionary", "name it, for example \"DICT_5X5_1000\""));
-  if (object->Has("legacy_layout")) board.legacy_layout = object->Flag("legacy_layout");
-  if (object->Has("window")) {
-    const auto w = object->Integers("window", 4, "give [first column, first row, columns, rows]");
-    board.window = BoardWindow{w[0], w[1], w[2], w[3]};
-  }
-  return board;
 }
 
 void ReadExtras(JsonObject* object, Board* board) {
@@ -137,31 +69,8 @@ BoardSheet SheetIn(JsonObject sheet) {
 
 Json ToJson(const BoardFile& file) {
   const Board& board = file.board;
-  Json json = {{"glint_board", kBoardFormat}, {"kind", BoardKindName(board.kind)}};
-  if (board.kind == BoardKind::kMarkers) {
-    json["dictionary"] = board.dictionary;
-    json["markers"] = Json::array();
-    for (const ListedMarker& marker : board.markers) {
-      Json corners = Json::array();
-      for (const Eigen::Vector2d& corner : marker.corners_in_board_mm) {
-        corners.push_back(ListOf(corner));
-      }
-      json["markers"].push_back({{"id", marker.id}, {"corners_mm", corners}});
-    }
-    if (board.opening_in_board) json["opening_mm"] = ListOf(*board.opening_in_board);
-  } else {
-    json["squares"] = {board.squares_x, board.squares_y};
-    json["square_mm"] = board.square_mm;
-  }
-  if (board.kind == BoardKind::kCharuco) {
-    json["marker_mm"] = board.marker_mm;
-    json["dictionary"] = board.dictionary;
-    json["legacy_layout"] = board.legacy_layout;
-    if (board.window) {
-      json["window"] = {board.window->first_column, board.window->first_row, board.window->columns,
-                        board.window->rows};
-    }
-  }
+  Json json = {{"glint_board", kBoardFormat}, {"kind", KindOf(board.kind).name()}};
+  KindOf(board.kind).Write(board, &json);
   if (board.ruler) {
     json["ruler"] = {{"from_mm", ListOf(board.ruler->from_in_board_mm)},
                      {"to_mm", ListOf(board.ruler->to_in_board_mm)}};
@@ -186,13 +95,12 @@ BoardFile ReadBoardFile(const fs::path& file) {
     object.Reject("glint_board",
                   "this program reads version " + std::to_string(kBoardFormat) + " of the format");
   }
-  const std::string remedy = "use \"charuco\", \"checkerboard\" or \"markers\"";
-  const std::string kind = object.Text("kind", remedy);
-  const std::optional<BoardKind> known = BoardKindNamed(kind);
-  if (!known) object.Reject("kind", remedy);
+  const std::string remedy =
+      fmt::format("use one of \"{}\"", fmt::join(BoardKindNames(), "\", \""));
+  const std::optional<BoardKind> kind = BoardKindNamed(object.Text("kind", remedy));
+  if (!kind) object.Reject("kind", remedy);
   BoardFile result;
-  result.board =
-      *known == BoardKind::kMarkers ? MarkerBoardIn(&object) : SquaresIn(&object, *known);
+  result.board = KindOf(*kind).Read(&object);
   ReadExtras(&object, &result.board);
   if (object.Has("sheet")) result.sheet = SheetIn(object.Member("sheet"));
   if (object.Has("about")) object.Text("about", "give a text");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/board/board_kind.h"
 #include "base/board/dictionary.h"
 #include "base/errors/errors.h"
 #include "base/files/toml_file.h"
@@ -86,12 +87,13 @@ void TakeBoardFile(const fs::path& file, TomlTable* table, Capture* capture) {
 
 void DescribeBoard(TomlTable* table, Capture* capture) {
   Board& board = capture->board;
-  if (table->Find("kind") != nullptr && table->Text("kind", "") == "markers") {
+  const std::optional<BoardKind> known = BoardKindNamed(table->Text("kind", "charuco"));
+  if (known && !KindOf(*known).fits_capture_toml()) {
     table->Reject(*table->Find("kind"), "kind",
-                  "list the markers in a board.json (docs/boards.md) and name it: file = "
+                  "describe it in a board.json (docs/boards.md) and name that: file = "
                   "\"board.json\"");
   }
-  const std::string kind = table->Text("kind", "charuco", {"charuco", "checkerboard"});
+  const std::string kind = table->Text("kind", "charuco", BoardKindNames(true));
   board.kind = BoardKindNamed(kind).value();
   const auto squares =
       table->Integers("squares", 2, false, "give [columns, rows] of squares as whole numbers");

@@ -128,10 +128,6 @@ void TurnCorners(const Board& board, DetectedPhoto* photo) {
 
 }  // namespace
 
-bool LooksTheSameUpsideDown(const Board& board) {
-  return board.kind == BoardKind::kCheckerboard && (board.squares_x + board.squares_y) % 2 == 0;
-}
-
 std::vector<Eigen::Vector2d> PlacesOfSample(const Board& board) {
   std::vector<Eigen::Vector2d> places = {{0, 0}};
   if (LooksTheSameUpsideDown(board)) places.push_back(OtherSide(board, {0, 0}));

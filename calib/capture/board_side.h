@@ -14,8 +14,6 @@
 
 namespace glint {
 
-bool LooksTheSameUpsideDown(const Board& board);
-
 // Where the sample's centre may lie by the corners as they are numbered first.
 std::vector<Eigen::Vector2d> PlacesOfSample(const Board& board);
 

@@ -2,27 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "base/board/board_kind.h"
+
 namespace glint {
 namespace {
-
-std::string BoardInOneLine(const Board& board) {
-  // The markers of a frame stand in board.json, which is an input.
-  if (board.kind == BoardKind::kMarkers) {
-    return fmt::format("{} markers of {}, {} mm on average", board.markers.size(), board.dictionary,
-                       board.square_mm);
-  }
-  std::string line = fmt::format("{} {}x{} squares of {} mm", BoardKindName(board.kind),
-                                 board.squares_x, board.squares_y, board.square_mm);
-  if (board.kind == BoardKind::kCharuco) {
-    line += fmt::format(", {} of {} mm{}", board.dictionary, board.marker_mm,
-                        board.legacy_layout ? ", legacy layout" : "");
-  }
-  if (board.window) {
-    line += fmt::format(", window {} {} {} {}", board.window->first_column, board.window->first_row,
-                        board.window->columns, board.window->rows);
-  }
-  return line;
-}
 
 std::string PosesInOneLine(const Capture& capture) {
   const PosesTable& poses = capture.poses;
@@ -135,7 +118,7 @@ BundleOptions BundleOptionsOf(const CalibOptions& options) {
 
 CalibTask ResolveTask(const Capture& capture, const CalibOptions& options) {
   CalibTask task;
-  task.board = capture.has_board ? BoardInOneLine(capture.board) : "none";
+  task.board = capture.has_board ? KindOf(capture.board.kind).InOneLine(capture.board) : "none";
   const bool colmap = options.poses.starts_with("colmap");
   task.poses = !colmap ? "board" : options.poses == "colmap" ? "colmap" : "model";
   if (colmap) task.poses_frame = PosesInOneLine(capture);

@@ -89,7 +89,7 @@ std::string Listed(const std::vector<const DetectedPhoto*>& photos) {
 // " DICT_… shows 24 markers in photos/a.jpg": where the description names another dictionary.
 std::string OtherDictionary(const Capture& capture, const CalibOptions& options,
                             const std::string& name) {
-  if (capture.board.kind == BoardKind::kCheckerboard) return "";
+  if (BoardMarkers(capture.board).empty()) return "";
   int markers = 0;
   const std::string dictionary =
       GuessDictionary(GrayFromPhoto(ReadPhoto(capture.folder / name)), options.detect_px, &markers);

@@ -3,17 +3,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "calib/corners/detector_internal.h"
 
 namespace glint {
 
-Eigen::Vector2d SquaresFromSample(const Board& board,
-                                  const Eigen::Vector2d& position_in_sample_mm) {
-  const Eigen::Vector2d offset =
-      (position_in_sample_mm - board.board_centre_in_sample_mm) / board.square_mm;
-  return {0.5 * board.squares_x + offset.x(), 0.5 * board.squares_y - offset.y()};
-}
+namespace {
+
+struct Detector {
+  BoardKind kind;
+  BoardDetection (*detect)(const GrayImage& image, const Board& board,
+                           const DetectorOptions& options);
+};
+
+// One for each of BoardKinds().
+constexpr Detector kDetectors[] = {
+    {BoardKind::kCharuco, corners::DetectCharuco},
+    {BoardKind::kCheckerboard, corners::DetectCheckerboard},
+    {BoardKind::kMarkers, corners::DetectMarkerFrame},
+};
+
+}  // namespace
 
 BoardDetection DetectBoard(const GrayImage& image, const Board& board,
                            const DetectorOptions& options) {
@@ -23,15 +34,9 @@ BoardDetection DetectBoard(const GrayImage& image, const Board& board,
         fmt::format("the picture has only {} x {} pixels", image.width, image.height);
     return detection;
   }
-  switch (board.kind) {
-    case BoardKind::kCharuco:
-      return corners::DetectCharuco(image, board, options);
-    case BoardKind::kMarkers:
-      return corners::DetectMarkerFrame(image, board, options);
-    case BoardKind::kCheckerboard:
-      break;
-  }
-  return corners::DetectCheckerboard(image, board, options);
+  return std::find_if(std::begin(kDetectors), std::end(kDetectors),
+                      [&](const Detector& detector) { return detector.kind == board.kind; })
+      ->detect(image, board, options);
 }
 
 namespace corners {

@@ -51,8 +51,4 @@ struct BoardDetection {
 BoardDetection DetectBoard(const GrayImage& image, const Board& board,
                            const DetectorOptions& options = {});
 
-// Board coordinates in squares (column to the right, row down, from the top left corner); of a
-// marker frame in mean sides of its markers, from the board's centre.
-Eigen::Vector2d SquaresFromSample(const Board& board, const Eigen::Vector2d& position_in_sample_mm);
-
 }  // namespace glint

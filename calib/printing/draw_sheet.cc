@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/board/dictionary.h"
+#include "base/board/board_kind.h"
 #include "calib/printing/sheet_plan.h"
 
 namespace glint {
@@ -32,43 +32,16 @@ class SheetPen {
     return Rectangle(low.x(), low.y(), high.x(), high.y());
   }
 
-  void Squares() {
-    FilledShape black;
-    for (int row = 0; row < board_.squares_y; ++row) {
-      for (int column = 0; column < board_.squares_x; ++column) {
-        if (!SquareExists(board_, column, row) || !SquareIsBlack(board_, column, row)) continue;
-        const Eigen::Vector2d low = OnSheet(GridPointInSample(board_, column, row + 1));
-        const Eigen::Vector2d high = OnSheet(GridPointInSample(board_, column + 1, row));
-        black.polygons.push_back(Rectangle(low.x(), low.y(), high.x(), high.y()));
+  // What is black of the board.
+  void Ink() {
+    for (const InkShape& shape : KindOf(board_.kind).Shapes(board_)) {
+      FilledShape black;
+      for (const Polygon& polygon : shape) {
+        Polygon& on_sheet = black.polygons.emplace_back();
+        for (const Eigen::Vector2d& corner : polygon) on_sheet.push_back(OnSheet(corner));
       }
+      drawing_->shapes.push_back(black);
     }
-    if (!black.polygons.empty()) drawing_->shapes.push_back(black);
-  }
-
-  // A marker's black cells; runs along a row are one polygon.
-  void Marker(const BoardMarker& marker) {
-    const MarkerCells cells = CellsOfMarker(board_.dictionary, marker.id);
-    const auto& c = marker.corners_in_sample_mm;
-    const auto at = [&](int column, int row) {
-      const double u = static_cast<double>(column) / cells.cells;
-      const double v = static_cast<double>(row) / cells.cells;
-      const Eigen::Vector2d top = c[0] + u * (c[1] - c[0]), bottom = c[3] + u * (c[2] - c[3]);
-      return OnSheet(top + v * (bottom - top));
-    };
-    FilledShape black;
-    for (int row = 0; row < cells.cells; ++row) {
-      for (int column = 0; column < cells.cells;) {
-        int end = column;
-        while (end < cells.cells && !cells.paper[static_cast<size_t>(row) * cells.cells + end])
-          ++end;
-        if (end > column) {
-          black.polygons.push_back(
-              {at(column, row + 1), at(end, row + 1), at(end, row), at(column, row)});
-        }
-        column = end + 1;
-      }
-    }
-    drawing_->shapes.push_back(black);
   }
 
   // A thin grey line just inside the rectangle.
@@ -153,32 +126,13 @@ void WriteText(const BoardFile& file, SheetPen* pen) {
 
 }  // namespace
 
-std::string BoardInWords(const Board& board) {
-  if (board.kind == BoardKind::kMarkers) {
-    return fmt::format("{} markers of {} with sides of {:.6g} mm", board.markers.size(),
-                       board.dictionary, board.square_mm);
-  }
-  const std::string squares = fmt::format("{} x {} squares of {:.6g} mm", board.squares_x,
-                                          board.squares_y, board.square_mm);
-  if (board.kind == BoardKind::kCheckerboard) return "checkerboard of " + squares;
-  std::string text = fmt::format("ChArUco {}, {}, markers of {:.6g} mm ({}{})",
-                                 board.window ? "frame" : "board", squares, board.marker_mm,
-                                 board.dictionary, board.legacy_layout ? ", legacy layout" : "");
-  if (board.window) {
-    text += fmt::format(", window of {:.6g} x {:.6g} mm", board.window->columns * board.square_mm,
-                        board.window->rows * board.square_mm);
-  }
-  return text;
-}
-
 Drawing DrawSheet(const BoardFile& file, double paper_reflectance) {
   Drawing drawing;
   drawing.width_mm = file.sheet->width_mm;
   drawing.height_mm = file.sheet->height_mm;
   drawing.title = "Glint board: " + BoardInWords(file.board);
   SheetPen pen(file, &drawing);
-  pen.Squares();
-  for (const BoardMarker& marker : BoardMarkers(file.board)) pen.Marker(marker);
+  pen.Ink();
   if (const auto opening = OpeningInSample(file.board)) {
     pen.Outline(*opening, 170);
     const Eigen::Vector2d at = pen.OnSheet({opening->left_mm + 3, opening->top_mm - 6});

@@ -10,7 +10,4 @@ namespace glint {
 // which level of grey each patch is printed with.
 Drawing DrawSheet(const BoardFile& file, double paper_reflectance);
 
-// "ChArUco frame, 13 x 17 squares of 15 mm, …": what the board is, in ASCII.
-std::string BoardInWords(const Board& board);
-
 }  // namespace glint

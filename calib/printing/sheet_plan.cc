@@ -6,8 +6,11 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <optional>
 
+#include "base/board/board_kind.h"
 #include "base/board/dictionary.h"
 #include "base/colour/srgb.h"
 #include "base/errors/errors.h"
@@ -93,7 +96,7 @@ BoardWindow PlanWindow(const SheetOptions& options, const Board& board) {
 // Of an odd by an even number of squares a checkerboard looks different upside down. `free`: the
 // number may be changed.
 void GiveOneWayUp(bool free, Board* board) {
-  if ((board->squares_x + board->squares_y) % 2 == 1) return;
+  if (!LooksTheSameUpsideDown(*board)) return;
   if (!free) {
     throw UserError(
         fmt::format("--squares: found {},{}, a checkerboard that looks the same upside down, so "
@@ -104,9 +107,9 @@ void GiveOneWayUp(bool free, Board* board) {
   --(board->squares_x > board->squares_y ? board->squares_x : board->squares_y);
 }
 
-Board PlanSquares(const SheetOptions& options, const Space& space) {
+Board PlanSquares(BoardKind kind, const SheetOptions& options, const Space& space) {
   Board board;
-  board.kind = options.kind == "charuco" ? BoardKind::kCharuco : BoardKind::kCheckerboard;
+  board.kind = kind;
   std::vector<int> squares;
   if (!options.squares.empty()) squares = Whole(options.squares, 2, "squares", "COLUMNS,ROWS");
   board.square_mm = options.square_mm;
@@ -123,10 +126,17 @@ Board PlanSquares(const SheetOptions& options, const Space& space) {
   };
   board.squares_x = squares.empty() ? fit(space.width_mm) : squares[0];
   board.squares_y = squares.empty() ? fit(space.height_mm) : squares[1];
-  if (board.kind == BoardKind::kCheckerboard) {
-    GiveOneWayUp(squares.empty(), &board);
-    return board;
-  }
+  return board;
+}
+
+Board PlanCheckerboard(const SheetOptions& options, const Space& space) {
+  Board board = PlanSquares(BoardKind::kCheckerboard, options, space);
+  GiveOneWayUp(options.squares.empty(), &board);
+  return board;
+}
+
+Board PlanCharuco(const SheetOptions& options, const Space& space) {
+  Board board = PlanSquares(BoardKind::kCharuco, options, space);
   board.dictionary = DictionaryFromAnyName(options.dictionary);
   board.legacy_layout = options.legacy_layout;
   const double wanted = 0.74 * board.square_mm;
@@ -172,6 +182,18 @@ Board PlanMarkers(const SheetOptions& options, const Space& space) {
   if (x > 1 && y > 1 && !options.full_board) board.opening_in_board = BoardRectangle{-x, -y, x, y};
   return board;
 }
+
+struct Planner {
+  BoardKind kind;
+  Board (*plan)(const SheetOptions& options, const Space& space);
+};
+
+// One for each of BoardKinds().
+constexpr Planner kPlanners[] = {
+    {BoardKind::kCharuco, PlanCharuco},
+    {BoardKind::kCheckerboard, PlanCheckerboard},
+    {BoardKind::kMarkers, PlanMarkers},
+};
 
 void AddRuler(const BoardSheet& sheet, const Space& space, Board* board) {
   const double step = space.width_mm >= 50 ? 50 : 10;
@@ -276,10 +298,17 @@ void PlaceOnSheet(const SheetOptions& options, BoardFile* file) {
 }
 
 BoardFile PlanSheet(const SheetOptions& options) {
+  const std::optional<BoardKind> kind = BoardKindNamed(options.kind);
+  if (!kind) {
+    throw UserError(fmt::format("--kind: found '{}'; use one of: {}", options.kind,
+                                fmt::join(BoardKindNames(), ", ")));
+  }
   const Space space = SpaceOn(options, PaperSize_mm(options.paper, options.landscape));
   BoardFile file;
   file.board =
-      options.kind == "markers" ? PlanMarkers(options, space) : PlanSquares(options, space);
+      std::find_if(std::begin(kPlanners), std::end(kPlanners), [&](const Planner& planner) {
+        return planner.kind == *kind;
+      })->plan(options, space);
   if (const std::string wrong = CheckBoard(file.board); !wrong.empty()) {
     throw UserError("board: " + wrong);
   }

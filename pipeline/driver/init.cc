@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "base/board/board.h"
+#include "base/board/board_kind.h"
 #include "base/errors/errors.h"
 #include "base/files/files.h"
 #include "base/formats/board_file.h"

@@ -3,10 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
 #include <set>
 
+#include "base/board/board_kind.h"
 #include "base/errors/errors.h"
 #include "base/files/files.h"
+#include "calib/corners/detector.h"
 #include "calib/printing/draw_sheet.h"
 #include "calib/printing/drawing.h"
 #include "calib/printing/sheet_plan.h"
@@ -66,6 +70,59 @@ TEST(PlanSheet, EverySheetHoldsWhatItSays) {
     for (const TextLine& line : drawing.lines) {
       EXPECT_LE(line.start_mm.x() + line.size_mm * TextWidth(line.text), file.sheet->width_mm)
           << name << ": " << line.text;
+    }
+  }
+}
+
+// The sheet as BoardPainter has it, from above; grey levels as a camera writes them.
+GrayImage PictureOf(const BoardFile& file, int dpi) {
+  const double pixel_mm = 25.4 / dpi;
+  GrayImage picture;
+  picture.width = static_cast<int>(file.sheet->width_mm / pixel_mm);
+  picture.height = static_cast<int>(file.sheet->height_mm / pixel_mm);
+  const BoardPainter painter(file.board, 1000);
+  constexpr int kSamples = 4;  // a side of a lens's blur, which is two pixels wide
+  for (int i = 0; i < picture.width * picture.height; ++i) {
+    double sum = 0;
+    for (int k = 0; k < kSamples * kSamples; ++k) {
+      const double x = i % picture.width - 0.5 + 2 * (k % kSamples + 0.5) / kSamples;
+      const double y = i / picture.width - 0.5 + 2 * (k / kSamples + 0.5) / kSamples;
+      const Eigen::Vector2d at = Eigen::Vector2d(x, -y) * pixel_mm +
+                                 Eigen::Vector2d(0, file.sheet->height_mm) -
+                                 file.sheet->board_centre_mm;
+      sum += painter.ReflectanceAt(at.x(), at.y()).value_or(1);
+    }
+    const double share = sum / (kSamples * kSamples);
+    picture.samples.push_back(
+        static_cast<unsigned char>(std::lround(255 * std::pow(share, 1 / 2.2))));
+  }
+  return picture;
+}
+
+// A kind that is added to the list fails here until its description, its sheet and its detector
+// exist and agree.
+TEST(BoardKinds, EachIsPlannedDescribedReadBackAndFound) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "board_kinds";
+  std::filesystem::create_directories(folder);
+  for (const BoardKind kind : BoardKinds()) {
+    SheetOptions options;
+    options.kind = KindOf(kind).name();
+    const BoardFile planned = PlanSheet(options);
+    ASSERT_EQ(planned.board.kind, kind);
+    WriteFileAtomically(folder / "board.json", ToJson(planned).dump());
+    const BoardFile read = ReadBoardFile(folder / "board.json");
+    EXPECT_EQ(ToJson(read), ToJson(planned)) << options.kind;
+    EXPECT_EQ(BoardInWords(read.board), BoardInWords(planned.board));
+    EXPECT_EQ(KindOf(kind).InOneLine(read.board), KindOf(kind).InOneLine(planned.board));
+    EXPECT_FALSE(PaperSpots(read.board).empty()) << options.kind;
+    constexpr int kDpi = 150;
+    const BoardDetection found = DetectBoard(PictureOf(read, kDpi), read.board);
+    EXPECT_EQ(found.corners.size(), BoardCorners(read.board).size()) << found.problem;
+    for (const CornerObservation& corner : found.corners) {
+      const Eigen::Vector2d at = corner.position_in_sample_mm + read.sheet->board_centre_mm;
+      const Eigen::Vector2d expected =
+          Eigen::Vector2d(at.x(), read.sheet->height_mm - at.y()) * (kDpi / 25.4);
+      EXPECT_LT((corner.point_px - expected).norm(), 0.3) << options.kind << " " << corner.id;
     }
   }
 }

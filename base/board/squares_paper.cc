@@ -1,15 +1,15 @@
+// Plain paper of boards of squares.
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "base/board/dictionary.h"
-#include "calib/light/paper.h"
+#include "base/board/squares.h"
 
 namespace glint {
 namespace {
 
 constexpr int kCells = 56;            // of a square's side, in the raster
-constexpr int kBlock = 3;             // squares a side, see light.h
+constexpr int kBlock = 3;             // squares a side
 constexpr double kLeastShare = 0.45;  // of the largest disc's radius
 constexpr double kLargest = 0.3;      // squares: beyond, several discs tell more than one
 
@@ -28,34 +28,9 @@ cv::Mat PaperRaster(const Board& board) {
   return raster;
 }
 
-// Outside each side of each marker: markers stand on a rim of white at least a cell wide.
-std::vector<PaperSpot> SpotsBesideMarkers(const Board& board) {
-  std::vector<PaperSpot> spots;
-  const auto opening = OpeningInSample(board);
-  int block = 0;
-  for (const BoardMarker& marker : BoardMarkers(board)) {
-    const double cell_mm = board.square_mm / CellsOfMarker(board.dictionary, marker.id).cells;
-    Eigen::Vector2d centre(0, 0);
-    for (const Eigen::Vector2d& corner : marker.corners_in_sample_mm) centre += 0.25 * corner;
-    for (int k = 0; k < 4; ++k) {
-      const Eigen::Vector2d middle =
-          0.5 * (marker.corners_in_sample_mm[k] + marker.corners_in_sample_mm[(k + 1) % 4]);
-      const Eigen::Vector2d at = middle + 0.5 * cell_mm * (middle - centre).normalized();
-      if (opening && at.x() > opening->left_mm - cell_mm && at.x() < opening->right_mm + cell_mm &&
-          at.y() > opening->bottom_mm - cell_mm && at.y() < opening->top_mm + cell_mm) {
-        continue;
-      }
-      spots.push_back({SquaresFromSample(board, at), 0.5 * cell_mm / board.square_mm, block});
-    }
-    ++block;
-  }
-  return spots;
-}
-
 }  // namespace
 
-std::vector<PaperSpot> PaperSpots(const Board& board) {
-  if (board.kind == BoardKind::kMarkers) return SpotsBesideMarkers(board);
+std::vector<PaperSpot> PaperOfSquares(const Board& board) {
   cv::Mat distance;
   cv::distanceTransform(PaperRaster(board), distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   distance = cv::min(distance, kLargest * kCells);
