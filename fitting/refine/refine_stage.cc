@@ -17,6 +17,7 @@
 #include "fitting/refine/estimate_sample.h"
 #include "fitting/refine/held_out_exposures.h"
 #include "fitting/refine/light_power.h"
+#include "fitting/refine/refine_metrics.h"
 #include "fitting/refine/refine_rows.h"
 #include "fitting/refine/residual_model.h"
 #include "fitting/refine/row_reader.h"
@@ -51,35 +52,6 @@ std::vector<RectifiedView> ChooseViews(const RectifiedSet& set, const RefineStar
   return SelectViews(set, only, options.exclude);
 }
 
-Json KnownOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-// null: one lobe.
-Json JsonOf(const SpecularLobes& lobes) {
-  if (!lobes.two()) return nullptr;
-  Json json = {{"share", lobes.narrow_share}, {"roughness_ratio", lobes.narrow_ratio}};
-  if (lobes.coat_f0 > 0) json["coat_f0"] = lobes.coat_f0;
-  return json;
-}
-
-// What was estimated of the sample as a whole.
-Json EstimateJson(const RefineSummary& summary) {
-  return {{"residual_sigma", summary.residual_sigma},
-          {"residual_deviation", summary.residual_deviation},
-          {"model_discrepancy", summary.discrepancy},
-          {"effective_views", summary.effective_views},
-          {"substances", summary.substances},
-          {"narrow_lobe", JsonOf(summary.lobes)},
-          {"roughness_spread", KnownOrNull(summary.roughness_spread)},
-          {"specular_spread", KnownOrNull(summary.specular_spread)},
-          {"diffuse_spread", KnownOrNull(summary.diffuse_spread)},
-          {"initialisation_error", summary.initialisation_error},
-          {"neighbour_spread", summary.neighbour_spread},
-          {"normal_spread", KnownOrNull(summary.normal_spread)},
-          {"facet_spread", summary.facet_spread},
-          {"exposure_spread", summary.exposure_spread},
-          {"light_spread", summary.light_spread}};
-}
-
 Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& views) {
   Json losses = Json::array();
   double sum = 0.0;
@@ -96,12 +68,8 @@ Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& vie
     }
     losses.push_back(entry);
   }
-  Json metrics = {{"cost_before", summary.start_cost},
-                  {"cost_after", summary.final_cost},
-                  {"converged", summary.converged},
-                  {"from_other_start", summary.other_start},
-                  {"from_neighbour", summary.neighbour}};
-  metrics.update(EstimateJson(summary));
+  Json metrics = FieldsOf(summary, TexelMetrics());
+  metrics.update(FieldsOf(summary, SampleMetrics()));
   metrics["log_l1"] = usable > 0 ? sum / usable : 0.0;
   metrics["views"] = losses;
   return metrics;
@@ -363,7 +331,7 @@ RowSums RefineRows(const RowPart& part, const SampleEstimate& estimate,
 // between processors with different vector units.
 std::string EstimateHash(const Sample& sample) {
   const RefineSummary& summary = sample.estimate.summary;
-  Json json = EstimateJson(summary);
+  Json json = FieldsOf(summary, SampleMetrics());
   // Not part of it: parts that builds of this stage version made must go on fitting together.
   for (const char* field : {"model_discrepancy", "effective_views", "substances"}) {
     json.erase(field);

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <regex>
 #include <set>
@@ -11,40 +10,15 @@
 
 #include "base/files/files.h"
 #include "tests/base/model/constant_tables.h"
+#include "tests/support/generated_block.h"
 
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kPage = fs::path(GLINT_SOURCE_DIR) / "docs/model.md";
+constexpr char kPage[] = "docs/model.md";
 const fs::path kHeaders = fs::path(GLINT_SOURCE_DIR) / "base/model";
-
-// What stands between <!-- begin NAME --> and <!-- end NAME -->; throws unless both are there.
-struct Block {
-  Block(const std::string& page, const std::string& name) {
-    const std::string opening = "<!-- begin " + name + " -->\n", closing = "<!-- end " + name;
-    begin = page.find(opening);
-    end = page.find(closing);
-    if (begin == std::string::npos || end == std::string::npos) {
-      throw std::runtime_error("docs/model.md: no block named " + name);
-    }
-    begin += opening.size();
-  }
-  size_t begin, end;
-};
-
-void CompareOrUpdate(const std::string& name, const std::string& table) {
-  std::string page = ReadTextFile(kPage);
-  const Block block(page, name);
-  if (std::getenv("GLINT_UPDATE") != nullptr) {
-    page.replace(block.begin, block.end - block.begin, "\n" + table + "\n");
-    WriteFileAtomically(kPage, page);
-    return;
-  }
-  EXPECT_EQ(page.substr(block.begin, block.end - block.begin), "\n" + table + "\n")
-      << "docs/model.md is stale; run GLINT_UPDATE=1 ctest -R model_page in the build folder";
-}
 
 // All subjects' texts, one after the other.
 std::string AllHeaders() {
@@ -73,11 +47,11 @@ std::vector<std::string> AllMatches(const std::string& text, const std::regex& w
 }
 
 TEST(ModelPage, HoldsTheConstantsThatAreCompiledIn) {
-  CompareOrUpdate("constants of the model", test::ModelTable());
+  test::CompareOrUpdate(kPage, "constants of the model", test::ModelTable());
 }
 
 TEST(ModelPage, HoldsTheConstantsOfSolvers) {
-  CompareOrUpdate("constants of solvers", test::SolverTable());
+  test::CompareOrUpdate(kPage, "constants of solvers", test::SolverTable());
 }
 
 TEST(ModelPage, RowsNameTheConstantsThatTheyShow) {

@@ -1,4 +1,4 @@
-#include "fitting/view_correction/residual_noise.h"
+// Deviations are stated by residuals that channels or neighbours share.
 
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ double ErrorOverSigma(const RefineResult& result) {
   return std::sqrt(sum / static_cast<double>(squares.size()));
 }
 
-TEST(ResidualNoise, TheSizeOfNoiseIsTheSameEitherWay) {
+TEST(SharedErrors, TheSizeOfNoiseIsTheSameEitherWay) {
   for (const Alike alike : {Alike::kNone, Alike::kChannels}) {
     EXPECT_NEAR(Refined(alike, 16).summary.residual_sigma, kSigma, 0.4 * kSigma);
   }
@@ -76,7 +76,7 @@ TEST(ResidualNoise, TheSizeOfNoiseIsTheSameEitherWay) {
 // With the widest tenth left out, normal errors give 0.79. What is not measurement is taken to be
 // common to the channels and to neighbours: where it is, deviations hold; where it is not, they are
 // too large, by up to 1.8 for neighbours or √2.8 times that for both, and never too small.
-TEST(ResidualNoise, DeviationsHoldWhereChannelsShareTheirErrors) {
+TEST(SharedErrors, DeviationsHoldWhereChannelsShareTheirErrors) {
   const double ratio = ErrorOverSigma(Refined(Alike::kChannels, 16));
   EXPECT_GT(ratio, 0.79 / 1.8);
   EXPECT_LT(ratio, 1.2);
@@ -84,7 +84,7 @@ TEST(ResidualNoise, DeviationsHoldWhereChannelsShareTheirErrors) {
 
 // Where photographs are few, neighbours would say most. From three on normals' scatter is found by
 // cross-validation, too wide here: roughness is then stated up to 1.9 times too uncertain (0.42).
-TEST(ResidualNoise, DeviationsHoldWhereNeighboursShareTheirErrors) {
+TEST(SharedErrors, DeviationsHoldWhereNeighboursShareTheirErrors) {
   for (const int views : {2, 3, 4}) {
     const double ratio = ErrorOverSigma(Refined(Alike::kNeighbours, views));
     EXPECT_GT(ratio, 0.35) << views;
@@ -92,7 +92,7 @@ TEST(ResidualNoise, DeviationsHoldWhereNeighboursShareTheirErrors) {
   }
 }
 
-TEST(ResidualNoise, DeviationsAreOnTheSafeSideWhereChannelsErrOnTheirOwn) {
+TEST(SharedErrors, DeviationsAreOnTheSafeSideWhereChannelsErrOnTheirOwn) {
   const double ratio = ErrorOverSigma(Refined(Alike::kNone, 16));
   EXPECT_GT(ratio, 0.79 / std::sqrt(2.8) / 1.8);
   EXPECT_LT(ratio, 1.2);
