@@ -56,16 +56,18 @@ class Trials : public CaptureTest {
 };
 
 TEST_F(Trials, KillRun) {
-  RunTrials("`kill -9` of `glint run` (by turns alone and its group), at any moment", 50,
-            [&](int i) {
-              fs::remove_all(capture() / "glint");
-              const pid_t pid = Begin(Run());
-              Sleep(Moment(run_seconds()));
-              ::kill(i % 2 == 0 ? pid : -pid, SIGKILL);
-              const int code = WaitFor(pid);
-              if (code != 0 && code != 128 + SIGKILL) return Said();
-              return Recovered();
-            });
+  RunTrials(
+      "`kill -9` of `glint run` (alternately the process alone and its process group), at any "
+      "moment",
+      50, [&](int i) {
+        fs::remove_all(capture() / "glint");
+        const pid_t pid = Begin(Run());
+        Sleep(Moment(run_seconds()));
+        ::kill(i % 2 == 0 ? pid : -pid, SIGKILL);
+        const int code = WaitFor(pid);
+        if (code != 0 && code != 128 + SIGKILL) return Said();
+        return Recovered();
+      });
 }
 
 TEST_F(Trials, KillStage) {
@@ -87,7 +89,7 @@ TEST_F(Trials, KillStage) {
 TEST_F(Trials, Interrupt) {
   for (const auto& [name, signal] : {std::pair{"SIGINT", SIGINT}, std::pair{"SIGTERM", SIGTERM}}) {
     RunTrials(std::string(name) +
-                  " to `glint run`, at any moment: nothing goes on, exit code 128 + signal",
+                  " to `glint run`, at any moment: nothing keeps running, exit code 128 + signal",
               20, [&, signal = signal](int i) {
                 fs::remove_all(capture() / "glint");
                 const pid_t pid = Begin(Run());
@@ -103,16 +105,17 @@ TEST_F(Trials, Interrupt) {
 }
 
 TEST_F(Trials, TwoRuns) {
-  RunTrials("two `glint run` of one capture at once: one works, the other says so", 10, [&](int) {
-    fs::remove_all(capture() / "glint");
-    const pid_t first = Begin(Run());
-    Sleep(Moment(0.2 * run_seconds()));
-    const pid_t second = Start(Run(), folder() / "out2", folder() / "err2");
-    const std::set<int> codes = {WaitFor(first), WaitFor(second)};
-    if (codes != std::set<int>{0, 2} && codes != std::set<int>{0})
-      return Said() + ReadAll(folder() / "err2");
-    return Recovered();
-  });
+  RunTrials("two concurrent `glint run` of one capture: one runs, the other reports it", 10,
+            [&](int) {
+              fs::remove_all(capture() / "glint");
+              const pid_t first = Begin(Run());
+              Sleep(Moment(0.2 * run_seconds()));
+              const pid_t second = Start(Run(), folder() / "out2", folder() / "err2");
+              const std::set<int> codes = {WaitFor(first), WaitFor(second)};
+              if (codes != std::set<int>{0, 2} && codes != std::set<int>{0})
+                return Said() + ReadAll(folder() / "err2");
+              return Recovered();
+            });
 }
 
 // A file system of so many bytes over glint/, in a mount namespace of the run's own.
@@ -125,7 +128,7 @@ bool MountSmall(const fs::path& folder, int kilobytes) {
 
 TEST_F(Trials, FullDisk) {
   RunTrials(
-      "a disk (tmpfs of 8 to 2,000 kB) that is full during a run: exit code 3, the file named", 20,
+      "a disk (tmpfs of 8 to 2,000 kB) that fills up during a run: exit code 3, the file named", 20,
       [&](int i) {
         const fs::path work = capture() / "glint";
         const Outcome outcome = RunProgram(Run(), [&] {
@@ -141,8 +144,8 @@ TEST_F(Trials, FullDisk) {
 }
 
 TEST_F(Trials, BadDisk) {
-  RunTrials("a disk whose writes fail (EIO) from some write on: exit code 3, the file named", 40,
-            [&](int i) {
+  RunTrials("a disk whose writes fail (EIO) from a random write on: exit code 3, the file named",
+            40, [&](int i) {
               fs::remove_all(capture() / "glint");
               const int at = 1 + static_cast<int>(random_() % (i < 20 ? 20 : 200));
               const Outcome outcome = RunProgram(Run(), [&] {
@@ -162,27 +165,26 @@ TEST_F(Trials, BadDisk) {
 }
 
 TEST_F(Trials, OrdinaryUserWithoutPermission) {
-  RunTrials("an ordinary user in a folder of someone else's: exit code 3, the remedy said", 3,
-            [&](int i) {
-              fs::permissions(folder(), fs::perms(0755));
-              if (i % 2 == 0) fs::remove_all(capture() / "glint");
-              WriteAll(capture() / "capture.toml",
-                       ReadAll(capture() / "capture.toml") + "# changed\n");
-              const Outcome outcome = RunProgram(Run({"--force"}), [] {
-                if (::setgid(65534) != 0 || ::setuid(65534) != 0) ::_exit(77);
-              });
-              if (outcome.code == 77) return std::string("cannot become another user here");
-              if (outcome.code != 3 || outcome.err.find("writable") == std::string::npos) {
-                return "exit code " + std::to_string(outcome.code) + ": " + outcome.err;
-              }
-              return Recovered();
-            });
+  RunTrials(
+      "an ordinary user in another user's folder: exit code 3, the remedy named", 3, [&](int i) {
+        fs::permissions(folder(), fs::perms(0755));
+        if (i % 2 == 0) fs::remove_all(capture() / "glint");
+        WriteAll(capture() / "capture.toml", ReadAll(capture() / "capture.toml") + "# changed\n");
+        const Outcome outcome = RunProgram(Run({"--force"}), [] {
+          if (::setgid(65534) != 0 || ::setuid(65534) != 0) ::_exit(77);
+        });
+        if (outcome.code == 77) return std::string("cannot become another user here");
+        if (outcome.code != 3 || outcome.err.find("writable") == std::string::npos) {
+          return "exit code " + std::to_string(outcome.code) + ": " + outcome.err;
+        }
+        return Recovered();
+      });
 }
 
 TEST_F(Trials, Stdout) {
   RunTrials(
-      "stdout closed, full (/dev/full) or a pipe that nobody reads: results are made, a lost "
-      "answer is said",
+      "stdout closed, full (/dev/full) or a pipe without a reader: results are written, a lost "
+      "answer is reported",
       9, [&](int i) {
         fs::remove_all(capture() / "glint");
         const bool json = i >= 3;
@@ -205,7 +207,7 @@ TEST_F(Trials, Stdout) {
           return outcome.err;
         // Who closes a pipe does not want the rest; who fills a disk does.
         if (json && outcome.code == 0 && i % 3 != 2)
-          return std::string("a lost answer was not said");
+          return std::string("a lost answer was not reported");
         return Recovered();
       });
 }
@@ -216,7 +218,7 @@ TEST_F(Trials, FlippedByte) {
     if (!content.empty()) files.push_back(path);
   }
   RunTrials("one byte changed in one of " + std::to_string(files.size()) +
-                " kinds of results, its times kept: the next run makes it anew",
+                " kinds of results, its times kept: the next run recomputes it",
             100, [&](int i) {
               const fs::path file =
                   capture() / "glint" / files[static_cast<size_t>(i) % files.size()];
@@ -241,7 +243,7 @@ TEST_F(Trials, InvalidationMatrix) {
       {"export", ""},
       {"report", "[report]\npicture-px = 300\n"}};
   RunTrials(
-      "another option of each stage: it and later stages are computed, no "
+      "a changed option of each stage: it and later stages are computed, no "
       "earlier one",
       static_cast<int>(kStages.size()), [&](int i) {
         const auto& [stage, toml] = options[static_cast<size_t>(i)];
@@ -280,7 +282,7 @@ TEST_F(Trials, MutatedImages) {
     }
     const std::string original = ReadAll(file);
     double longest_s = 0;
-    RunTrials("an EXR with bytes changed, put in or left out (" + std::string(target) +
+    RunTrials("an EXR with bytes changed, inserted or removed (" + std::string(target) +
                   "): read or refused within 10 s",
               600, [&, target = target](int) {
                 std::string bytes = original;
@@ -328,8 +330,8 @@ TEST_F(Trials, DecimalComma) {
 
 TEST_F(Trials, Clock) {
   RunTrials(
-      "files dated years ahead or in 1970, as after a clock was set: nothing is computed that need "
-      "not be, everything that must",
+      "files dated years ahead or in 1970, as after a clock change: everything stale is computed, "
+      "and nothing else",
       4, [&](int i) {
         const auto shift = std::chrono::hours(24 * 365 * (i % 2 == 0 ? 3 : -50));
         for (const fs::path& photo : Photos())
@@ -365,7 +367,7 @@ TEST_F(Trials, ManyPhotographs) {
         capture() / "photos" / ("more_" + std::to_string(i) + photos[0].extension().string()));
   }
   RunTrials(
-      "5,000 photographs: listed, hashed and said to be stale, and the time of a run foretold", 1,
+      "5,000 photographs: listed, hashed and reported as stale, and the run time predicted", 1,
       [&](int) {
         const auto start = Clock::now();
         const Outcome status = RunProgram({Program(kDriver), "status", capture()});
