@@ -52,14 +52,14 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOpti
   set->LoadToml(capture.file, "calib");
   if (*check != asked) {
     throw UserError(capture.file, "calib.check", *check ? "true" : "false",
-                    "take it out: request a check when you want one, with glint-calib --check");
+                    "remove it: request a check when you want one, with glint-calib --check");
   }
   const PoseSource source = PoseSourceOf(capture, *options);
   CheckTogether(source, *options);
   if (source == PoseSource::kBoard && !capture.has_board) {
     throw UserError(capture.file, "board", "no such table",
                     "describe the board that lies round the sample, give --poses colmap, or import "
-                    "a rectified set and go on with: glint run --from fit");
+                    "a rectified set and continue with: glint run --from fit");
   }
   if (capture.photos.empty()) {
     throw UserError(capture.file, "photos", "no photographs",

@@ -100,9 +100,8 @@ ProgramResult Run(const Settings& settings) {
     }
     if (estimates[c].highest < 0.85 || estimates[c].lowest > 0.15) {
       spdlog::warn(
-          "{}: stored values from {:.0f} to {:.0f} were seen; outside that range the curve is a "
-          "guess: "
-          "add darker and brighter exposures",
+          "{}: only stored values from {:.0f} to {:.0f} were observed; outside that range the "
+          "curve is extrapolated: add darker and brighter exposures",
           kChannels[c], 255 * estimates[c].lowest, 255 * estimates[c].highest);
     }
   }

@@ -44,7 +44,7 @@ ProgramResult Summarise(const fs::path& folder, const ForeignSet& foreign,
   }
   const Verdict verdict = JudgeRectifiedSet(set);
   result.text += TextOf(verdict);
-  result.text += "go on with: glint run " + folder.string() + "\n";
+  result.text += "continue with: glint run " + folder.string() + "\n";
   result.json = {{"stage", "rectify"},
                  {"up_to_date", false},
                  {"manifest", set.manifest_file.string()},

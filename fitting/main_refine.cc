@@ -32,7 +32,7 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined, in
   const Json& correction = refined.metrics["correction"];
   if (refined.correction.taken && !correction["views_moved"].get<bool>()) {
     result.text += fmt::format(
-        "  ambient illumination found: {:.1f} % of the flash; lights and pictures as they were\n",
+        "  ambient illumination found: {:.1f} % of the flash; lights and pictures unchanged\n",
         100 * correction["ambient_of_flash"].get<double>());
   } else if (refined.correction.taken) {
     result.text += fmt::format(
@@ -132,7 +132,7 @@ void LoadToml(const Capture& capture, OptionSet* set, RefineStageOptions* option
   set->LoadToml(capture.file, "refine");
   if (std::pair(options->part, options->join) != asked) {
     throw UserError(capture.file, "[refine] part, join", "a value",
-                    "each is one job's; give it on the command line");
+                    "these apply to one job; give them on the command line");
   }
   if (!options->part.empty() && options->join > 0) {
     throw UserError("--part, --join: found both; refine all parts, then join them");

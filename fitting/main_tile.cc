@@ -11,8 +11,8 @@ namespace {
 ProgramResult Summarise(const Stage& stage, const TileStageResult& result) {
   const SvbrdfMaps& maps = result.tile.maps;
   const std::string facts =
-      fmt::format("{} x {} texels repeat, seams {:.3g} x the texture's change", maps.width,
-                  maps.height, result.tile.seam.worst());
+      fmt::format("{} x {} texels repeat, change across seams {:.3g} x the texture's own",
+                  maps.width, maps.height, result.tile.seam.worst());
   return {fmt::format("tile: {} ({:.3g} x {:.3g} mm)\npreview: {}\n", facts, result.width_mm,
                       result.height_mm, (stage.folder() / "preview.png").string()),
           {{"stage", "tile"},

@@ -13,16 +13,16 @@ namespace {
 ProgramResult Summarise(const Stage& stage, const RectifySummary& summary) {
   const SamplePlane& plane = summary.set.plane;
   ProgramResult result;
-  result.text = fmt::format("rectify: {} views of {}x{} texels ({:.3f} mm a texel)\n",
+  result.text = fmt::format("rectify: {} views of {}x{} texels ({:.3f} mm per texel)\n",
                             summary.set.views.size(), plane.width, plane.height,
                             plane.width_mm / plane.width);
-  result.summary = fmt::format("{} view{} of {} x {} texels, {:.3g} mm a texel",
+  result.summary = fmt::format("{} view{} of {} x {} texels, {:.3g} mm per texel",
                                summary.set.views.size(), summary.set.views.size() == 1 ? "" : "s",
                                plane.width, plane.height, plane.width_mm / plane.width);
   for (size_t i = 0; i < summary.set.views.size(); ++i) {
     const Json& metrics = summary.metrics["views"][i];
     result.text += fmt::format(
-        "  {}  {:<28} usable {:5.1f} %  saturated {:4.1f} %  outside {:4.1f} %  {:.2f} px a "
+        "  {}  {:<28} usable {:5.1f} %  saturated {:4.1f} %  outside {:4.1f} %  {:.2f} px per "
         "texel\n",
         summary.set.views[i].name, summary.set.views[i].photo,
         100 * metrics["usable"].get<double>(), 100 * metrics["saturated"].get<double>(),
@@ -43,7 +43,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RectifyOp
   AddTask(set, &task);
   if (capture.imported()) {
     throw UserError(capture.file, "photos", "an imported capture, which is rectified already",
-                    "go on with: glint run --from fit");
+                    "continue with: glint run --from fit");
   }
   const auto calibration_file = capture.work() / "calib" / "manifest.json";
   const Calibration calibration = ReadCalibration(calibration_file);

@@ -15,7 +15,7 @@ InstructionSet ChooseInstructionSet() {
     if (Available(set) && (wanted == nullptr || std::strcmp(wanted, Name(set)) == 0)) return set;
   }
   throw std::runtime_error(std::string("GLINT_KERNEL: found '") + wanted +
-                           "'; use avx512, avx2 or baseline, as far as this processor has them");
+                           "'; use avx512, avx2 or baseline, whichever this processor supports");
 }
 
 }  // namespace

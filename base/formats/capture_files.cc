@@ -32,7 +32,7 @@ std::string WhatElse(const fs::directory_entry& entry) {
 std::vector<std::string> FramesOf(const fs::path& folder, const std::string& video, int every) {
   const VideoInfo info = ReadVideoInfo(folder / video);
   if (info.missing > 0) {
-    spdlog::warn("{}: the video is cut off; its {} whole frames are used, {} are missing",
+    spdlog::warn("{}: the video is truncated; its {} complete frames are used, {} are missing",
                  (folder / video).string(), info.frames, info.missing);
   }
   std::vector<std::string> names;

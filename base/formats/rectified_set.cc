@@ -53,7 +53,7 @@ RectifiedView ReadView(const std::filesystem::path& file, const Json& json, size
         {"light_in_sample_mm", view.view.light_in_sample_mm[2]}}) {
     if (z <= 0) {
       throw UserError(file, name + "." + field, "z = " + std::to_string(z),
-                      "it must stand in front of the sample (z > 0)");
+                      "it must be in front of the sample (z > 0)");
     }
   }
   return view;

@@ -59,10 +59,10 @@ void RejectUnreadable(const std::filesystem::path& file, std::string reason,
     throw UserError(
         file, "",
         "a RAW file of a camera that LibRaw does not know, or a damaged one (" + reason + ")",
-        "convert it to DNG or to 16-bit TIFF, or take it out");
+        "convert it to DNG or to 16-bit TIFF, or remove it");
   }
   throw UserError(file, "", "no image that can be read (" + reason + ")",
-                  "give a JPEG, PNG, TIFF, EXR, HEIC or RAW file, or take it out");
+                  "give a JPEG, PNG, TIFF, EXR, HEIC or RAW file, or remove it");
 }
 
 void SetUpOiio() {
@@ -178,8 +178,7 @@ std::shared_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
   RequireLengthsWithinFile(file);
   const std::string formats = OIIO::get_string_attribute("input_format_list");
   const std::string reader = ReaderOf(file);
-  if (reader.empty())
-    RejectUnreadable(file, "its first bytes are those of no such format", formats);
+  if (reader.empty()) RejectUnreadable(file, "its first bytes match no such format", formats);
   const auto opened = std::make_shared<OpenedImage>();
   std::unique_ptr<OIIO::ImageInput>& input = opened->input;
   input = OIIO::ImageInput::create(reader);
@@ -214,7 +213,7 @@ void RejectTruncated(const std::filesystem::path& file, OIIO::ImageInput* input)
   std::string reason = input->geterror();
   if (reason.size() > 200) reason.resize(200);
   throw UserError(file, "", "an image that ends early or is damaged (" + reason + ")",
-                  "copy the photograph again, or take it out");
+                  "copy the photograph again, or remove it");
 }
 
 }  // namespace glint

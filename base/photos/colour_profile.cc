@@ -151,7 +151,7 @@ ColourProfile ReadColourProfile(std::string_view icc) {
   if (!profile) return NotUsed(result, "damaged");
   result.name = NameOf(profile.get());
   if (cmsGetColorSpace(profile.get()) != cmsSigRgbData) {
-    return NotUsed(result, "not of RGB pictures");
+    return NotUsed(result, "not an RGB profile");
   }
   if (!cmsIsMatrixShaper(profile.get())) return NotUsed(result, "a table");
   Primaries xyz_from_rgb;

@@ -44,8 +44,8 @@ OIIO::ImageSpec Configuration() {
 // `jpeg`: the file's bytes; empty: it is none.
 void RequireWholeJpeg(const std::filesystem::path& file, std::string_view jpeg) {
   if (jpeg.empty() || JpegIsComplete(jpeg)) return;
-  throw UserError(file, "", "a truncated JPEG file, which ends before its picture does",
-                  "copy the photograph again, or take it out");
+  throw UserError(file, "", "a truncated JPEG file, which ends before its image is complete",
+                  "copy the photograph again, or remove it");
 }
 
 void RequireFinite(const std::filesystem::path& file, const Image& image) {
@@ -55,7 +55,7 @@ void RequireFinite(const std::filesystem::path& file, const Image& image) {
     throw UserError(file,
                     "pixel (" + std::to_string(at % image.width) + ", " +
                         std::to_string(at / image.width) + ")",
-                    "a value that is not a number", "export the photograph again, or take it out");
+                    "a value that is not a number", "export the photograph again, or remove it");
   }
 }
 
@@ -65,8 +65,8 @@ void RequireWholeRaw(const std::filesystem::path& file, const Photo& photo) {
   for (const float value : photo.image.samples) {
     if (value > 0) return;
   }
-  throw UserError(file, "", "a RAW file without a picture: cut off or damaged",
-                  "copy the photograph again, or take it out");
+  throw UserError(file, "", "a RAW file without an image: truncated or damaged",
+                  "copy the photograph again, or remove it");
 }
 
 // Of PNG and TIFF, as OpenImageIO hands it on.
@@ -150,7 +150,7 @@ void RequireSize(const std::filesystem::path& file, int width, int height) {
   if (width >= kSmallestSide_px && height >= kSmallestSide_px) return;
   throw UserError(file, "size", std::to_string(width) + "x" + std::to_string(height) + " pixels",
                   "a photograph of at least " + std::to_string(kSmallestSide_px) +
-                      " pixels a side is expected");
+                      " pixels per side is expected");
 }
 
 std::shared_ptr<OIIO::ImageInput> OpenPhoto(const std::filesystem::path& file) {

@@ -68,14 +68,14 @@ class Video {
     if (code < 0) {
       throw UserError(file, "",
                       "no video that can be read (" + Reason(code) +
-                          "); one that was cut off while it was copied looks like this",
-                      "copy it again, or take it out");
+                          "), perhaps because it was copied only in part",
+                      "copy it again, or remove it");
     }
     context_.reset(context);
     const bool described = avformat_find_stream_info(context, nullptr) >= 0;
     stream_ = av_find_best_stream(context, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
     if (!described || stream_ < 0) {
-      throw UserError(file, "", "a file without a video in it", "take it out");
+      throw UserError(file, "", "a file without a video stream", "remove it");
     }
     CheckStream();
   }
@@ -125,7 +125,8 @@ class Video {
         static_cast<size_t>(codec.width) * static_cast<size_t>(codec.height) > kMaxPixels) {
       throw UserError(file_, "size",
                       std::to_string(codec.width) + "x" + std::to_string(codec.height) + " pixels",
-                      "frames of 16 pixels a side and more are read");
+                      "use a video whose frames have at least 16 pixels per side and are not "
+                      "larger than Glint reads");
     }
     if (codec.color_trc != AVCOL_TRC_SMPTE2084 && codec.color_trc != AVCOL_TRC_ARIB_STD_B67) return;
     throw UserError(file_, "", "an HDR video, whose tone curve depends on its scene",
@@ -141,8 +142,8 @@ std::int64_t TimeOf(const AVPacket& packet) {
   return packet.pts != AV_NOPTS_VALUE ? packet.pts : packet.dts;
 }
 
-// Time stamps of all whole frames, in the order of showing. `packets` counts those that are there
-// for decoding alone, too.
+// Time stamps of all complete frames, in the order of showing. `packets` counts those that are
+// there for decoding alone, too.
 std::vector<std::int64_t> FrameTimes(const Video& video, size_t* packets = nullptr) {
   std::vector<std::int64_t> times;
   size_t count = 0;
@@ -154,8 +155,8 @@ std::vector<std::int64_t> FrameTimes(const Video& video, size_t* packets = nullp
   std::sort(times.begin(), times.end());
   if (packets != nullptr) *packets = count;
   if (times.empty()) {
-    throw UserError(video.file(), "", "a video that is cut off before its first frame",
-                    "copy it again, or take it out");
+    throw UserError(video.file(), "", "a video that ends before its first frame",
+                    "copy it again, or remove it");
   }
   return times;
 }
@@ -293,16 +294,16 @@ Photo ReadVideoFrame(const std::filesystem::path& file, int frame) {
   const Video video(file);
   const std::vector<std::int64_t> times = FrameTimes(video);
   if (frame < 0 || static_cast<size_t>(frame) >= times.size()) {
-    throw UserError(
-        file, "frame",
-        std::to_string(frame) + " of a video of " + std::to_string(times.size()) + " whole frames",
-        "copy the video again, or name another frame");
+    throw UserError(file, "frame",
+                    std::to_string(frame) + " of a video of " + std::to_string(times.size()) +
+                        " complete frames",
+                    "copy the video again, or name another frame");
   }
   const auto picture = Decode(video, times[static_cast<size_t>(frame)], times[0]);
   if (!picture || picture->width != video.codec().width ||
       picture->height != video.codec().height) {
-    throw UserError(file, "frame " + std::to_string(frame), "a picture that cannot be decoded",
-                    "copy the video again, or take the frame out");
+    throw UserError(file, "frame " + std::to_string(frame), "a frame that cannot be decoded",
+                    "copy the video again, or remove the frame");
   }
   Photo photo;
   photo.format = "video";

@@ -210,7 +210,7 @@ Stage::Stage(fs::path folder, StageInfo info, const OptionSet& options, const Co
   if (force || common.force || !fs::exists(manifest_file())) return;
   const std::string why = WhyStale();
   up_to_date_ = why.empty();
-  if (!up_to_date_) spdlog::info("{}; computing the stage anew", why);
+  if (!up_to_date_) spdlog::info("{}; recomputing the stage", why);
 }
 
 std::string Stage::WhyStale() const {

@@ -187,8 +187,8 @@ int RunInGroup(const std::vector<std::string>& argv, const fs::path& log,
 void OpenOnDesktop(const std::string& target) {
   const fs::path opener = Opener();
   if (opener.empty()) {
-    throw EnvironmentError("found nothing that opens a page (xdg-open, $BROWSER); open " + target +
-                           " in a browser");
+    throw EnvironmentError("found no program that opens a page (xdg-open, $BROWSER); open " +
+                           target + " in a browser");
   }
   RunToLog({opener.string(), target}, "/dev/null");
 }

@@ -168,7 +168,7 @@ std::string BundleResult::BriefReport() const {
     for (size_t i = 0; i < names.size(); ++i) {
       const bool length = IsLength(estimate.camera.model, i);
       const double value = estimate.camera.parameters[i];
-      text += estimate.sigma[i] == 0 ? fmt::format("  {:<3} {:>12.6g}  held\n", names[i], value)
+      text += estimate.sigma[i] == 0 ? fmt::format("  {:<3} {:>12.6g}  fixed\n", names[i], value)
               : length
                   ? fmt::format("  {:<3} {:>12.3f} ± {:.3f}\n", names[i], value, estimate.sigma[i])
                   : fmt::format("  {:<3} {:>12.6f} ± {:.6f}\n", names[i], value, estimate.sigma[i]);

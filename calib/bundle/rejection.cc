@@ -76,7 +76,7 @@ bool Reject(const BundleProblem& problem, const BundleOptions& options, double s
         static_cast<double>(inliers) < options.min_inlier_share * static_cast<double>(corners)) {
       photo.accepted = false;
       photo.rejected = fmt::format(
-          "it does not go with the others: {} of its {} corners within {:.2f} px, median residual "
+          "inconsistent with the others: {} of its {} corners within {:.2f} px, median residual "
           "{:.2f} px (usual: {:.2f} px)",
           inliers, corners, limit_px, medians[i], Median(usual));
       changed = true;

@@ -65,7 +65,7 @@ Image ResidualPicture(const BundleResult& result, int camera, int width_px) {
   }
   cv::line(canvas, {0, height}, {width_px, height}, cv::Scalar(0, 0, 0));
   const std::string text = fmt::format(
-      "camera {}: {} photos, {:.3f} px RMS; arrows {:.0f} times as long; grey: rejected", camera,
+      "camera {}: {} photos, {:.3f} px RMS; arrows magnified {:.0f} times; grey: rejected", camera,
       result.cameras[camera].photos, result.rms_px, lengthening / scale);
   cv::putText(canvas, text, {10, height + 23}, cv::FONT_HERSHEY_SIMPLEX, 0.55,
               cv::Scalar(40, 40, 40), 1, cv::LINE_AA);

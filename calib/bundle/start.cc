@@ -167,7 +167,7 @@ State Start(const BundleProblem& problem, const BundleOptions& options) {
         view_photos.push_back(indices[k]);
       } else {
         state.photos[indices[k]].accepted = false;
-        state.photos[indices[k]].rejected = "its corners lie on a line or are too few";
+        state.photos[indices[k]].rejected = "its corners are collinear or too few";
       }
     }
     const double focal = description.known

@@ -159,20 +159,20 @@ std::vector<std::string> SettleBoardSides(const Capture& capture,
   }
   std::vector<std::string> words;
   const std::string remedy =
-      "a board of an odd by an even number of squares, or one with markers (glint board), has but "
-      "one way up";
+      "a board with an odd number of squares on one side and an even number on the other, or one "
+      "with markers (glint board), has only one way up";
   if (!turned.empty()) {
     words.push_back(fmt::format(
         "{}: taken from the other side of the checkerboard, which looks the same upside down; the "
-        "sample's texture tells, and they are turned. {}",
-        NameList(turned, 4), "For certainty: " + remedy));
+        "sample's texture shows this, and they are turned accordingly. {}",
+        NameList(turned, 4), "To rule this out: " + remedy));
   }
   if (!untold.empty()) {
-    words.push_back(fmt::format(
-        "the checkerboard looks the same upside down, and the sample's texture does not tell which "
-        "way round it lies in {}: if you walked round the table, photographs are upside down; "
-        "{}",
-        NameList(untold, 4), remedy));
+    words.push_back(
+        fmt::format("the checkerboard looks the same upside down, and the sample's texture does "
+                    "not show which way round it lies in {}: if you walked round the table, some "
+                    "photographs are taken to be the wrong way up; {}",
+                    NameList(untold, 4), remedy));
   }
   return words;
 }

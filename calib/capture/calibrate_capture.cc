@@ -66,9 +66,8 @@ void LookUpIntrinsics(const CalibOptions& options, const CalibSummary& summary,
     const auto found = FindPhone(options.library, {photo.camera_model, photo.focal_length_35mm,
                                                    group.width_px, group.height_px});
     if (!found || (!known.empty() && known[0].model != found->camera.model)) {
-      spdlog::info(
-          "{} does not know the camera '{}' at {}x{} pixels; its intrinsics are solved for",
-          options.library.string(), photo.camera_model, group.width_px, group.height_px);
+      spdlog::info("{} does not know the camera '{}' at {}x{} pixels; its intrinsics are estimated",
+                   options.library.string(), photo.camera_model, group.width_px, group.height_px);
       return;
     }
     spdlog::info("intrinsics of '{}' are those of {}", photo.camera_model, found->file.string());
@@ -151,8 +150,8 @@ void WarnOfUncertainty(const BundleResult& bundle) {
     const double sigma = estimate.sigma[0] / estimate.camera.focal_length_x();
     if (sigma < 0.01) continue;
     spdlog::warn(
-        "the focal length is uncertain by {:.1f} %; photographs tilted by 20 to 40 degrees in "
-        "several directions fix that",
+        "the focal length is uncertain by {:.1f} %; take photographs tilted by 20 to 40 degrees in "
+        "several directions",
         100 * sigma);
   }
 }
@@ -362,8 +361,8 @@ void SolveOnePhotograph(const Capture& capture, const CalibOptions& options, int
   } catch (const Error& error) {
     const CameraGroup& group = summary->groups.groups[0];
     spdlog::warn(
-        "one photograph does not determine the focal length; {} is used, which may be off by some "
-        "percent, and distances with it. Take two more, tilted by 20 to 40 degrees",
+        "one photograph does not determine the focal length; {} is used, which may be off by a few "
+        "per cent, and distances with it. Take two more, tilted by 20 to 40 degrees",
         ReportedFocal_px(summary->photos, group) > 0
             ? "EXIF's 35 mm equivalent"
             : "that of a phone's main camera (26 mm equivalent)");

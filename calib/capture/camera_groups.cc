@@ -87,7 +87,7 @@ CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::
             capture_file.parent_path() / photos[i].name, "size",
             fmt::format("{}x{} pixels, while {} has {}x{}", std::get<0>(key), std::get<1>(key),
                         photos[0].name, std::get<0>(*found), std::get<1>(*found)),
-            "take it out, or give --cameras auto");
+            "remove it, or give --cameras auto");
       }
     }
     const size_t at = static_cast<size_t>(found - keys.begin());

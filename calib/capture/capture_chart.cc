@@ -92,8 +92,8 @@ void Doubt(const Capture& capture, const ChartReader& reader, ChartResult* resul
   if (turned && turned->solution.HeldOutMean() <= kSuspect) {
     *result = *turned;
     result->findings.push_back(
-        fmt::format("{}: the chart's top left is at ({:.0f}, {:.0f}), by its colours: let [chart] "
-                    "corners_px begin there",
+        fmt::format("{}: judging by its colours, the chart's top left is at ({:.0f}, {:.0f}): list "
+                    "that corner first in [chart] corners_px",
                     result->photo, result->corners_px[0].x(), result->corners_px[0].y()));
     return;
   }
@@ -111,7 +111,7 @@ void AddFindings(ChartResult* result) {
   const std::string left_out = NamesOfLeftOut(result->chart, result->readings);
   if (!left_out.empty()) {
     result->findings.push_back(
-        fmt::format("{}: patches of the chart that clip or lie outside of the photograph are left "
+        fmt::format("{}: patches of the chart that clip or lie outside the photograph are left "
                     "out: {}",
                     result->photo, left_out));
   }
@@ -120,8 +120,9 @@ void AddFindings(ChartResult* result) {
     if (reading.usable()) fewest = std::min(fewest, reading.pixels);
   }
   if (fewest < kFewPixels) {
-    result->findings.push_back(fmt::format(
-        "{}: a patch of the chart is read from only {} pixels; go nearer", result->photo, fewest));
+    result->findings.push_back(
+        fmt::format("{}: a patch of the chart is read from only {} pixels; move closer",
+                    result->photo, fewest));
   }
 }
 
@@ -135,8 +136,8 @@ ChartResult LocateChart(const Capture& capture, const Photo& photo, const Encodi
     const auto found = FindChart(photo, encoding.kind() == Encoding::kLinear, table.kind);
     if (!found) {
       throw UserError(capture.folder / table.photo, "chart", fmt::format("no {} chart", table.kind),
-                      "check [chart] kind in capture.toml, show the whole chart large and evenly "
-                      "lit, or tell where it lies: corners_px");
+                      "check [chart] kind in capture.toml, photograph the whole chart large and "
+                      "evenly lit, or give its position: corners_px");
     }
     result.corners_px = *found;
     result.found = true;
@@ -162,7 +163,7 @@ void SolveLocated(const Capture& capture, const ChartReader& reader, ChartResult
   auto best = result->found ? reader.BestTurn(*result) : reader.TurnedBy(*result, 0);
   if (!best) {
     throw UserError(capture.file, "chart",
-                    "colours in " + result->photo + " that no correction makes the chart's",
+                    "colours in " + result->photo + " that no correction maps to the chart's",
                     "check [chart] kind and corners_px");
   }
   *result = *std::move(best);

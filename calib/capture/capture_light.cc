@@ -282,10 +282,10 @@ std::vector<std::string> LightAdvice(const CalibSummary& summary) {
   double flash = 0;
   for (const Estimate& estimate : light.flash_in_camera_mm) flash = std::max(flash, estimate.sigma);
   if (flash > kFlash_mm) {
-    advice.push_back(fmt::format(
-        "the flash's place is uncertain by {:.1f} mm; photographs tilted by 20 to 40 degrees in "
-        "several directions fix that",
-        flash));
+    advice.push_back(
+        fmt::format("the flash's position is uncertain by {:.1f} mm; take photographs tilted by 20 "
+                    "to 40 degrees in several directions",
+                    flash));
   }
   const auto& first = summary.calibration.photos[0];
   const double height = Inverse(first.camera_from_sample).translation.norm();
@@ -294,22 +294,23 @@ std::vector<std::string> LightAdvice(const CalibSummary& summary) {
         light.ambient_rgb[c].sigma * height * height / std::max(1e-9, light.power_rgb[c].value);
     if (share <= kAmbientOfFlash) continue;
     advice.push_back(
-        fmt::format("the room's light is uncertain by {:.1f} % of the flash's; photographs from "
-                    "more heights fix that, or a darker room makes it needless",
+        fmt::format("the ambient illumination is uncertain by {:.1f} % of the flash; take "
+                    "photographs from more heights, or darken the room",
                     100 * share));
     break;
   }
   for (const double sigma : light.vignetting_sigma) {
     if (sigma <= kVignetting) continue;
-    advice.push_back(fmt::format(
-        "the lens's fall-off is uncertain by {:.1f} %; photographs with the board at the picture's "
-        "rim fix that",
-        100 * sigma));
+    advice.push_back(
+        fmt::format("the lens's fall-off is uncertain by {:.1f} %; take photographs with the board "
+                    "near the picture's edge",
+                    100 * sigma));
   }
   const bool said = light.rms_percent > kSaidBefore && light.flash_in_camera_mm[0].sigma > 0;
   if (light.rms_percent > kResidual && !said) {
     advice.push_back(fmt::format(
-        "the paper's brightness differs from the light found by {:.1f} %: see light_residuals.png "
+        "the paper's brightness differs from the estimated light by {:.1f} %: see "
+        "light_residuals.png "
         "for shadows, a lamp, a curled sheet, or another tone curve ([radiometry] encoding)",
         light.rms_percent));
   }

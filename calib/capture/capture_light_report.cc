@@ -101,15 +101,15 @@ Json LampMetrics(const CalibSummary& summary) {
 }
 
 std::string LampText(const CalibSummary& summary) {
-  if (summary.lamps.lamps.empty()) return "light: exposures by EXIF, or all alike\n";
+  if (summary.lamps.lamps.empty()) return "light: exposures from EXIF, or all equal\n";
   double least = 1e300, most = 0;
   for (const LampStrength& lamp : summary.lamps.lamps) {
     least = std::min(least, lamp.exposure);
     most = std::max(most, lamp.exposure);
   }
   return fmt::format(
-      "light: strengths from {:.2f} to {:.2f} of the mean, colours differ by {:.1f} %, as the "
-      "sample's matte parts tell them\n",
+      "light: strengths from {:.2f} to {:.2f} of the mean, colours differ by {:.1f} %, estimated "
+      "from the sample's matte parts\n",
       least, most, 100 * summary.lamps.colour_sd);
 }
 
@@ -153,8 +153,8 @@ std::string LightText(const CalibSummary& summary) {
     text = fmt::format("light: power [{:.4g}, {:.4g}, {:.4g}] (from {}", power.x(), power.y(),
                        power.z(), summary.power_source);
     if (summary.power.known) {
-      text += fmt::format(", {} spots of paper, spread over photos {:.1f} %", summary.power.samples,
-                          100 * summary.power.spread);
+      text += fmt::format(", {} spots of paper, standard deviation over photos {:.1f} %",
+                          summary.power.samples, 100 * summary.power.spread);
     }
     text += ")\n";
   }

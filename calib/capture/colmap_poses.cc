@@ -83,7 +83,7 @@ class PoseTaker {
       groups.turns.push_back(QuarterTurns(summary_.photos[i].orientation).value_or(0));
       groups.group.push_back(0);
       if (match[i] < 0) {
-        summary_.photos[i].detection.problem = "the COLMAP model does not hold it";
+        summary_.photos[i].detection.problem = "the COLMAP model does not contain it";
         continue;
       }
       MatchedPhoto matched;
@@ -137,9 +137,9 @@ class PoseTaker {
                             {"model", std::string(ColmapModels()[camera.model].name)},
                             {"rms_px", converted.rms_px},
                             {"largest_px", converted.largest_px}});
-    spdlog::info("camera {} ({}) became FULL_OPENCV: {:.4f} px RMS, at most {:.4f} px off",
-                 camera.id, ColmapModels()[camera.model].name, converted.rms_px,
-                 converted.largest_px);
+    spdlog::info(
+        "camera {} ({}) was converted to FULL_OPENCV: {:.4f} px RMS, at most {:.4f} px off",
+        camera.id, ColmapModels()[camera.model].name, converted.rms_px, converted.largest_px);
   }
 
   // --- Frame

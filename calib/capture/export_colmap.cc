@@ -52,7 +52,7 @@ class ModelBuilder {
       return static_cast<int>(
           RequireNumber(manifest_file_, photo, "metrics.photos", "quarter_turns"));
     }
-    throw UserError(manifest_file_, "metrics.photos", "nothing on " + name, "run calib again");
+    throw UserError(manifest_file_, "metrics.photos", "no entry for " + name, "run calib again");
   }
 
   // Number of the camera, one for each that differs.

@@ -45,7 +45,7 @@ std::pair<int, int> CommonSize(const Capture& capture) {
     throw UserError(capture.folder / name, "size",
                     fmt::format("{}x{}, while {} has {}x{}", other.first, other.second,
                                 capture.photos[0], size.first, size.second),
-                    "a camera that stands still takes pictures of one size; name those of one size "
+                    "photographs of a fixed camera must have one size; list only those of one size "
                     "in [photos] files");
   }
   return size;
@@ -59,7 +59,7 @@ PictureScale ScaleOf(const Capture& capture) {
     const auto& p = poses.points_px;
     const double length_px = std::hypot(p[2] - p[0], p[3] - p[1]);
     if (!(length_px > 1)) {
-      throw UserError(capture.file, "poses.points_px", "two points at one place",
+      throw UserError(capture.file, "poses.points_px", "two points at the same position",
                       "give the ends of a ruler in the picture");
     }
     scale.mm_per_px = poses.points_mm / length_px;
@@ -249,12 +249,11 @@ void RequireSomeLights(const Capture& capture, const std::vector<std::string>& r
   const bool below = std::any_of(lights.begin(), lights.end(), [](const auto& light) {
     return light && light->direction.z() < 0;
   });
-  throw UserError(
-      capture.lights.file.empty() ? capture.file : capture.folder / capture.lights.file, "",
-      "no usable light (" + capture.photos[0] + ": " + reasons[0] + ")",
-      below ? "vectors point from the sample to the light: x right, y up, z to the camera; are z's "
-              "sign or the order of y and z other ones?"
-            : "correct [lights] in capture.toml");
+  throw UserError(capture.lights.file.empty() ? capture.file : capture.folder / capture.lights.file,
+                  "", "no usable light (" + capture.photos[0] + ": " + reasons[0] + ")",
+                  below ? "vectors point from the sample to the light: x right, y up, z to the "
+                          "camera; is the sign of z, or the order of y and z, different?"
+                        : "correct [lights] in capture.toml");
 }
 
 class FixedCamera {

@@ -23,8 +23,8 @@ void AddTurned(const CalibSummary& summary, std::vector<std::string>* words) {
   if (names.empty()) return;
   words->push_back(fmt::format(
       "{}: the pixels were turned after the photograph was taken, and EXIF's orientation does not "
-      "tell so (a gallery app or an export does that); lens and flash are taken to be turned with "
-      "them. The camera's own files leave no doubt",
+      "record it (a gallery app or an export does that); lens and flash are assumed to be turned "
+      "with them. Use the camera's own files to be certain",
       NameList(names)));
 }
 
@@ -36,13 +36,13 @@ void AddExposures(const LightEstimate& light, std::vector<std::string>* words) {
     const double factor = photo.exif_exposure > 0 ? photo.exposure.value / photo.exif_exposure : 1;
     if (std::abs(std::log(factor)) < kWorthAWord) {
       words->push_back(fmt::format(
-          "{}: its paper is not lit as in the other photographs, and tells nothing of the flash: "
-          "look for shadows, another lamp, or a picture that was edited (light_residuals.png)",
+          "{}: its paper is not lit as in the other photographs, and is not used to locate the "
+          "flash: look for shadows, another lamp, or editing (light_residuals.png)",
           photo.name));
       continue;
     }
     words->push_back(fmt::format(
-        "{}: its paper is {} than EXIF's exposure and the other photographs say; its own "
+        "{}: its paper is {} than EXIF's exposure and the other photographs predict; its own "
         "brightness is used. Did the flash fire at another power, or was the photograph edited?",
         photo.name, Against(factor)));
   }
@@ -54,9 +54,9 @@ void AddExposures(const LightEstimate& light, std::vector<std::string>* words) {
   }
   if (std::abs(std::log(largest)) < kWorthAWord) return;
   words->push_back(fmt::format(
-      "the paper contradicts EXIF's exposures by up to {:.0f} %; those of the paper are used. A "
-      "flash that sets its own power, or photographs that an app has brightened, do that: fix the "
-      "flash's power, or use a lamp that is always on",
+      "the paper contradicts EXIF's exposures by up to {:.0f} %; exposures estimated from the "
+      "paper are used. Possible causes are a flash with automatic power, or an app that brightens "
+      "photographs: set the flash to a fixed power, or use a lamp that is always on",
       100 * std::abs(largest - 1)));
 }
 
@@ -75,7 +75,7 @@ void AddWhiteBalance(const LightEstimate& light, std::vector<std::string>* words
   if (names.empty()) return;
   words->push_back(fmt::format(
       "{}: the white paper has another colour than in the first photograph (up to {:.0f} % between "
-      "channels), which is taken out: the white balance changed. Fix it in the camera's settings",
+      "channels), which is corrected: the white balance changed. Lock it in the camera's settings",
       NameList(names), 100 * largest));
 }
 
@@ -85,13 +85,14 @@ void AddTone(const Capture& capture, const LightEstimate& light, std::vector<std
   words->push_back(fmt::format(
       "the paper's brightness contradicts the tone curve that the photographs are read with "
       "([radiometry] encoding = \"{}\"): radiance is stored with an exponent of {:.2f} at the "
-      "brightest paper and {:.2f} at the darkest. {} What is darker than the paper is not told: "
-      "switch HDR and scene modes off, photograph RAW, or measure the curve with glint response",
+      "brightest paper and {:.2f} at the darkest. {} The curve below the darkest paper cannot be "
+      "determined: switch HDR and scene modes off, photograph RAW, or measure the curve with glint "
+      "response",
       capture.encoding, light.tone->ExponentAt(light.tone->highest),
       light.tone->ExponentAt(light.tone->lowest),
-      automatic ? "The curve that the paper tells is used."
-                : "The light is found with the curve that the paper tells; with encoding = "
-                  "\"auto\" the photographs are read by it, too."));
+      automatic ? "The curve estimated from the paper is used."
+                : "The light is estimated with the curve from the paper; with encoding = "
+                  "\"auto\" the photographs are read with it, too."));
 }
 
 void AddFlash(const Capture& capture, const LightEstimate& light, std::vector<std::string>* words) {
@@ -103,18 +104,19 @@ void AddFlash(const Capture& capture, const LightEstimate& light, std::vector<st
   const Eigen::Vector3d off = flash - stated;
   if (off.head<2>().norm() > kBeside_mm) {
     words->push_back(fmt::format(
-        "the paper puts the flash {:.0f} mm beside {}: right for a camera's own flash; a phone's "
-        "is within 15 mm of its lens. If it is a phone, another lamp was on, or photographs were "
-        "turned or cropped. A flash that is there belongs into [light] offset_mm",
-        off.head<2>().norm(), stated.isZero() ? "the lens" : "where [light] offset_mm puts it"));
+        "according to the paper, the flash is {:.0f} mm beside {}: plausible for a camera's own "
+        "flash, but a phone's is within 15 mm of its lens. If it is a phone, another lamp was on, "
+        "or photographs were turned or cropped. If the flash is really there, state it in [light] "
+        "offset_mm",
+        off.head<2>().norm(), stated.isZero() ? "the lens" : "the position in [light] offset_mm"));
   }
   if (std::abs(off.z()) > kAlong_mm) {
     words->push_back(fmt::format(
-        "the paper puts the flash {:.0f} mm {} {}, which a phone's is not: measure it and state "
-        "[light] offset_mm if it is so; else exposures, zoom or tone curve are not what EXIF and "
-        "[radiometry] say, and the light's power is wrong",
+        "according to the paper, the flash is {:.0f} mm {} {}, which is implausible for a phone: "
+        "measure it, and state [light] offset_mm if this is correct; otherwise exposures, zoom or "
+        "tone curve differ from those in EXIF and [radiometry], and the light's power is wrong",
         std::abs(off.z()), off.z() > 0 ? "before" : "behind",
-        stated.isZero() ? "the lens" : "where [light] offset_mm puts it"));
+        stated.isZero() ? "the lens" : "the position in [light] offset_mm"));
   }
 }
 
@@ -125,9 +127,9 @@ void AddUneven(const LightEstimate& light, std::vector<std::string>* words) {
   // Where the flash is held, the paper has told of no flash at all.
   if (light.rms_percent <= kUneven_percent || light.flash_in_camera_mm[0].sigma <= 0) return;
   words->push_back(fmt::format(
-      "the paper is {:.1f} % brighter and darker from place to place than the flash explains "
-      "(light_residuals.png), so that the light's power may be off by tens of per cent: a phone's "
-      "HDR brightens parts of a picture by themselves, and shadows or another lamp do the like. "
+      "the paper's brightness deviates locally by {:.1f} % from what the flash explains "
+      "(light_residuals.png), so the light's power may be off by tens of per cent: a phone's HDR "
+      "brightens parts of a picture separately, and shadows or another lamp have a similar effect. "
       "Switch HDR, night and scene modes off, or photograph RAW, in the dark",
       light.rms_percent));
 }
@@ -137,9 +139,10 @@ void AddUneven(const LightEstimate& light, std::vector<std::string>* words) {
 std::string ContradictionOf(const LightOfPhoto& photo) {
   if (!photo.contradicts || photo.zoom == 1) return "";
   return fmt::format(
-      "its paper is {} than EXIF's exposure and the other photographs say, and falls off as from "
-      "{:.1f} times as far as its corners say: it was taken with a zoom of about {:.1f} that "
-      "EXIF does not tell, or cropped and enlarged; photograph without zoom",
+      "its paper is {} than EXIF's exposure and the other photographs predict, and its brightness "
+      "falls off as if from {:.1f} times the distance that its corners give: it was taken with a "
+      "zoom of about {:.1f} that EXIF does not report, or cropped and enlarged; photograph without "
+      "zoom",
       Against(photo.exposure.value / photo.exif_exposure), photo.zoom, photo.zoom);
 }
 

@@ -156,9 +156,8 @@ std::string PlacementText(const CalibSummary& summary) {
   const std::string plane = summary.from_board() ? "the board" : "the plane of the model's points";
   if (!placement.told) {
     return fmt::format(
-        "sample taken to lie {:.2g} mm above {}: it has no texture by which photographs could "
-        "tell; "
-        "measure its thickness and give [sample] height_mm\n",
+        "sample assumed to lie {:.2g} mm above {}: it has too little texture to estimate this from "
+        "the photographs; measure its thickness and give [sample] height_mm\n",
         placement.plane[0], plane);
   }
   return fmt::format("sample lies {:.2f} ± {:.2f} mm {} {}, tilted by {:.1f}°\n",

@@ -24,8 +24,8 @@ int Reduction(int longest, int longest_px) {
 cv::Mat Decode(const std::filesystem::path& file, int reduction) {
   const std::string bytes = ReadTextFile(file, kMaxJpegBytes);
   if (!JpegIsComplete(bytes)) {
-    throw UserError(file, "", "a truncated JPEG file, which ends before its picture does",
-                    "copy the photograph again, or take it out");
+    throw UserError(file, "", "a truncated JPEG file, which ends before its image is complete",
+                    "copy the photograph again, or remove it");
   }
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   const int flag = reduction == 2   ? cv::IMREAD_REDUCED_COLOR_2
@@ -39,7 +39,7 @@ cv::Mat Decode(const std::filesystem::path& file, int reduction) {
   }
   if (picture.empty()) {
     throw UserError(file, "", "a JPEG file that cannot be decoded",
-                    "copy the photograph again, or take it out");
+                    "copy the photograph again, or remove it");
   }
   CountReducedPhoto();
   return picture;

@@ -131,7 +131,7 @@ class FrameFinder {
     if (x.empty()) {
       throw UserError(model_.source, "images",
                       "no photograph that looks at the plane of its points",
-                      "say with [poses] corners_px where the sample lies");
+                      "give the sample's position with [poses] corners_px");
     }
     const double height = frame_.plane.offset;
     return Inverse(plane_frame) * Vector3d(MedianOf(x), MedianOf(y), height);
@@ -139,7 +139,7 @@ class FrameFinder {
 
   void FromScale(const std::string& source, double mm_per_unit) {
     if (!std::isfinite(mm_per_unit)) {
-      throw UserError(capture_.file, "poses", "two points or cameras at the same place",
+      throw UserError(capture_.file, "poses", "two points or cameras at the same position",
                       "give two that are far apart");
     }
     const PosesTable& poses = capture_.poses;
@@ -246,7 +246,7 @@ class FrameFinder {
     if (frame_.fit_rms_mm < 0.01 * extent.norm() && UpIsUp()) return;
     throw UserError(
         model_.source, "images",
-        fmt::format("the board's corners {:.2f} mm off their places", frame_.fit_rms_mm),
+        fmt::format("the board's corners {:.2f} mm off their positions", frame_.fit_rms_mm),
         "the board moved between the photographs, is not the one that [board] describes, or "
         "the model is bad; give [poses] corners_px to do without the board");
   }

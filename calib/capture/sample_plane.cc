@@ -105,9 +105,9 @@ class PlaneFinder {
     plane_points_ = candidates.size();
     if (!plane_.problem.empty()) {
       throw UserError(model_.source, "points3D", plane_.problem,
-                      "the sample's plane cannot be made out in them: photograph it so that it and "
-                      "the flat ground round it fill the pictures, say with [poses] corners_px "
-                      "where it lies, or widen --plane-tolerance for a rough sample");
+                      "the sample's plane cannot be determined from them: photograph it so that it "
+                      "and the flat surface around it fill the pictures, give its position with "
+                      "[poses] corners_px, or increase --plane-tolerance for a rough sample");
     }
     TurnTowardCameras();
   }
@@ -125,8 +125,8 @@ class PlaneFinder {
     throw UserError(model_.source, "points3D",
                     fmt::format("a plane with {} cameras above and {} below it", above,
                                 centres_.size() - above),
-                    "it is not the sample's: leave out photographs of other things, or say with "
-                    "[poses] corners_px where the sample lies");
+                    "it is not the sample's: leave out photographs of other things, or give the "
+                    "sample's position with [poses] corners_px");
   }
 
   const Capture& capture_;
@@ -150,8 +150,8 @@ const PosedPhoto& PhotoNamed(const Capture& capture, const std::vector<PosedPhot
   for (const PosedPhoto& photo : photos) {
     if (photo.name == name) return photo;
   }
-  throw UserError(capture.file, "poses", "'" + name + "', which the COLMAP model does not hold",
-                  "name a photograph that it does: " + photos[0].name);
+  throw UserError(capture.file, "poses", "'" + name + "', which the COLMAP model does not contain",
+                  "name a photograph that it contains: " + photos[0].name);
 }
 
 PlaneFit FindSamplePlane(const Capture& capture, const PosedModel& model,

@@ -118,13 +118,12 @@ std::string ValidationText(const CrossValidation& validation) {
         "odd/even photographs, camera {}: projections differ by {:.3f} px RMS, predicted {:.3f} "
         "(ratio {:.2f})",
         camera.camera, camera.rms_px, camera.predicted_px, camera.ratio());
-    text += camera.trusted()
-                ? ": the uncertainties can be trusted\n"
-                : fmt::format(
-                      ": not noise but the model of lens, board or shutter limits this "
-                      "calibration; take uncertainties {:.1f} times as large, see "
-                      "odd_even_camera{}.png, try --model auto\n",
-                      camera.ratio(), camera.camera);
+    text += camera.trusted() ? ": the uncertainties can be trusted\n"
+                             : fmt::format(
+                                   ": the model of lens, board or shutter, not noise, limits this "
+                                   "calibration; multiply the uncertainties by {:.1f}, see "
+                                   "odd_even_camera{}.png, try --model auto\n",
+                                   camera.ratio(), camera.camera);
   }
   return text;
 }
@@ -137,7 +136,7 @@ std::string SampleText(const BundleResult& result, const Trust& trust) {
   if (trust.texel_mm > 0) {
     text += fmt::format(" ({:.2f} texel)", trust.sample_sigma_mm / trust.texel_mm);
   }
-  return text + fmt::format("; least well in {}: ± {:.4f} mm\n", result.photos[worst].name,
+  return text + fmt::format("; least certain in {}: ± {:.4f} mm\n", result.photos[worst].name,
                             trust.sample[worst].sigma_mm);
 }
 

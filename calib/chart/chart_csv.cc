@@ -143,12 +143,12 @@ Chart ReadChartCsv(const std::filesystem::path& file, std::string_view illuminan
   constexpr double kDarkest = 2;  // a chart without a patch above 2 % is one whose white is 1
   if (brightest <= kDarkest) {
     throw UserError(file, table.lab() ? "L" : "Y", "no value above 2",
-                    "give colours of which a perfect white has L = 100, Y = 100");
+                    "give colours in which a perfect white has L = 100, Y = 100");
   }
   SetHalfSides(&chart.patches);
   for (const ChartPatch& patch : chart.patches) {
     if (patch.half_side > 0) continue;
-    throw UserError(file, patch.name, "two patches at one place", "correct x and y");
+    throw UserError(file, patch.name, "two patches at the same position", "correct x and y");
   }
   return chart;
 }

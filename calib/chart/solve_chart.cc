@@ -164,7 +164,8 @@ Eigen::Vector3d WhiteOf(const ColourCorrection& reflectance) {
     if (step.cwiseAbs().maxCoeff() < 1e-12 * rgb.maxCoeff()) break;
   }
   if (!rgb.allFinite() || (reflectance(rgb) - white).norm() > 1e-6) {
-    throw ComputationError("the chart's colours could not be fitted: no white is left white");
+    throw ComputationError(
+        "the chart's colours could not be fitted: no stored colour maps to white");
   }
   return rgb;
 }

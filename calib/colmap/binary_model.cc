@@ -65,7 +65,7 @@ class Reader {
  private:
   [[noreturn]] void CutOff() const {
     throw UserError(file_, field_, fmt::format("the file's end at byte {}", bytes_.size()),
-                    "the file is cut off, or is not a COLMAP model; copy or export it again");
+                    "the file is truncated, or is not a COLMAP model; copy or export it again");
   }
 
   fs::path file_;

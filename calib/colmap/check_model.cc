@@ -90,7 +90,7 @@ void CheckModel(const std::vector<fs::path>& files, const ColmapModel& model) {
   const auto cameras = IndexOf(files[0], "camera", model.cameras);
   const auto images = IndexOf(files[1], "image", model.images);
   const auto points = IndexOf(files[2], "point", model.points);
-  const std::string remedy = "the three files are not of one model; export it again";
+  const std::string remedy = "the three files do not belong to one model; export it again";
   for (const ColmapImage& image : model.images) {
     const std::string field = fmt::format("image {} ({})", image.id, image.name);
     if (cameras.count(image.camera_id) == 0) {

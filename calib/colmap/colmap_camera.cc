@@ -205,7 +205,7 @@ ConvertedCamera ConvertCamera(const std::filesystem::path& file, const ColmapCam
     const auto back = NormalizedFromImage(converted.camera, ray.point_px);
     if (!back || !(error_px <= kLargestConversion_px)) {
       Refuse(file, camera,
-             fmt::format("a lens that no perspective camera follows (off by {:.2f} pixels)",
+             fmt::format("a lens that no perspective camera model fits (off by {:.2f} pixels)",
                          error_px));
     }
     converted.rms_px += error_px * error_px / rays.size();

@@ -165,11 +165,11 @@ PlaneFit FitPlane(const std::vector<CloudPoint>& points, const PlaneOptions& opt
   Judge(points, options, &plane);
   if (plane.share < options.min_share || plane.inliers < options.min_points) {
     plane.problem = fmt::format(
-        "the points scattered: the best plane holds {} of {} ({:.0f} % by weight; {:.0f} % are "
+        "the points scattered: the best plane contains {} of {} ({:.0f} % by weight; {:.0f} % are "
         "needed)",
         plane.inliers, points.size(), 100 * plane.share, 100 * options.min_share);
   } else if (!(std::sqrt(spread[1]) > options.min_spread * std::sqrt(spread[2]))) {
-    plane.problem = "the points along a line, which lies on many planes";
+    plane.problem = "the points along a line, which does not determine a plane";
   }
   return plane;
 }

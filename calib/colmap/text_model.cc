@@ -95,9 +95,10 @@ class Fields {
   }
 
   [[noreturn]] void Reject(const char* what, const std::string& found) const {
-    throw UserError(lines_.file(), lines_.place() + ": " + what, found,
-                    "the file is cut off, or is not a model in COLMAP 3.8's text format; export it "
-                    "again");
+    throw UserError(
+        lines_.file(), lines_.place() + ": " + what, found,
+        "the file is truncated, or is not a model in COLMAP 3.8's text format; export it "
+        "again");
   }
 
  private:
@@ -204,9 +205,10 @@ std::string ImagesText(const ColmapModel& model) {
       model.images.size());
   for (const ColmapImage& image : model.images) {
     if (image.name.find_first_of(" \t\r\n") != std::string::npos) {
-      throw UserError("images.txt: image '" + image.name +
-                      "': found white space in the name, which COLMAP's text format cannot hold; "
-                      "rename the photograph, or write the model as binary");
+      throw UserError(
+          "images.txt: image '" + image.name +
+          "': found white space in the name, which COLMAP's text format does not allow; "
+          "rename the photograph, or write the model as binary");
     }
     text += std::to_string(image.id);
     for (const double q : image.quaternion_wxyz) text += fmt::format(" {}", q);

@@ -50,8 +50,8 @@ std::string ExplainMismatch(const GrayImage& image, const Board& board,
   std::swap(other.squares_x, other.squares_y);
   if (board.squares_x != board.squares_y && Explains(other, seen, agreeing)) {
     return fmt::format(
-        "the markers lie as on a board of {} x {} squares, not of {} x {}; exchange squares, and "
-        "check window, in [board]",
+        "the markers lie as on a board of {} x {} squares, not of {} x {}; swap the two numbers of "
+        "squares, and check window, in [board]",
         other.squares_x, other.squares_y, board.squares_x, board.squares_y);
   }
   if (const double share = ShareOfMarkers(board, seen, agreeing); share > 0) {
@@ -67,7 +67,7 @@ std::string ExplainMismatch(const GrayImage& image, const Board& board,
   const auto seen_then = FindMarkers(image, other.dictionary, options.longest_px, markers);
   if (!Explains(other, seen_then, agreeing)) return "";
   return fmt::format(
-      "its {} markers are of {} or a larger one of that family, not of {}; correct "
+      "its {} markers are of {} or of a larger dictionary of that family, not of {}; correct "
       "dictionary in [board]",
       seen_then.size(), other.dictionary, board.dictionary);
 }

@@ -240,7 +240,7 @@ BoardDetection DetectCheckerboard(const GrayImage& image, const Board& board,
       longer == std::max(columns, rows) && shorter == std::min(columns, rows);
   if (!detection.position_known) {
     detection.problem = fmt::format(
-        "only {} x {} of the {} x {} inner corners seen, so that their place on the board is "
+        "only {} x {} of the {} x {} inner corners seen, so their position on the board is "
         "unknown",
         longer, shorter, columns, rows);
   }

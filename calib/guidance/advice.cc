@@ -22,7 +22,7 @@ int Percent(double share) { return static_cast<int>(std::lround(100 * share)); }
 void AddOverBoard(const GuidanceInput& input, List* list) {
   if (input.over_board.empty()) return;
   list->push_back({"over_board", Importance::kNeeded,
-                   "the sample as described reaches over the printed board (" + input.over_board +
+                   "the sample as described overlaps the printed board (" + input.over_board +
                        "), which would become part of the material: correct [sample] size_mm and "
                        "centre_mm, or [board] window"});
 }
@@ -50,12 +50,12 @@ void AddFocal(const GuidanceInput& input, const Verdict& v, List* list) {
   const std::string remedy = "take two or three tilted by 20 to 40° toward different sides";
   if (input.focal_assumed) {
     list->push_back({"focal", Importance::kNeeded,
-                     "the focal length cannot be told from these photographs, so that angles here "
-                     "are rough and a calibration would fail: " +
+                     "the focal length cannot be determined from these photographs, so angles here "
+                     "are approximate and a calibration would fail: " +
                          remedy});
   } else if (input.focal_sigma >= v.limits.focal_sigma) {
     list->push_back({"focal", Importance::kUseful,
-                     fmt::format("the focal length is known to {:.1f} % only: {}",
+                     fmt::format("the focal length is known only to {:.1f} %: {}",
                                  100 * input.focal_sigma, remedy)});
   }
 }
@@ -84,8 +84,8 @@ double LargestTilt_deg(const Verdict& v) {
 void AddTilted(const Verdict& v, List* list) {
   if (v.tilted_views > 0) return;
   list->push_back({"tilted", Importance::kUseful,
-                   fmt::format("all photographs look straight down (within {:.0f}°), which tells "
-                               "little of relief and gloss: take some tilted by 20 to 40° from "
+                   fmt::format("all photographs look straight down (within {:.0f}°), which reveals "
+                               "little about relief and gloss: take some tilted by 20 to 40° from "
                                "several sides",
                                LargestTilt_deg(v))});
 }
@@ -102,10 +102,11 @@ void AddTop(const Verdict& v, List* list) {
   if (v.top_views > 0) return;
   double nearest = 180;
   for (const ViewFacts& view : v.views) nearest = std::min(nearest, view.camera.tilt_deg);
-  list->push_back({"top", Importance::kUseful,
-                   fmt::format("no photograph within {:.0f}° of the top (the nearest is {:.0f}° "
-                               "off), from which the fit starts: take one straight from above",
-                               v.limits.top_deg, nearest)});
+  list->push_back(
+      {"top", Importance::kUseful,
+       fmt::format("no photograph within {:.0f}° of the top (the nearest is {:.0f}° off), from "
+                   "which the fit is initialised: take one straight from above",
+                   v.limits.top_deg, nearest)});
 }
 
 void AddHighlight(const Verdict& v, List* list) {
@@ -139,12 +140,13 @@ void AddResolution(const GuidanceInput& input, const Verdict& v, List* list) {
   for (const ViewFacts& view : v.views) {
     if (view.texel_px == px) distance_mm = view.distance_mm;
   }
-  list->push_back({"resolution", Importance::kUseful,
-                   fmt::format("the sample is small in the photographs: a pixel of the sharpest "
-                               "covers {:.1f} texels; go as near as {:.0f} mm (now {:.0f}), or set "
-                               "resolution_px = {:.0f}",
-                               1 / px, distance_mm * px, distance_mm,
-                               std::max(8.0, std::floor(input.resolution_px[0] * px)))});
+  list->push_back(
+      {"resolution", Importance::kUseful,
+       fmt::format("the sample is small in the photographs: a pixel of the sharpest "
+                   "covers {:.1f} texels; move as close as {:.0f} mm (now {:.0f}), or set "
+                   "resolution_px = {:.0f}",
+                   1 / px, distance_mm * px, distance_mm,
+                   std::max(8.0, std::floor(input.resolution_px[0] * px)))});
 }
 
 void AddCut(const Verdict& v, List* list) {
@@ -156,7 +158,7 @@ void AddCut(const Verdict& v, List* list) {
   }
   if (names.empty()) return;
   list->push_back({"cut", Importance::kHint,
-                   fmt::format("{} show{} part of the sample only: {}", Counted(names.size()),
+                   fmt::format("{} show{} only part of the sample: {}", Counted(names.size()),
                                names.size() == 1 ? "s" : "", NameList(names))});
 }
 
@@ -202,7 +204,7 @@ std::vector<Advice> AdviceFor(const GuidanceInput& input, const Verdict& verdict
   AddSides(verdict, &list);
   AddTop(verdict, &list);
   AddHighlight(verdict, &list);
-  AddClipped(verdict, "expose shorter or step back", &list);
+  AddClipped(verdict, "use a shorter exposure or step back", &list);
   AddResolution(input, verdict, &list);
   AddLeftOut(input, verdict, "take them again", &list);
   AddCut(verdict, &list);

@@ -20,30 +20,30 @@ void AddFewLights(const Verdict& v, std::vector<Advice>* list) {
   if (now >= v.limits.enough_lights) return;
   list->push_back({"few_lights",
                    now < v.limits.few_lights ? Importance::kUseful : Importance::kHint,
-                   fmt::format("{} light{}: {} or more, spread over the half sphere, tell gloss, "
-                               "relief and shadows apart",
+                   fmt::format("{} light{}: {} or more, spread over the hemisphere, are needed to "
+                               "tell gloss, relief and shadows apart",
                                now, now == 1 ? "" : "s", v.limits.enough_lights)});
 }
 
 void AddLightSides(const Verdict& v, std::vector<Advice>* list) {
   if (v.light_gap.width_deg <= v.limits.light_gap_deg) return;
   list->push_back({"light_sides", Importance::kUseful,
-                   fmt::format("no light from the {} (a gap of {:.0f}° of 360), so that slopes "
-                               "toward it are told by little: add some from there",
+                   fmt::format("no light from the {} (a gap of {:.0f}° of 360), so slopes toward "
+                               "it are poorly determined: add some from there",
                                SideName(v.light_gap.middle_deg), v.light_gap.width_deg)});
 }
 
 void AddHeights(const Verdict& v, std::vector<Advice>* list) {
   if (v.highest_light_deg < v.limits.high_deg) {
-    list->push_back({"high_lights", Importance::kUseful,
-                     fmt::format("the highest light stands {:.0f}° above the sample's plane: "
-                                 "highlights of level parts, which tell roughness, need some above "
-                                 "{:.0f}°",
-                                 v.highest_light_deg, v.limits.high_deg)});
+    list->push_back(
+        {"high_lights", Importance::kUseful,
+         fmt::format("the highest light is {:.0f}° above the sample's plane: highlights on level "
+                     "parts, which reveal roughness, need lights above {:.0f}°",
+                     v.highest_light_deg, v.limits.high_deg)});
   }
   if (v.lowest_light_deg > v.limits.low_deg) {
     list->push_back({"low_lights", Importance::kHint,
-                     fmt::format("the lowest light stands {:.0f}° above the sample's plane: fine "
+                     fmt::format("the lowest light is {:.0f}° above the sample's plane: fine "
                                  "relief shows best in light from 15 to {:.0f}°",
                                  v.lowest_light_deg, v.limits.low_deg)});
   }
@@ -63,8 +63,8 @@ void DescribeLights(const GuidanceInput& input, Verdict* verdict) {
 
 std::string LightSummary(const Verdict& verdict) {
   return fmt::format(
-      "camera fixed, {} light{}, {:.0f} to {:.0f}° above the sample's plane, the largest gap "
-      "between their sides {:.0f}°",
+      "camera fixed, {} light{}, {:.0f} to {:.0f}° above the sample's plane, the largest gap in "
+      "azimuth {:.0f}°",
       verdict.views.size(), verdict.views.size() == 1 ? "" : "s", verdict.lowest_light_deg,
       verdict.highest_light_deg, verdict.light_gap.width_deg);
 }
@@ -74,8 +74,8 @@ std::vector<Advice> LightAdviceFor(const GuidanceInput& input, const Verdict& ve
   AddFewLights(verdict, &list);
   AddLightSides(verdict, &list);
   AddHeights(verdict, &list);
-  AddClipped(verdict, "expose shorter", &list);
-  AddLeftOut(input, verdict, "correct the list of lights, or leave them", &list);
+  AddClipped(verdict, "use a shorter exposure", &list);
+  AddLeftOut(input, verdict, "correct the list of lights, or leave these photographs out", &list);
   std::stable_sort(list.begin(), list.end(), [](const Advice& a, const Advice& b) {
     return static_cast<int>(a.importance) < static_cast<int>(b.importance);
   });

@@ -164,7 +164,7 @@ bool HoldOne(const State& state, const Layout& layout, const Eigen::MatrixXd& co
     held->hold_gloss = true;
     held->gloss = 0;
     words->push_back(
-        "the paper's gloss is held at 0: the photographs do not tell it from the "
+        "the paper's gloss is fixed at 0: the photographs do not distinguish it from the "
         "light's fall-off");
     return true;
   }
@@ -175,8 +175,8 @@ bool HoldOne(const State& state, const Layout& layout, const Eigen::MatrixXd& co
       held->hold_ambient = true;
       held->ambient.setZero();
       words->push_back(fmt::format(
-          "the room's light is held at 0: it would be uncertain by {:.1f} % of the flash's; more "
-          "photographs from several heights and sides tell it",
+          "the ambient illumination is fixed at 0: it would be uncertain by {:.1f} % of the flash; "
+          "to determine it, take more photographs from several heights and sides",
           100 * worst));
       return true;
     }
@@ -188,20 +188,20 @@ bool HoldOne(const State& state, const Layout& layout, const Eigen::MatrixXd& co
                         covariance.block<3, 3>(layout.vignetting[c], layout.vignetting[c]));
     if (worst <= kVignetting) continue;
     held->hold_vignetting[c] = true;
-    words->push_back(fmt::format(
-        "the lens's fall-off of camera {} is held: it would be uncertain by {:.1f} %; more "
-        "photographs with the board at the picture's rim tell it",
-        c, 100 * worst));
+    words->push_back(
+        fmt::format("the lens's fall-off of camera {} is fixed: it would be uncertain by {:.1f} %; "
+                    "to determine it, take more photographs with the board near the picture's edge",
+                    c, 100 * worst));
     return true;
   }
   if (layout.flash >= 0) {
     const double worst = std::max(sigma(layout.flash), sigma(layout.flash + 1));
     if (worst > kFlash_mm) {
       held->hold_flash = true;
-      words->push_back(fmt::format(
-          "the flash is held where [light] offset_mm puts it: its place would be uncertain by "
-          "{:.0f} mm; tilted photographs from several sides tell it",
-          worst));
+      words->push_back(
+          fmt::format("the flash is fixed at [light] offset_mm: its position would be uncertain by "
+                      "{:.0f} mm; to determine it, take tilted photographs from several sides",
+                      worst));
       return true;
     }
   }

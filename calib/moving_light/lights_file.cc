@@ -47,7 +47,7 @@ std::map<std::string, int> IndexOf(const LightsFile& file, const std::vector<std
     const auto [at, added] = index.insert({key(WithoutFolders(photos[i])), static_cast<int>(i)});
     if (added) continue;
     throw UserError(file.file, "",
-                    fmt::format("{} and {}, which it cannot tell apart",
+                    fmt::format("{} and {}, which it cannot distinguish",
                                 photos[static_cast<size_t>(at->second)], photos[i]),
                     "name one of them in [photos] files, or rename them");
   }
@@ -95,8 +95,10 @@ LightsFile ReadLightsFile(const fs::path& file, const std::string& unit, double 
     if (!read.lights.empty()) return read;
     throw UserError(file, "", "no lights", "give a file that lists one for each photograph");
   }
-  throw UserError(file, "", "'" + file.extension().string() + "', an ending of no list of lights",
-                  "give one that ends in " + LightsFileEndings());
+  throw UserError(
+      file, "",
+      "'" + file.extension().string() + "', which is not an extension of a list of lights",
+      "give one that ends in " + LightsFileEndings());
 }
 
 std::vector<int> MatchLights(const LightsFile& file, const std::vector<std::string>& photos,
@@ -120,22 +122,22 @@ std::vector<int> MatchLights(const LightsFile& file, const std::vector<std::stri
     int& light = lights[static_cast<size_t>(photo_of[i])];
     if (light >= 0) {
       throw UserError(file.file, "", fmt::format("two lights of {}", file.lights[i].photo),
-                      "take one of them out");
+                      "remove one of them");
     }
     light = static_cast<int>(i);
   }
   if (missing.size() == file.lights.size() && as_many) {
-    remarks->push_back(fmt::format(
-        "{}: none of its names ({}) is a photograph's; lights and photographs are taken in order, "
-        "{} first",
-        file.file.string(), NameList(missing, 2), photos[0]));
+    remarks->push_back(
+        fmt::format("{}: none of its names ({}) is a photograph's; lights are assigned to "
+                    "photographs in order, {} first",
+                    file.file.string(), NameList(missing, 2), photos[0]));
     return InOrder(photos.size());
   }
   if (missing.empty()) return lights;
   throw UserError(file.file, "",
                   fmt::format("{} of {} names without a photograph: {}", missing.size(),
                               file.lights.size(), NameList(missing)),
-                  "put the photographs into the capture, or take their lines out");
+                  "add the photographs to the capture, or remove their lines");
 }
 
 }  // namespace glint

@@ -86,7 +86,7 @@ ListedLight LightOf(const fs::path& file, const std::string& place, const Eigen:
   const std::string found =
       fmt::format("the vector {:g} {:g} {:g}", vector.x(), vector.y(), vector.z());
   if (!(length > 0)) {
-    throw UserError(file, place, found, "it has no direction: correct it or take the line out");
+    throw UserError(file, place, found, "it has no direction: correct it or remove the line");
   }
   ListedLight light;
   light.direction = vector / length;
@@ -99,7 +99,7 @@ ListedLight LightOf(const fs::path& file, const std::string& place, const Eigen:
   constexpr double kLeast = 0.5, kMost = 2;
   if (length < kLeast || length > kMost) {
     throw UserError(file, place, fmt::format("{}, of length {:.4g}", found, length),
-                    "directions have length 1; where these are positions say so in [lights]: unit "
+                    "directions have length 1; if these are positions, state it in [lights]: unit "
                     "= \"mm\" (or cm, m)");
   }
   return light;
@@ -144,7 +144,7 @@ LightsFile ReadLpFile(const fs::path& file, const std::string& unit) {
     throw UserError(
         file, "line 1",
         fmt::format("{:g} lights announced, {} listed", *announced, result.lights.size()),
-        "correct the number, or complete the list: is the file cut off?");
+        "correct the number, or complete the list: is the file truncated?");
   }
   constexpr double kWorthAWord = 0.05;
   if (unit.empty() && worst > kWorthAWord) {

@@ -70,7 +70,7 @@ std::vector<Rectangle> Cells(const Image& image) {
 Photo ReadDeveloped(const fs::path& file) {
   Photo photo = ReadPhoto(file);
   if (!photo.is_float() && !IsRawFileName(file)) return photo;
-  throw UserError(file, "", "a RAW or float photograph, which is linear by nature",
+  throw UserError(file, "", "a RAW or float photograph, which is already linear",
                   "give the camera's JPEGs; RAW needs no response curve");
 }
 
@@ -128,7 +128,7 @@ Rectangle Bounded(const GreyPatch& patch, const Image& image, const fs::path& fi
   }
   throw UserError(
       file, "patches",
-      fmt::format("a patch at ({}, {}) of {}x{} pixels, outside of a photograph of {}x{}", patch.x,
+      fmt::format("a patch at ({}, {}) of {}x{} pixels, outside a photograph of {}x{}", patch.x,
                   patch.y, patch.width, patch.height, image.width, image.height),
       "give rectangles of the upright photograph, in pixels");
 }

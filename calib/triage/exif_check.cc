@@ -35,41 +35,39 @@ void CheckSize(const PhotoMeasures& photo, std::vector<Remark>* remarks) {
   const bool scaled =
       std::abs(static_cast<double>(a) * d / (static_cast<double>(b) * c) - 1) < 0.01;
   Say(photo,
-      fmt::format(
-          "EXIF tells of {}x{} pixels, the picture has {}x{}: it was {} after it was taken; "
-          "use the camera's own file{}",
-          exif.width_px, exif.height_px, width, height, scaled ? "scaled" : "cropped",
-          scaled ? "" : ", or its focal length and centre mean nothing"),
+      fmt::format("EXIF reports {}x{} pixels, the picture has {}x{}: it was {} after it was taken; "
+                  "use the camera's own file{}",
+                  exif.width_px, exif.height_px, width, height, scaled ? "scaled" : "cropped",
+                  scaled ? "" : ", or its focal length and centre are meaningless"),
       remarks);
 }
 
 void CheckLens(const PhotoMeasures& photo, std::vector<Remark>* remarks) {
   const ExifFacts& exif = photo.file.exif;
   if (exif.focal_is_zero) {
-    Say(photo, "EXIF tells a focal length of 0 mm; the board alone decides", remarks);
+    Say(photo, "EXIF reports a focal length of 0 mm; only the board is used", remarks);
   }
   // A sensor as large as film and larger is no phone's; its crop factor would be 1 or less.
   if (exif.focal_length_mm > 0 && photo.file.focal_length_35mm > 0 &&
       photo.file.focal_length_35mm < 0.7 * exif.focal_length_mm) {
     Say(photo,
-        fmt::format("EXIF tells a focal length of {:g} mm and {:g} mm as its 35 mm equivalent, "
-                    "which contradict each other; the board alone decides",
+        fmt::format("EXIF reports a focal length of {:g} mm and {:g} mm as its 35 mm equivalent, "
+                    "which contradict each other; only the board is used",
                     exif.focal_length_mm, photo.file.focal_length_35mm),
         remarks);
   }
   if (exif.digital_zoom > 1.01) {
     Say(photo,
         fmt::format(
-            "EXIF tells a digital zoom of {:g}: the picture is enlarged; photograph without",
+            "EXIF reports a digital zoom of {:g}: the picture is enlarged; photograph without zoom",
             exif.digital_zoom),
         remarks);
   }
   if (!QuarterTurns(photo.file.orientation)) {
     Say(photo,
-        fmt::format(
-            "orientation {} unmirrors a mirrored picture, which no camera stores: it counts "
-            "as a camera of its own",
-            photo.file.orientation),
+        fmt::format("orientation {} is that of a mirrored picture, which no camera stores: it is "
+                    "treated as a camera of its own",
+                    photo.file.orientation),
         remarks);
   }
 }
@@ -78,19 +76,20 @@ void CheckExposure(const PhotoMeasures& photo, std::vector<Remark>* remarks) {
   const Photo& file = photo.file;
   if (Differ(file.exposure_time_s, file.exif.shutter_s, kStops)) {
     Say(photo,
-        fmt::format("EXIF tells an exposure time of {:.5g} s and a shutter speed of {:.5g} s; the "
-                    "first is used",
-                    file.exposure_time_s, file.exif.shutter_s),
+        fmt::format(
+            "EXIF reports an exposure time of {:.5g} s and a shutter speed of {:.5g} s; the "
+            "first is used",
+            file.exposure_time_s, file.exif.shutter_s),
         remarks);
   }
   if (Differ(file.f_number, file.exif.aperture_f, 0.5 * kStops)) {
     Say(photo,
         fmt::format(
-            "EXIF tells an f-number of {:.3g} and an aperture of f/{:.3g}; the first is used",
+            "EXIF reports an f-number of {:.3g} and an aperture of f/{:.3g}; the first is used",
             file.f_number, file.exif.aperture_f),
         remarks);
   }
-  if (file.exif.iso_is_zero) Say(photo, "EXIF tells an ISO of 0, which is none", remarks);
+  if (file.exif.iso_is_zero) Say(photo, "EXIF reports an ISO of 0, which is invalid", remarks);
 }
 
 void SayAll(std::string text, std::vector<Remark>* remarks) {
@@ -113,10 +112,11 @@ void CheckColours(const std::vector<PhotoMeasures>& photos, std::vector<Remark>*
     }
   }
   if (!grey.empty()) {
-    SayAll(fmt::format("{}: stored in grey: the maps will have no colour. Copy the camera's own "
-                       "files, or switch its monochrome mode off",
-                       NameList(grey, 4)),
-           remarks);
+    SayAll(
+        fmt::format("{}: stored as greyscale: the maps will have no colour. Copy the camera's own "
+                    "files, or switch its monochrome mode off",
+                    NameList(grey, 4)),
+        remarks);
   }
   for (const auto& [profile, names] : ignored) {
     SayAll(fmt::format("{}: the colour profile '{}' is not used ({}), colours are read as sRGB; "
@@ -125,18 +125,17 @@ void CheckColours(const std::vector<PhotoMeasures>& photos, std::vector<Remark>*
            remarks);
   }
   if (unknown.empty()) return;
-  SayAll(
-      fmt::format("{}: EXIF says that the colours are not sRGB's, and no profile says whose they "
-                  "are: read as sRGB; set the camera to sRGB, or let the profile in the file",
-                  NameList(unknown, 4)),
-      remarks);
+  SayAll(fmt::format("{}: EXIF says that the colours are not sRGB, and no profile says what they "
+                     "are: read as sRGB; set the camera to sRGB, or keep the profile in the file",
+                     NameList(unknown, 4)),
+         remarks);
 }
 
 void CheckModels(const std::vector<PhotoMeasures>& photos, std::vector<Remark>* remarks) {
   std::map<std::string, std::vector<std::string>> by_model;
   for (const PhotoMeasures& photo : photos) {
     const std::string& model = photo.file.camera_model;
-    by_model[model.empty() ? "a camera that is not told" : model].push_back(photo.name);
+    by_model[model.empty() ? "an unknown camera" : model].push_back(photo.name);
   }
   if (by_model.size() < 2) return;
   std::string text = "photographs of several cameras in one capture: ";
@@ -145,7 +144,7 @@ void CheckModels(const std::vector<PhotoMeasures>& photos, std::vector<Remark>* 
     text += (first ? "" : "; ") + model + " (" + NameList(names, 4) + ")";
     first = false;
   }
-  SayAll(text + ". Each gets intrinsics of its own; their colours and exposures do not compare",
+  SayAll(text + ". Each gets intrinsics of its own; their colours and exposures are not comparable",
          remarks);
 }
 
@@ -158,14 +157,14 @@ void CheckFlash(const std::vector<PhotoMeasures>& photos, std::vector<Remark>* r
     if ((photo.file.exif.flash & 1) == 0) without.push_back(&photo);
   }
   if (told > 1 && without.size() == told) {
-    SayAll(fmt::format("EXIF tells that the flash fired in none of {} photographs; switch it on, "
+    SayAll(fmt::format("EXIF reports that the flash fired in none of {} photographs; switch it on, "
                        "or light them with the phone's lamp",
                        told),
            remarks);
     return;
   }
   for (const PhotoMeasures* photo : without) {
-    Say(*photo, "EXIF tells that the flash did not fire; leave it out, or switch the flash on",
+    Say(*photo, "EXIF reports that the flash did not fire; leave it out, or switch the flash on",
         remarks);
   }
 }
@@ -190,12 +189,12 @@ void CheckCompleteness(const std::vector<PhotoMeasures>& photos, std::vector<Rem
   if (missing.empty()) return;
   if (missing.size() == flash) {
     SayAll(
-        "no photograph's EXIF tells exposure time, ISO and f-number; all exposures are taken as "
+        "no photograph's EXIF reports exposure time, ISO and f-number; all exposures are assumed "
         "equal: keep exposure locked, or keep EXIF when copying",
         remarks);
   } else {
-    SayAll(fmt::format("{} of {} photographs do not tell their exposure: {}. All exposures are "
-                       "taken as equal; give the camera's own files",
+    SayAll(fmt::format("{} of {} photographs have no exposure in their EXIF: {}. All exposures are "
+                       "assumed equal; use the camera's own files",
                        missing.size(), flash, NameList(missing, 4)),
            remarks);
   }
@@ -213,7 +212,7 @@ void CheckWhiteBalance(const std::vector<PhotoMeasures>& photos, std::vector<Rem
     if (off <= kWhiteBalance) continue;
     Say(photo,
         fmt::format("the camera's white balance (red {:.3f}, blue {:.3f}) is not that of {} "
-                    "({:.3f}, {:.3f}); fix the white balance in the camera",
+                    "({:.3f}, {:.3f}); lock the white balance in the camera",
                     balance[0], balance[2], first->name, reference[0], reference[2]),
         remarks);
   }
@@ -232,7 +231,7 @@ void CheckFormats(const std::vector<PhotoMeasures>& photos, std::vector<Remark>*
   }
   if (linear.empty() || others == 0) return;
   SayAll("RAW or float photographs (" + NameList(linear, 4) +
-             ") beside developed ones: their brightness does not compare; use one kind",
+             ") together with developed ones: their brightness is not comparable; use one kind",
          remarks);
 }
 

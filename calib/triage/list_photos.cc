@@ -96,7 +96,7 @@ std::vector<std::string> OwnRemarks(const ListedPhoto& photo) {
   std::vector<std::string> texts;
   for (const Remark& remark : CheckExif({photo.measures})) texts.push_back(remark.text);
   const Photo& f = photo.measures.file;
-  if (f.exposure() == 0) texts.emplace_back("its exposure is not told");
+  if (f.exposure() == 0) texts.emplace_back("EXIF reports no exposure");
   return texts;
 }
 

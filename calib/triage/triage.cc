@@ -66,10 +66,9 @@ void FindBadlyExposed(const PhotoMeasures& photo, const TriageOptions& options,
   if (photo.clipped > options.clipped) {
     remarks->push_back(
         {photo.name, RemarkKind::kOverexposed,
-         fmt::format(
-             "overexposed: {:.0f} % of {} has a channel at its end (limit {:.0f} %); expose "
-             "less",
-             100 * photo.clipped, where, 100 * options.clipped),
+         fmt::format("overexposed: {:.0f} % of {} has a saturated channel (limit {:.0f} %); expose "
+                     "less",
+                     100 * photo.clipped, where, 100 * options.clipped),
          photo.clipped, options.clipped, photo.clipped > 0.5});
   }
   // Linear pictures are brightened before they are looked at.
@@ -117,10 +116,9 @@ void FindDuplicate(const std::vector<PhotoMeasures>& photos, size_t index,
     if (difference > options.duplicate) continue;
     remarks->push_back(
         {photo.name, RemarkKind::kDuplicate,
-         fmt::format(
-             "shows what {} shows: reduced, they differ by {:.2f} of 255 (limit {:.1f}); it "
-             "adds nothing but weight: leave one out",
-             other.name, difference, options.duplicate),
+         fmt::format("shows the same as {}: reduced in size, they differ by {:.2f} of 255 (limit "
+                     "{:.1f}); it only gives this view more weight: leave one out",
+                     other.name, difference, options.duplicate),
          difference, options.duplicate, true});
     return;
   }

@@ -83,7 +83,7 @@ bool Significant(const BoardBend& bend) {
 std::string BendInWords(const Diagnosis& diagnosis, bool solved_for) {
   const BoardBend& bend = *diagnosis.bend;
   std::string text = fmt::format(
-      "the board is bent: its middle stands {:.2f} ± {:.2f} mm above its left and right edges and "
+      "the board is bent: its middle is {:.2f} ± {:.2f} mm above its left and right edges and "
       "{:.2f} ± {:.2f} mm above its top and bottom edges",
       bend.height_mm.x(), std::sqrt(bend.covariance(0, 0)), bend.height_mm.y(),
       std::sqrt(bend.covariance(1, 1)));
@@ -222,7 +222,7 @@ void LookForMisprints(const BundleResult& result, Diagnosis* out) {
   if (n == 0 || misplaced < std::max<int>(2, static_cast<int>(n / 10))) return;
   out->words.push_back(fmt::format(
       "{} of {} corners seem to lie elsewhere on the board than described, by {:.3f} mm RMS over "
-      "all: a board that is bent otherwise than in two parabolas, or a printer's or lens's fault",
+      "all: the board is bent other than in two parabolas, or the printer or lens is at fault",
       misplaced, n, out->place_rms_mm));
 }
 

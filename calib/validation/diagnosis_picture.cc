@@ -97,9 +97,10 @@ Image PlacesPicture(const Diagnosis& diagnosis, int width_px) {
     const Eigen::Vector2d arrow(place.offset_mm.x(), -place.offset_mm.y());
     cv::arrowedLine(canvas, At(at), At(at + lengthening * arrow), kInk, 1, cv::LINE_AA, 0, 0.25);
   }
-  Write(fmt::format("corners' mean offset on the board: arrows {:.0f} times as long, RMS {:.4f} mm",
-                    lengthening / scale, plane_rms),
-        {10, rows + 18}, 0.5, &canvas);
+  Write(
+      fmt::format("corners' mean offset on the board: arrows magnified {:.0f} times, RMS {:.4f} mm",
+                  lengthening / scale, plane_rms),
+      {10, rows + 18}, 0.5, &canvas);
   Write(fmt::format("discs: above (red) or below (blue) the board's plane, full at {:.3f} mm",
                     2 * height_rms),
         {10, rows + 38}, 0.5, &canvas);
@@ -128,10 +129,11 @@ Image PhotosPicture(const BundleResult& result, const Diagnosis& diagnosis, int 
         {kGap + column * (side + kGap), kGap + line * (high + kText + kGap), side, high}, scale};
     DrawPhoto(result.photos[photos[k]], diagnosis.photos[photos[k]], lengthening, tile, &canvas);
   }
-  Write(fmt::format("camera {}: residuals {:.0f} times as long; cross: how far they scatter along "
-                    "and across their main direction",
-                    camera, lengthening / scale),
-        {kGap, canvas.rows - 10}, 0.5, &canvas);
+  Write(
+      fmt::format("camera {}: residuals magnified {:.0f} times; cross: how far they scatter along "
+                  "and across their main direction",
+                  camera, lengthening / scale),
+      {kGap, canvas.rows - 10}, 0.5, &canvas);
   return ImageOf(canvas);
 }
 

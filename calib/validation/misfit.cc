@@ -174,7 +174,7 @@ std::string InWords(const OtherView& view) {
   std::string text = "as if ";
   if (zoomed) text += fmt::format("taken with {:.3g} times the others' focal length", view.zoom);
   if (shifted) {
-    text += fmt::format("{}cut with its centre {:.0f} px off", zoomed ? ", and " : "",
+    text += fmt::format("{}cropped with its centre {:.0f} px off", zoomed ? ", and " : "",
                         view.shift_px.norm());
   }
   return text + fmt::format(" (the residual falls from {:.2f} to {:.2f} px): {}", view.before_px,
@@ -209,8 +209,8 @@ std::string InWords(const BoardStretch& stretch) {
   return fmt::format(
       "the board's squares seem to be {:.1f} % {} than wide (with that the residual falls from "
       "{:.2f} to {:.2f} px): the printer or \"fit to page\" stretched it, or the photographs were "
-      "squeezed. Measure the board both ways, and print it at 100 % on a printer that keeps its "
-      "sides alike",
+      "squeezed. Measure the board both ways, and print it at 100 % on a printer that scales both "
+      "directions equally",
       100 * std::abs(stretch.relative), stretch.relative > 0 ? "higher" : "lower",
       stretch.before_px, stretch.after_px);
 }

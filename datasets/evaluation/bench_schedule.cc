@@ -163,7 +163,7 @@ Glint FitWithGlint(const Scene& scene, int threads) {
 }
 
 void PrintRatio(const Seconds& theirs, const Seconds& ours) {
-  std::printf("ratio: %.0f on the wall, %.0f by processor time\n", theirs.wall / ours.wall,
+  std::printf("ratio: %.0f in wall time, %.0f in processor time\n", theirs.wall / ours.wall,
               theirs.processor / ours.processor);
 }
 
@@ -185,7 +185,7 @@ void CompareSpeed(int size, int photographs, int iterations, int threads) {
   const Glint ours = FitWithGlint(scene, threads);
   std::printf("%d x %d, %d photographs, %d threads\n", size, size, photographs, threads);
   std::printf(
-      "paper's: %.3f s an iteration in latent space, %.3f s on maps; 4000 and 200: %.0f s\n",
+      "paper's: %.3f s per iteration in latent space, %.3f s on maps; 4000 and 200: %.0f s\n",
       latent.wall / iterations, texels.wall / iterations, theirs.wall);
   std::printf("glint-fit and glint-refine: %.1f s\n", ours.took.wall);
   PrintRatio(theirs, ours.took);
@@ -219,7 +219,7 @@ void CompareWhole(int size, int photographs, int threads) {
     plain.Descend(maps, kMapIterations, [](const Tensor& m) { return m; });
   });
   const Glint ours = FitWithGlint(scene, threads);
-  std::printf("%d x %d, %d photographs, both to their end in the same learned space\n", size, size,
+  std::printf("%d x %d, %d photographs, both complete, in the same learned space\n", size, size,
               photographs);
   PrintErrors("paper's", theirs, DecodeMaps(CroppedMaps(maps, size, size)), scene.truth, threads);
   PrintErrors("Glint", ours.took, ours.maps, scene.truth, threads);

@@ -226,7 +226,7 @@ SyntheticCaptureOptions PhoneCapture() {
 
 std::string LightExperimentResult::Text() const {
   std::string text =
-      "| quantity | mean error | largest | wanted | within 3σ, % of cases | RMS of error/σ |\n"
+      "| quantity | mean error | largest | target | within 3σ, % of cases | RMS of error/σ |\n"
       "|---|---|---|---|---|---|\n";
   for (const Quantity& quantity : kQuantities) {
     const auto [mean, largest] = MeanAndLargest(seeds, quantity.error);

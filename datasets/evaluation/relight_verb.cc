@@ -159,7 +159,7 @@ class RelitSet {
 // Each `every`-th photograph, from the `first`-th on.
 HoldoutSplit EveryNth(size_t photographs, int every, int first) {
   HoldoutSplit split;
-  split.name = fmt::format("each {}. held out, from {}", every, first);
+  split.name = fmt::format("1 in {} held out, from {}", every, first);
   split.folder = fmt::format("each_{}_from_{}", every, first);
   for (size_t i = static_cast<size_t>(first); i < photographs; i += static_cast<size_t>(every)) {
     split.listed.push_back(std::to_string(i));

@@ -100,7 +100,7 @@ void RequireInFront(const fs::path& file, const std::string& field, const View& 
                                 std::pair{"light", view.light_in_sample_mm[2]}}) {
     if (z > 0) continue;
     throw UserError(file, field, "a " + std::string(what) + " at z = " + std::to_string(z) + " mm",
-                    "it must stand in front of the sample, at z > 0");
+                    "it must be in front of the sample, at z > 0");
   }
 }
 

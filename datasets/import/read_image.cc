@@ -13,8 +13,9 @@ PixelSize SampleSize(const ForeignSet& set) {
   const auto [width, height] = PhotoSize(first);
   if (set.crop_px == 0) return {width, height};
   if (set.crop_px > width || set.crop_px > height) {
-    throw UserError(first, "size", fmt::format("{}x{}", width, height),
-                    fmt::format("the central {0}x{0} pixels are wanted; see --crop", set.crop_px));
+    throw UserError(
+        first, "size", fmt::format("{}x{}", width, height),
+        fmt::format("the central {0}x{0} pixels are required; see --crop", set.crop_px));
   }
   return {set.crop_px, set.crop_px};
 }

@@ -69,10 +69,11 @@ int main(int argc, char** argv) {
   const int threads = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
   const double one = maps / glint::SecondsOfOneThread(maps);
   const double goal = glint::kGoalPerSecond / glint::kGoalCores;
-  std::printf("%d maps of 256²: %.1f a second of one core (%.2f ms each); goal %.0f: ratio %.2f\n",
-              maps, one, 1e3 / one, goal, one / goal);
+  std::printf(
+      "%d maps of 256²: %.1f per second on one core (%.2f ms each); goal %.0f: ratio %.2f\n", maps,
+      one, 1e3 / one, goal, one / goal);
   const double all = maps / glint::SecondsOfAll(maps, threads);
-  std::printf("%d threads by the clock: %.1f a second (%.1f a thread)\n", threads, all,
+  std::printf("%d threads, wall time: %.1f per second (%.1f per thread)\n", threads, all,
               all / threads);
   std::printf("families, unblended:\n");
   glint::PrintFamilies();

@@ -70,7 +70,7 @@ fs::path PhotoFile(const fs::path& folder, int index, const std::string& format)
 std::string CaptureToml(const CapturePlan& plan, const SyntheticCaptureOptions& options) {
   const double side = plan.options.sample_mm;
   std::string text;
-  text += "# A synthetic capture; what is true of it stands in truth/.\n";
+  text += "# A synthetic capture; its ground truth is in truth/.\n";
   text += fmt::format("[sample]\nsize_mm = [{}, {}]\nresolution_px = {}\n\n", side, side,
                       options.resolution_px);
   text += fmt::format("[photos]\nfiles = [\"photos/*.{}\"]\n\n", options.format);

@@ -167,7 +167,7 @@ TensorFile ReadTensorFile(const std::filesystem::path& path) {
       } else {
         file.tensors.push_back(ReadRecord(path, name, entry, data));
         held += file.tensors.back().bytes.size();
-        if (held > data.size()) Fail(path, "tensor " + name, "bytes that other tensors have too");
+        if (held > data.size()) Fail(path, "tensor " + name, "bytes that overlap another tensor's");
         RequireFinite(path, file.tensors.back());
       }
     }

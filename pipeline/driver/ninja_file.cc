@@ -82,7 +82,7 @@ std::string EdgeText(const NinjaEdge& edge) {
 std::string NinjaText(const std::vector<NinjaEdge>& edges, const std::filesystem::path& runner,
                       const RunChoices& choices) {
   std::string text =
-      "# Written by glint run; the next run writes it anew. By hand, in the capture's folder:\n"
+      "# Written by glint run; the next run rewrites it. By hand, in the capture's folder:\n"
       "#   ninja -f glint/build.ninja\n";
   text += kChoicesPrefix + ToJson(choices).dump() + "\n";
   text += "ninja_required_version = 1.5\nbuilddir = glint\n\n";

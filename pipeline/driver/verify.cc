@@ -57,7 +57,7 @@ std::string Verification::Text() const {
             (stage.problems.empty() ? ", as written\n" : "\n");
     for (const std::string& problem : stage.problems) text += "  " + problem + "\n";
   }
-  if (!intact()) text += "go on with: glint run " + capture.string() + "\n";
+  if (!intact()) text += "continue with: glint run " + capture.string() + "\n";
   return text;
 }
 

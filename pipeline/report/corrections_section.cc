@@ -41,7 +41,7 @@ Image EnvironmentPicture(const EnvironmentLighting& environment) {
 
 std::string EnvironmentFigure(const EnvironmentLighting& environment) {
   const std::string caption =
-      "the surroundings as the sample sees them: straight up in the middle, the horizon at the "
+      "the surroundings as seen from the sample: straight up in the middle, the horizon at the "
       "edge, x right, y up; brightest as white, gamma 2.2";
   return "<div class=\"pictures\"><figure>" +
          ImageHtml(PngUri(EnvironmentPicture(environment)), caption) + "<figcaption>" +
@@ -79,7 +79,7 @@ std::string CorrectionsSection(const ReportInput& input) {
   if (!input.Has("refine") || !any) return "";
   const Trace metrics{kLink, "metrics.correction"};
   const Json correction = input.manifests.at("refine").metrics.value("correction", Json::object());
-  std::string body = "<p>Nobody had said so; the photographs themselves do. ";
+  std::string body = "<p>These values were not stated; they were estimated from the photographs. ";
   if (input.fit.environment.any()) {
     body += "Ambient illumination of the sample is " +
             FigureHtml(correction.value("ambient_of_flash", Json()),
@@ -88,9 +88,9 @@ std::string CorrectionsSection(const ReportInput& input) {
   }
   const bool moved = std::any_of(input.fit.corrections.begin(), input.fit.corrections.end(),
                                  [](const auto& view) { return !view.second.none(); });
-  body +=
-      moved ? "Lights, exposures and pictures are as the table says; all views are shown so.</p>\n"
-            : "Lights, exposures and pictures are as they were said to be.</p>\n";
+  body += moved ? "Lights, exposures and pictures are corrected as in the table, and all views are "
+                  "shown with these corrections.</p>\n"
+                : "Lights, exposures and pictures are used as stated.</p>\n";
   if (input.fit.environment.degree() > 0) body += EnvironmentFigure(input.fit.environment);
   if (moved) body += ViewsTable(input);
   return "<section>\n" + SourceLink(kLink) + "<h2>Corrected</h2>\n" + body + "</section>\n";

@@ -255,7 +255,7 @@ std::string ViewsSection(const ReportInput& input, const std::vector<ShownView>&
   const std::string body =
       "<p>Rectified photographs, the maps rendered under the same camera and light, and four times "
       "the absolute difference; gamma 2.2. log-L1: mean of |log(I + 0.01) − log(R + 0.01)|; RMSE: "
-      "of linear radiance. The others as under Fit quality." +
+      "of linear radiance. The other columns are explained under Fit quality." +
       ComparedAt(input) +
       "</p>\n<div class=\"scroll\"><table class=\"views\">"
       "<tr><th>view</th><th>photograph</th><th>rendering</th><th>difference ×4</th>"

@@ -46,8 +46,8 @@ Door Doors::OpenLan() {
   if (lan_server_) return lan_;
   lan_.hosts = options_.lan_addresses.empty() ? LanAddresses() : options_.lan_addresses;
   if (lan_.hosts.empty()) {
-    throw HttpError{503, "this machine is in no network that a phone could reach",
-                    "connect it to the network of the phone"};
+    throw HttpError{503, "this machine is on no network that a phone could reach",
+                    "connect it to the phone's network"};
   }
   if (options_.lan) lan_.session = RandomToken();
   ServerOptions server;

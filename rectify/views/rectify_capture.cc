@@ -61,7 +61,7 @@ void SetExposures(const Calibration& calibration, const std::vector<double>& by_
 void Warn(const fs::path& file, const ViewCounts& counts) {
   if (counts.outside > kWorthAWarning) {
     spdlog::warn(
-        "{}: {:.0f} % of the sample lies outside of the photograph; get all of it into the picture",
+        "{}: {:.0f} % of the sample lies outside the photograph; get all of it into the picture",
         file.string(), 100 * counts.outside);
   }
   if (counts.saturated > 0.5) {

@@ -65,7 +65,7 @@ void RequireUsable(const ViewCounts& counts, const std::filesystem::path& file) 
                     "expose less, or leave this photograph out");
   }
   if (counts.outside > 0) {
-    throw UserError(file, "sample", "a sample that lies outside of the photograph",
+    throw UserError(file, "sample", "a sample that lies outside the photograph",
                     "get the whole sample into the picture, check [sample] size_mm and centre_mm, "
                     "or leave this "
                     "photograph out");

@@ -56,7 +56,7 @@ void CheckHostAndOrigin(const Door& door, const HttpRequest& request) {
 
 void CheckSession(const Door& door, const HttpRequest& request) {
   if (SameSecret(door.session, request.Cookie(door.cookie()))) return;
-  throw HttpError{401, "this browser has not been let in",
+  throw HttpError{401, "this browser has not been granted access",
                   "open the whole address that glint studio printed, or start it again"};
 }
 

@@ -11,7 +11,8 @@ namespace glint {
 std::string RandomToken() {
   std::array<unsigned char, 16> bytes;
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
-    throw EnvironmentError("the kernel gives no random numbers; Studio cannot be kept to itself");
+    throw EnvironmentError(
+        "the kernel supplies no random numbers; Studio's address cannot be kept secret");
   }
   constexpr char kDigits[] = "0123456789abcdef";
   std::string token;

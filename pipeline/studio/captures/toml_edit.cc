@@ -127,7 +127,7 @@ std::string WithTomlValue(const std::filesystem::path& file, const std::string& 
                           const std::optional<Json>& value) {
   const toml::table before = Parsed(file, text);
   if (!IsBareKey(table) || !IsBareKey(key)) {
-    throw UserError(file, table + "." + key, "a name with other signs than letters and digits",
+    throw UserError(file, table + "." + key, "a name with characters other than letters and digits",
                     "correct it in an editor");
   }
   const toml::node* old = before[table][key].node();

@@ -168,7 +168,7 @@ HttpReply Answer(const HttpHandler& handler, const HttpRequest& request, HttpBod
   } catch (const EnvironmentError& error) {
     return ReplyOf({500, error.what(), "look at the folder, its permissions and the free space"});
   } catch (const std::exception& error) {
-    return ReplyOf({500, error.what(), "try again; if it stays, report it as a fault of Glint"});
+    return ReplyOf({500, error.what(), "try again; if it persists, report it as a bug in Glint"});
   }
 }
 

@@ -33,7 +33,7 @@ std::string RemedyFor(RemarkKind kind) {
     case RemarkKind::kExif:
       break;
   }
-  return "Compare it with the others, and take it again if it is not like them.";
+  return "Compare it with the others, and take it again if it differs.";
 }
 
 std::string Sentence(std::string text) {
@@ -71,12 +71,12 @@ PhotoVerdict JudgeAlone(const PhotoCheck& check, const CheckTask& task) {
             "Step back or expose less.", ""};
   }
   if (!check.pose) {
-    return {State::kWeak, "Only a part of the board is seen, so that its place is not known.",
+    return {State::kWeak, "Only part of the board is visible, so its position is unknown.",
             "Take it again with the whole board in the picture.", ""};
   }
   const double shown = ShownShare(*check.pose, MakeCoverageGrid(task.sample_size_mm));
   if (1 - shown > limits.cut_share) {
-    return {State::kWeak, fmt::format("It shows {:.0f} % of the sample only.", 100 * shown),
+    return {State::kWeak, fmt::format("It shows only {:.0f} % of the sample.", 100 * shown),
             "Step back until the whole board is in the picture.", ""};
   }
   return {};
@@ -160,15 +160,15 @@ Direction NextTop(const Verdict& verdict, const std::vector<GuidancePhoto>& phot
 
 // Why the photograph is asked for, in a few words.
 std::string Reason(const Verdict& verdict, const Direction& direction) {
-  if (verdict.views.empty()) return "the fit starts from such a view";
+  if (verdict.views.empty()) return "the fit is initialised from such a view";
   if (direction.tilt_deg <= verdict.limits.top_deg) {
-    return verdict.top_views == 0 ? "the fit starts from such a view"
-                                  : "a few views from near the top make the colours sure";
+    return verdict.top_views == 0 ? "the fit is initialised from such a view"
+                                  : "a few views from near the top make the colours more certain";
   }
-  if (verdict.tilted_views == 0) return "tilted views tell relief and gloss";
+  if (verdict.tilted_views == 0) return "tilted views reveal relief and gloss";
   if (Has(verdict, "sides")) return "no tilted photograph comes from there yet";
   if (Has(verdict, "highlight")) return "it shows a highlight where none has been seen";
-  return "each side more lowers the error";
+  return "each further side lowers the error";
 }
 
 // While no photograph is used.
@@ -206,7 +206,8 @@ StudioAdvice AdviseWithoutBoard(const Capture& capture, const std::vector<NamedC
   }
   advice.verdict = "usable";
   advice.enough = true;
-  advice.sentence = "One photograph is there: run it. Several with a board are more accurate.";
+  advice.sentence =
+      "There is one photograph: run it. Several with a board give more accurate maps.";
   return advice;
 }
 

@@ -154,7 +154,7 @@ std::string ReceivedPhoto::Finish() {
     throw HttpError{413, "the photograph has more than 256 megapixels", "send a smaller one"};
   }
   if (header.is_jpeg && !JpegIsComplete(ReadTextFile(temporary_, kMostPhoto_bytes + 1))) {
-    throw HttpError{400, "the photograph ends before its picture does", "send it again"};
+    throw HttpError{400, "the photograph is truncated", "send it again"};
   }
   return HashFile(temporary_);
 }

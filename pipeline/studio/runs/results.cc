@@ -61,7 +61,7 @@ std::string MeaningOf(const std::string& map) {
       {"normal_gl", "normals, green up (OpenGL: Blender, glTF, Unity)"},
       {"normal_dx", "normals, green down (DirectX: Unreal)"},
       {"height", "height of the relief"},
-      {"ao", "ambient occlusion: how open each place lies"},
+      {"ao", "ambient occlusion: how open each point is to its surroundings"},
       {"orm", "occlusion, roughness and metalness in one picture"},
       {"diffuse", "colour of the light that the surface scatters"},
       {"specular", "colour of the reflection seen straight on (F0)"},
@@ -133,16 +133,18 @@ Json FiguresJson(const fs::path& work) {
   AddRatio(report, "/metrics/fitted/log_l1", "fitted photographs",
            "mean ratio of brightness between rendering and photograph; 1 is perfect", &figures);
   AddRatio(report, "/metrics/held_out/log_l1", "held-out photographs",
-           "the same for photographs that the fit has not used", &figures);
+           "the same for photographs that the fit did not use", &figures);
   AddFigure(report, "/metrics/fitted/photographs", "photographs", 1, "{:.0f}",
             "that the maps were fitted to", &figures);
   AddFigure(report, "/metrics/fitted/ssim", "structure", 1, "{:.3f}",
-            "similarity of structure (SSIM) between rendering and photograph; 1 is the same",
+            "structural similarity (SSIM) between rendering and photograph; 1 is identical",
             &figures);
   const Json::json_pointer corners("/metrics/corners");
   if (calib.contains(corners) && calib[corners] != 0) {  // without a board there are none
-    AddFigure(calib, "/metrics/rms_px", "cameras", 1, "{:.2f} px",
-              "distance between the board's corners and where the calibration puts them", &figures);
+    AddFigure(
+        calib, "/metrics/rms_px", "cameras", 1, "{:.2f} px",
+        "distance between the board's corners and their positions predicted by the calibration",
+        &figures);
   }
   AddFigure(calib, "/metrics/guidance/highlight_share", "highlights", 100, "{:.0f} %",
             "of the sample that shows a highlight in some photograph", &figures);

@@ -75,7 +75,7 @@ ProgramMessage FailureIn(const fs::path& log, int code) {
   }
   const ProgramMessage said = MessageIn(TextIn(log));
   if (!said.message.empty()) return said;
-  return {"the run ended with exit code " + std::to_string(code) + " and said nothing", remedy};
+  return {"the run ended with exit code " + std::to_string(code) + " without a message", remedy};
 }
 
 bool IsAfter(const fs::path& file, fs::file_time_type time) {
@@ -173,7 +173,7 @@ void RunManager::Start(const std::string& capture, const fs::path& folder, bool 
     runs_.erase(found);
   }
   if (RunsElsewhere(folder)) {
-    throw HttpError{409, "another glint run works on this capture", "wait until it has ended"};
+    throw HttpError{409, "another glint run is working on this capture", "wait until it has ended"};
   }
   auto run = std::make_shared<Run>();
   run->capture = capture;

@@ -36,7 +36,7 @@ void RequireRoomFor(const CaptureState& state, const std::vector<StudioPhoto>& p
   const bool one_is_used = std::any_of(photos.begin(), photos.end(),
                                        [](const StudioPhoto& other) { return !other.left_out; });
   if (IsOfOnePhotograph(state) && one_is_used) {
-    throw HttpError{409, "this capture is of one photograph, which is there",
+    throw HttpError{409, "this capture takes one photograph, and it already has one",
                     "leave that one out first, or make a capture with a board for several"};
   }
 }

@@ -58,7 +58,7 @@ Json Upload::Read(HttpBody* body) {
   if (all) {
     Finish();
   } else if (photo_) {
-    Fail({400, "the connection ended before the photograph was there", "send it again"});
+    Fail({400, "the connection ended before the photograph had arrived", "send it again"});
   }
   if (list_.empty()) {
     throw HttpError{all ? 415 : 400, "found no photographs in the request",

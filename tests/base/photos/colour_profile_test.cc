@@ -130,7 +130,7 @@ TEST(ColourProfile, ChromaticitiesAreOnesOwnPrimaries) {
 TEST(ColourProfile, WhatIsNotThreePrimariesIsNamed) {
   const ColourProfile grey =
       ReadColourProfile(Saved(cmsCreateGrayProfile(cmsD50_xyY(), cmsBuildGamma(nullptr, 2.2))));
-  EXPECT_EQ(grey.ignored, "not of RGB pictures");
+  EXPECT_EQ(grey.ignored, "not an RGB profile");
   EXPECT_FALSE(grey.converts());
   // Damaged ones never do more than that.
   const std::string icc = Profile(kP3, 0);

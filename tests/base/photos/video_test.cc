@@ -97,7 +97,7 @@ TEST(Video, CutOffIsSaidOrItsWholeFramesAreUsed) {
   const std::string mp4 = ReadTextFile(folder / "a.mp4"), avi = ReadTextFile(folder / "a.avi");
   folder.Write("cut.mp4", mp4.substr(0, mp4.size() / 2));  // its index stood at the end
   EXPECT_THAT(test::MessageOf<UserError>([&] { ReadVideoInfo(folder / "cut.mp4"); }),
-              HasSubstr("cut off"));
+              HasSubstr("copied only in part"));
   folder.Write("cut.avi", avi.substr(0, avi.size() / 2));
   const VideoInfo info = ReadVideoInfo(folder / "cut.avi");
   EXPECT_GT(info.frames, kFrames / 4);
@@ -107,7 +107,7 @@ TEST(Video, CutOffIsSaidOrItsWholeFramesAreUsed) {
   EXPECT_NEAR(At(last, 120, 90), GreyOf(info.frames - 1), 2);
   EXPECT_THAT(
       test::MessageOf<UserError>([&] { ReadPhoto(folder / FrameName("cut.avi", info.frames)); }),
-      HasSubstr("whole frames"));
+      HasSubstr("complete frames"));
   folder.Write("text.mp4", "no video at all");
   EXPECT_THAT(test::MessageOf<UserError>([&] { ReadVideoInfo(folder / "text.mp4"); }),
               HasSubstr("text.mp4"));

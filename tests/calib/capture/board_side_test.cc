@@ -79,7 +79,7 @@ TEST_F(BoardSide, TheTextureOfASampleOffTheBoardsCentreTellsItToo) {
   ASSERT_EQ(turned.code, 0) << turned.err;
   EXPECT_THAT(turned.err, HasSubstr("photos/photo_001.jpg, photos/photo_003.jpg: taken from the "
                                     "other side of the checkerboard"));
-  EXPECT_THAT(turned.err, Not(HasSubstr("does not tell")));
+  EXPECT_THAT(turned.err, Not(HasSubstr("does not show")));
 }
 
 TEST(LooksTheSameUpsideDown, WhereColumnsAndRowsAreBothOddOrBothEven) {
@@ -123,7 +123,7 @@ TEST(SettleBoardSides, SaysThatAPlainSampleDoesNotTell) {
   const std::vector<DetectedPhoto> before = photos;
   const std::vector<std::string> words = SettleBoardSides(capture, &photos);
   ASSERT_EQ(words.size(), 1u);
-  EXPECT_THAT(words[0], HasSubstr("does not tell which way round it lies in p0, p1, p2"));
+  EXPECT_THAT(words[0], HasSubstr("does not show which way round it lies in p0, p1, p2"));
   for (size_t i = 0; i < photos.size(); ++i) {
     EXPECT_EQ(photos[i].detection.corners[0].id, before[i].detection.corners[0].id);
   }

@@ -191,8 +191,9 @@ TEST_F(FixedCamera, LightsThatAreAllBelowTheHorizonAreRefused) {
   WriteLines(lines);
   const test::Outcome outcome = Calibrate();
   EXPECT_EQ(outcome.code, 2) << outcome.err;
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("dirs.lp"), HasSubstr("no usable light"),
-                                 HasSubstr("below the sample's plane"), HasSubstr("z's sign")));
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("dirs.lp"), HasSubstr("no usable light"),
+                    HasSubstr("below the sample's plane"), HasSubstr("the sign of z")));
 }
 
 TEST_F(FixedCamera, PhotographsOfTwoSizesAreRefused) {

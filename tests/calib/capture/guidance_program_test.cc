@@ -138,7 +138,7 @@ TEST_F(Guidance, JudgesOnePhotographThatDoesNotTellItsFocalLength) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_THAT(outcome.err, HasSubstr("one photograph does not determine the focal length"));
   const auto advice = Checked();
-  EXPECT_THAT(advice.at("focal"), HasSubstr("cannot be told"));
+  EXPECT_THAT(advice.at("focal"), HasSubstr("cannot be determined"));
   EXPECT_THAT(advice.at("tilted"), HasSubstr("look straight down"));
   EXPECT_THAT(advice.at("few"), HasSubstr("4 photographs more"));
 }

@@ -179,8 +179,8 @@ TEST_F(BoardLight, LocalToneMappingIsNamed) {
     return stored;
   };
   for (int photo = 0; photo < 6; ++photo) Change(photo, brighten);
-  EXPECT_THAT(Calibrate().err, HasSubstr("brighter and darker from place to place"));
-  EXPECT_THAT(Calibrate("--check").out, HasSubstr("brighter and darker from place to place"));
+  EXPECT_THAT(Calibrate().err, HasSubstr("brightness deviates locally"));
+  EXPECT_THAT(Calibrate("--check").out, HasSubstr("brightness deviates locally"));
 }
 
 }  // namespace

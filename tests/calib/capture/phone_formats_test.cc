@@ -179,7 +179,7 @@ TEST(PhoneFormats, FramesOfAVideoAreCalibratedRectifiedAndSorted) {
   ASSERT_EQ(RunGlint("glint-calib", capture, "", &output), 0) << output;
   EXPECT_THAT(output, HasSubstr("clip.avi#0018: shows what clip.avi#0015 shows"));
   EXPECT_THAT(output, HasSubstr("clip.avi#0021: blurred"));
-  EXPECT_THAT(output, HasSubstr("all exposures are taken as equal"));
+  EXPECT_THAT(output, HasSubstr("all exposures are assumed equal"));
   const Calibration calibration = ReadCalibration(capture / "glint/calib/manifest.json");
   ASSERT_EQ(calibration.photos.size(), 7u);
   EXPECT_EQ(calibration.photos[1].photo, "clip.avi#0003");

@@ -122,7 +122,7 @@ TEST_F(ChartCsv, IsRefusedByLineAndColumn) {
               AllOf(HasSubstr("chart.csv"), HasSubstr("line 2, y"), HasSubstr("1.5")));
   EXPECT_THAT(Complaint("name,x,y,X,Y,Z\na,0,0,0.4,0.5,0.4\n"), HasSubstr("Y = 100"));
   EXPECT_THAT(Complaint("name,x,y,L,a,b\na,0.5,0.5,50,0,0\nb,0.5,0.5,60,0,0\n"),
-              HasSubstr("two patches at one place"));
+              HasSubstr("two patches at the same position"));
   EXPECT_THAT(Complaint(""), HasSubstr("no table"));
   EXPECT_THAT(Complaint("name,x,y,L,a,b\nr\xE9"
                         "d,0.2,0.5,42,53,28\n"),

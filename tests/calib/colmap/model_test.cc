@@ -199,7 +199,7 @@ TEST(ColmapModel, ACountThatTheFileIsTooShortForAllocatesNothing) {
     const std::uint64_t count = 1ull << 60;
     std::memcpy(huge.data(), &count, sizeof(count));
     test::WriteAll(file, huge);
-    EXPECT_THAT(MessageOf(folder.path()), HasSubstr("cut off"));
+    EXPECT_THAT(MessageOf(folder.path()), HasSubstr("truncated"));
     test::WriteAll(file, whole);
   }
 }

@@ -85,13 +85,13 @@ TEST(LightAdvice, SideWithoutALightIsNamed) {
 TEST(LightAdvice, HighLightsAreMissed) {
   const GuidanceInput low = LitFromDirections(testing::LightsOnADome(40, 15, 45));
   EXPECT_EQ(Topics(low), std::set<std::string>{"high_lights"});
-  EXPECT_THAT(On(low, "high_lights").text, HasSubstr("the highest light stands 45° above"));
+  EXPECT_THAT(On(low, "high_lights").text, HasSubstr("the highest light is 45° above"));
 }
 
 TEST(LightAdvice, RakingLightsAreMissed) {
   const GuidanceInput high = LitFromDirections(testing::LightsOnADome(40, 45, 80));
   EXPECT_EQ(Topics(high), std::set<std::string>{"low_lights"});
-  EXPECT_THAT(On(high, "low_lights").text, HasSubstr("the lowest light stands 45° above"));
+  EXPECT_THAT(On(high, "low_lights").text, HasSubstr("the lowest light is 45° above"));
 }
 
 TEST(LightAdvice, ClippedPhotographsAreNamed) {

@@ -131,14 +131,14 @@ TEST(Verdict, NamesPhotographsThatCutTheSample) {
   EXPECT_EQ(Sentence(input, "cut"), "");
   input.photos[7].posed->camera_from_sample.translation.x() += 200;
   EXPECT_THAT(Sentence(input, "cut"),
-              HasSubstr("1 photograph shows part of the sample only: side1.jpg"));
+              HasSubstr("1 photograph shows only part of the sample: side1.jpg"));
 }
 
 TEST(Verdict, TellsThatTexelsAreSmallerThanPixelsAndBothWaysOut) {
   GuidanceInput input = GoodCapture();
   input.resolution_px = {2048, 2048};  // 20.5 texels/mm against 10 pixels/mm
   EXPECT_THAT(Sentence(input, "resolution"), HasSubstr("covers 2.0 texels"));
-  EXPECT_THAT(Sentence(input, "resolution"), HasSubstr("as near as 146 mm (now 300)"));
+  EXPECT_THAT(Sentence(input, "resolution"), HasSubstr("as close as 146 mm (now 300)"));
   EXPECT_THAT(Sentence(input, "resolution"), HasSubstr("resolution_px = 1000"));
   input.resolution_px = {1000, 1000};
   EXPECT_EQ(Sentence(input, "resolution"), "");
@@ -172,7 +172,7 @@ TEST(Verdict, SpeaksOfTheFocalLengthWhereItIsPoorlyKnown) {
   input.focal_sigma = 0.002;
   EXPECT_EQ(Sentence(input, "focal"), "");
   input.focal_assumed = true;
-  EXPECT_THAT(Sentence(input, "focal"), HasSubstr("cannot be told"));
+  EXPECT_THAT(Sentence(input, "focal"), HasSubstr("cannot be determined"));
   EXPECT_EQ(Judge(input).Word(), "not enough");
 }
 

@@ -136,7 +136,7 @@ TEST(EstimateLight, HoldsWhatOnePhotoCannotTellAndSaysSo) {
   const LightEstimate light = EstimateLight(MakeProblem(1, truth, false, 1));
   ASSERT_TRUE(light.known);
   ASSERT_GE(light.held.size(), 1u);
-  EXPECT_NE(light.held.back().find("held at 0"), std::string::npos);
+  EXPECT_NE(light.held.back().find("fixed at 0"), std::string::npos);
   for (int i = 0; i < 2; ++i) {
     const Estimate& flash = light.flash_in_camera_mm[i];
     EXPECT_LT(std::abs(flash.value - truth.flash_mm[i]), 4 * flash.sigma);

@@ -200,7 +200,7 @@ TEST_F(LightsFileTest, NamesAreFoundWithoutRegardToCaseOrEnding) {
 TEST_F(LightsFileTest, NameWithItsEndingGoesBeforeTheNameWithout) {
   EXPECT_THAT(Match("2\na.tif 0 0 1\na.jpg 0.6 0 0.8\n", {"a.jpg", "a.tif"}), ElementsAre(1, 0));
   EXPECT_THAT(MatchComplaint(Read("1\na.png 0 0 1\n"), {"a.jpg", "a.tif"}),
-              AllOf(HasSubstr("a.jpg and a.tif"), HasSubstr("cannot tell apart")));
+              AllOf(HasSubstr("a.jpg and a.tif"), HasSubstr("cannot distinguish")));
 }
 
 TEST_F(LightsFileTest, PhotographsThatAreNotListedHaveNoLight) {

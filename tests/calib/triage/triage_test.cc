@@ -131,7 +131,7 @@ TEST(CheckExif, NamesEveryContradiction) {
   };
   EXPECT_THAT(
       complaint([](PhotoMeasures* p) { p->file.exif.width_px = 5000; }),
-      HasSubstr("p1: EXIF tells of 5000x3000 pixels, the picture has 4000x3000: it was crop"));
+      HasSubstr("p1: EXIF reports 5000x3000 pixels, the picture has 4000x3000: it was crop"));
   EXPECT_THAT(complaint([](PhotoMeasures* p) {
                 p->file.exif.width_px = 8000;
                 p->file.exif.height_px = 6000;
@@ -151,7 +151,7 @@ TEST(CheckExif, NamesEveryContradiction) {
   EXPECT_THAT(complaint([](PhotoMeasures* p) { p->file.orientation = 2; }),
               HasSubstr("mirrored picture"));
   EXPECT_THAT(complaint([](PhotoMeasures* p) { p->file.format = "raw"; }),
-              HasSubstr("beside developed ones"));
+              HasSubstr("together with developed ones"));
 }
 
 }  // namespace

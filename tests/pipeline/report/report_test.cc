@@ -289,7 +289,7 @@ TEST_F(ReportTest, ShowsWhatWasCorrectedAndTheEnvironment) {
       make({{"views", views}, {"corrections", still}, {"room_light", JsonOf(environment)}},
            {{"taken", true}, {"ambient_of_flash", 0.0375}});
   EXPECT_THAT(lit, HasSubstr("metrics.correction.ambient_of_flash\">0.0375<"));
-  EXPECT_THAT(lit, HasSubstr("the surroundings as the sample sees them"));
+  EXPECT_THAT(lit, HasSubstr("the surroundings as seen from the sample"));
   EXPECT_THAT(lit, Not(HasSubstr("light turned")));
 
   const Json corrections =
@@ -298,7 +298,7 @@ TEST_F(ReportTest, ShowsWhatWasCorrectedAndTheEnvironment) {
       make({{"views", views}, {"corrections", corrections}}, {{"taken", true}});
   EXPECT_THAT(turned, HasSubstr("light turned"));
   EXPECT_THAT(turned, HasSubstr("data.corrections[1].exposure\">1.25<"));
-  EXPECT_THAT(turned, Not(HasSubstr("the surroundings as the sample sees them")));
+  EXPECT_THAT(turned, Not(HasSubstr("the surroundings as seen from the sample")));
 }
 
 TEST_F(ReportTest, ADamagedResultIsRefused) {

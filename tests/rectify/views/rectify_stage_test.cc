@@ -205,7 +205,7 @@ TEST_F(RectifyStage, SaturatedBlackAndAbsentSamplesAreNamed) {
   poses_[2].translation.x() = 500;
   Calibrate();
   EXPECT_EQ(Run(), 2);
-  EXPECT_THAT(output_, AllOf(HasSubstr("photos/p2.png"), HasSubstr("outside of the photograph")));
+  EXPECT_THAT(output_, AllOf(HasSubstr("photos/p2.png"), HasSubstr("outside the photograph")));
   EXPECT_FALSE(fs::exists(Views() / "manifest.json"));
 }
 
