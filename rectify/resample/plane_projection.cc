@@ -10,8 +10,11 @@ namespace {
 double MonotoneRadius2(Camera camera) {
   constexpr double kWidest = 4;  // tan of 76° off the axis, wider than any lens these models fit
   constexpr double kStep = 1e-3;
-  const bool tangential = camera.parameters.size() >= 8;
-  if (tangential) camera.parameters[6] = camera.parameters[7] = 0;
+  for (size_t i = 0; i < camera.parameters.size(); ++i) {
+    if (InfoOf(camera.model).parameters[i].kind == CameraParameter::kTangential) {
+      camera.parameters[i] = 0;
+    }
+  }
   double previous_px = -std::numeric_limits<double>::infinity();
   for (double r = 0; r < kWidest; r += kStep) {
     double x_px, y_px;

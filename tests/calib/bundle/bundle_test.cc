@@ -65,11 +65,7 @@ TEST_P(Models, AreRecoveredWithinTheirOwnUncertainty) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(All, Models,
-                         ::testing::Values(CameraModel::kSimpleRadial, CameraModel::kRadial,
-                                           CameraModel::kOpenCv, CameraModel::kFullOpenCv,
-                                           CameraModel::kOpenCvFisheye,
-                                           CameraModel::kSimpleRadialFisheye,
-                                           CameraModel::kRadialFisheye));
+                         ::testing::ValuesIn(CalibratedModels(Calibrated::kOnDemand)));
 
 // σ is what repetition shows: the spread of the focal length over 120 draws of the noise.
 TEST(AdjustBundle, SigmaIsTheSpreadOverRepetitions) {

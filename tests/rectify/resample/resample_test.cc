@@ -316,6 +316,24 @@ TEST(Resample, NothingIsSeenFromBehindOrThroughAFoldedLens) {
   }
 }
 
+// All four terms of a fisheye bend rays: without the last two this lens would fold at 55°.
+TEST(CameraProjection, AFisheyeSeesAsFarAsAllItsTermsGrow) {
+  Camera fisheye;
+  fisheye.model = CameraModel::kOpenCvFisheye;
+  fisheye.width_px = fisheye.height_px = 400;
+  fisheye.parameters = {150, 150, 200, 200, 0.1, -0.3, 0.25, -0.05};
+  const CameraProjection projection(fisheye, LookAtSample(50, 0, 0));
+  double last_px = 0;
+  for (const double degrees : {10.0, 30.0, 50.0, 60.0, 70.0}) {
+    const double x_mm = 50 * std::tan(degrees * std::numbers::pi / 180);
+    const auto seen = projection.ImageFromPlane(x_mm, 0);
+    ASSERT_TRUE(seen) << degrees;
+    const double off_px = (*seen - Eigen::Vector2d(200, 200)).norm();
+    EXPECT_GT(off_px, last_px) << degrees;
+    last_px = off_px;
+  }
+}
+
 TEST(Resample, NegativeLobesNeverMakeNegativeLight) {
   Photo photo = FlatPhoto(64, 64, 0.0f, 32);
   photo.image.channel(0)[32 * 64 + 32] = 1000.0f;
