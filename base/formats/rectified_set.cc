@@ -119,15 +119,15 @@ Json ToJson(const RectifiedSet& set) {
   return data;
 }
 
-std::filesystem::path ViewsManifest(const std::filesystem::path& work) {
-  return work / LastGiving(Gives::kViews).name / "manifest.json";
+std::filesystem::path ViewsManifest(const std::filesystem::path& work, std::string_view reader) {
+  return work / LastGiving(Gives::kViews, reader)->name / "manifest.json";
 }
 
 RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file) {
   Manifest manifest = ReadManifest(manifest_file);
   const StageKind* stage = FindStage(manifest.stage);
   if (stage == nullptr || stage->gives != Gives::kViews) {
-    manifest = ReadManifest(manifest_file, std::string(LastGiving(Gives::kViews).name));
+    manifest = ReadManifest(manifest_file, std::string(LastGiving(Gives::kViews)->name));
   }
   VerifyOutputs(manifest_file, manifest);
   const Json& data = manifest.data;

@@ -49,8 +49,10 @@ struct RectifiedImage {
 // The "data" object of the rectify manifest.
 Json ToJson(const RectifiedSet& set);
 
-// The manifest of the views that fitting reads; `work`: CAPTURE/glint.
-std::filesystem::path ViewsManifest(const std::filesystem::path& work);
+// The manifest of the views that fitting reads, or the stage `reader` (stages.h); `work`:
+// CAPTURE/glint.
+std::filesystem::path ViewsManifest(const std::filesystem::path& work,
+                                    std::string_view reader = {});
 
 // Reads and checks the manifest of a stage that gives views, without its images. Throws UserError.
 RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file);

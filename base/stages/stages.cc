@@ -87,9 +87,13 @@ const StageKind* FindStage(std::string_view name) {
   return found == std::end(kStages) ? nullptr : found;
 }
 
-const StageKind& LastGiving(Gives what) {
-  return *std::find_if(std::rbegin(kStages), std::rend(kStages),
-                       [&](const StageKind& stage) { return stage.gives == what; });
+const StageKind* LastGiving(Gives what, std::string_view reader) {
+  const StageKind* last = nullptr;
+  for (const StageKind& stage : kStages) {
+    if (stage.name == reader) break;
+    if (stage.gives == what) last = &stage;
+  }
+  return last;
 }
 
 bool GivesMaps(const StageKind& stage, ReadsMaps which) {

@@ -80,8 +80,9 @@ std::span<const StageKind> Stages();
 // Null for a name that is no stage's.
 const StageKind* FindStage(std::string_view name);
 
-// The last of the stages that give views, say: what later stages read.
-const StageKind& LastGiving(Gives what);
+// The last of the stages that give views, say: what later stages read; `reader` reads what stages
+// before it give. Null: none does.
+const StageKind* LastGiving(Gives what, std::string_view reader = {});
 
 // Whether it gives maps of that kind: whole ones are not those that a tiling stage gives.
 bool GivesMaps(const StageKind& stage, ReadsMaps which);

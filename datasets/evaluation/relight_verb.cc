@@ -202,7 +202,7 @@ size_t PhotographsOf(const fs::path& set) {
   if (!fs::exists(file)) {
     throw UserError(set, "", "no rectified views",
                     fmt::format("run first: glint run {} --until {}", set.string(),
-                                LastGiving(Gives::kViews).name));
+                                LastGiving(Gives::kViews)->name));
   }
   return ReadRectifiedSet(file).views.size();
 }

@@ -28,7 +28,7 @@ constexpr int kStagePicture_px = 1200;
 
 std::string ManifestLink(const std::string& stage) { return "../" + stage + "/manifest.json"; }
 
-std::string ViewsLink() { return ManifestLink(std::string(LastGiving(Gives::kViews).name)); }
+std::string ViewsLink() { return ManifestLink(std::string(LastGiving(Gives::kViews)->name)); }
 
 std::string Section(const std::string& title, const std::string& source, const std::string& body) {
   return "<section>\n" + (source.empty() ? "" : SourceLink(source)) + "<h2>" + HtmlText(title) +
