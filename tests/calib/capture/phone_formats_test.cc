@@ -177,7 +177,7 @@ TEST(PhoneFormats, FramesOfAVideoAreCalibratedRectifiedAndSorted) {
   std::ofstream(capture / "capture.toml") << kCaptureToml;
   std::string output;
   ASSERT_EQ(RunGlint("glint-calib", capture, "", &output), 0) << output;
-  EXPECT_THAT(output, HasSubstr("clip.avi#0018: shows what clip.avi#0015 shows"));
+  EXPECT_THAT(output, HasSubstr("clip.avi#0018: shows the same as clip.avi#0015"));
   EXPECT_THAT(output, HasSubstr("clip.avi#0021: blurred"));
   EXPECT_THAT(output, HasSubstr("all exposures are assumed equal"));
   const Calibration calibration = ReadCalibration(capture / "glint/calib/manifest.json");

@@ -81,7 +81,7 @@ GrayImage PictureOf(const BoardFile& file, int dpi) {
   picture.width = static_cast<int>(file.sheet->width_mm / pixel_mm);
   picture.height = static_cast<int>(file.sheet->height_mm / pixel_mm);
   const BoardPainter painter(file.board, 1000);
-  constexpr int kSamples = 4;  // a side of a lens's blur, which is two pixels wide
+  constexpr int kSamples = 6;  // a side of a lens's blur, which is two pixels wide
   for (int i = 0; i < picture.width * picture.height; ++i) {
     double sum = 0;
     for (int k = 0; k < kSamples * kSamples; ++k) {
@@ -115,7 +115,7 @@ TEST(BoardKinds, EachIsPlannedDescribedReadBackAndFound) {
     EXPECT_EQ(BoardInWords(read.board), BoardInWords(planned.board));
     EXPECT_EQ(KindOf(kind).InOneLine(read.board), KindOf(kind).InOneLine(planned.board));
     EXPECT_FALSE(PaperSpots(read.board).empty()) << options.kind;
-    constexpr int kDpi = 150;
+    constexpr int kDpi = 110;
     const BoardDetection found = DetectBoard(PictureOf(read, kDpi), read.board);
     EXPECT_EQ(found.corners.size(), BoardCorners(read.board).size()) << found.problem;
     for (const CornerObservation& corner : found.corners) {

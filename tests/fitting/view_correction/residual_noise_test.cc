@@ -9,10 +9,10 @@
 namespace glint {
 namespace {
 
-constexpr int kViews = 12, kTexels = 4000;
-constexpr double kVariance = 4e-4;
+constexpr int kNoisyViews = 12, kNoisyTexels = 4000;
+constexpr double kNoiseVariance = 4e-4;
 
-BatchObservations Observations(int views) {
+BatchObservations ObservationsOf(int views) {
   BatchObservations observations(views);
   observations.Clear(views);
   observations.Place(0, 0, 0);
@@ -29,9 +29,9 @@ BatchObservations Observations(int views) {
 
 // Residuals of which `common` of the variance is all channels' of a view. A solution takes away
 // what nine parameters can follow: five degrees of freedom of the channels' sum, four of the rest.
-class Residuals {
+class NoisyResiduals {
  public:
-  Residuals(double common, unsigned seed) : common_(common), engine_(seed) {}
+  NoisyResiduals(double common, unsigned seed) : common_(common), engine_(seed) {}
 
   void Fill(int views, BatchResiduals* residuals) {
     const double kept_common = std::sqrt((views - 5.0) / views);
@@ -48,7 +48,7 @@ class Residuals {
         const double left = kept_common * mean + kept_rest * (values[c] - mean);
         residuals->rows()[(3 * static_cast<size_t>(v) + c) * BatchResiduals::kRows +
                           BatchResiduals::kResidual][0] =
-            static_cast<float>(std::sqrt(kVariance) * left);
+            static_cast<float>(std::sqrt(kNoiseVariance) * left);
       }
     }
   }
@@ -60,13 +60,13 @@ class Residuals {
 };
 
 ResidualNoise Collected(double common, int views, unsigned seed) {
-  const BatchObservations observations = Observations(views);
+  const BatchObservations observations = ObservationsOf(views);
   BatchResiduals residuals(views);
-  Residuals random(common, seed);
+  NoisyResiduals random(common, seed);
   ResidualNoise noise;
-  for (int t = 0; t < kTexels; ++t) {
+  for (int t = 0; t < kNoisyTexels; ++t) {
     random.Fill(views, &residuals);
-    noise.Add(observations, residuals, 0, kVariance);
+    noise.Add(observations, residuals, 0, kNoiseVariance);
   }
   return noise;
 }
@@ -74,14 +74,14 @@ ResidualNoise Collected(double common, int views, unsigned seed) {
 // Of n residuals with correlation ρ the mean has the variance of n/(1 + (n − 1)ρ) independent ones.
 TEST(ResidualNoise, CountsChannelsByTheirCorrelation) {
   for (const double correlation : {0.0, 0.25, 0.5, 0.9, 1.0}) {
-    EXPECT_NEAR(Collected(correlation, kViews, 3).Shared(), 1 + 2 * correlation, 0.05)
+    EXPECT_NEAR(Collected(correlation, kNoisyViews, 3).Shared(), 1 + 2 * correlation, 0.05)
         << correlation;
   }
 }
 
 TEST(ResidualNoise, IsTheSameInParts) {
-  ResidualNoise both = Collected(0.2, kViews, 5);
-  both.Add(Collected(0.8, kViews, 6));
+  ResidualNoise both = Collected(0.2, kNoisyViews, 5);
+  both.Add(Collected(0.8, kNoisyViews, 6));
   EXPECT_NEAR(both.Shared(), 1 + 2 * 0.5, 0.05);
 }
 

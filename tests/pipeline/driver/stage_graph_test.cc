@@ -46,8 +46,12 @@ TEST(StageGraph, ARefinedCaptureReadsEachStagesResultOnce) {
 TEST(StageGraph, TiledMapsAreExportedAndWholeOnesShown) {
   Capture capture = OfPhotographs();
   capture.tiles = true;
+  RunChoices choices;
+  choices.method = "classic";
+  choices.exclude = {"a"};
+  choices.seed = 7;
   EXPECT_THAT(
-      InWords(StageSteps(capture, {.method = "classic", .exclude = {"a"}, .seed = 7})),
+      InWords(StageSteps(capture, choices)),
       ElementsAre("calib <-: --seed 7", "rectify <- calib: --seed 7",
                   "fit <- rectify: --method classic --exclude a --seed 7",
                   "tile <- fit: --from fit --seed 7", "export <- tile: --from tile --seed 7",
@@ -57,7 +61,10 @@ TEST(StageGraph, TiledMapsAreExportedAndWholeOnesShown) {
 TEST(StageGraph, AnImportedCaptureBeginsWithTheViewsThatAreThere) {
   Capture capture;
   ASSERT_TRUE(capture.imported());
-  EXPECT_THAT(InWords(StageSteps(capture, {.method = "initial", .views = {"b"}})),
+  RunChoices choices;
+  choices.method = "initial";
+  choices.views = {"b"};
+  EXPECT_THAT(InWords(StageSteps(capture, choices)),
               ElementsAre("fit <- rectify: --method initial --views b", "export <- fit: --from fit",
                           "report <- rectify fit export: --from fit"));
 }
@@ -79,7 +86,9 @@ TEST(StageGraph, StagesWaitForEarlierOnesAlone) {
       Capture capture = OfPhotographs();
       capture.tiles = tiles;
       std::vector<std::string> done;
-      for (const StageStep& step : StageSteps(capture, {.method = method})) {
+      RunChoices choices;
+      choices.method = method;
+      for (const StageStep& step : StageSteps(capture, choices)) {
         for (const std::string& earlier : step.waits_for) EXPECT_THAT(done, Contains(earlier));
         EXPECT_EQ(step.waits_for.empty(), step.stage == "calib");
         done.push_back(step.stage);
