@@ -219,7 +219,7 @@ void RequireRows(const DoubleArray& array, const char* name, py::ssize_t rows, b
 DoubleArray Brdf(const DoubleArray& light, const DoubleArray& camera, const DoubleArray& normal,
                  const DoubleArray& diffuse, const DoubleArray& specular,
                  const DoubleArray& roughness, bool one_minus_specular, double narrow_share,
-                 double narrow_ratio, double coat_f0) {
+                 double narrow_ratio, double coat_f0, int tail) {
   const py::ssize_t rows = roughness.ndim() == 1 ? roughness.shape(0) : 0;
   RequireRows(light, "light", rows, true);
   RequireRows(camera, "camera", rows, true);
@@ -229,7 +229,7 @@ DoubleArray Brdf(const DoubleArray& light, const DoubleArray& camera, const Doub
   RequireRows(roughness, "roughness", rows, false);
   ReflectanceConvention convention;
   if (one_minus_specular) convention.diffuse_weight = DiffuseWeight::kOneMinusSpecular;
-  convention.lobes = {narrow_share, narrow_ratio, coat_f0};
+  convention.lobes = {narrow_share, narrow_ratio, coat_f0, tail};
   DoubleArray values(std::vector<py::ssize_t>{rows, 3});
   double* const out = values.mutable_data();
   const double dark[3] = {0, 0, 0};
@@ -291,6 +291,9 @@ PYBIND11_MODULE(_glint, module) {
         return names;
       },
       "Names of all stages in their order.");
+  module.def(
+      "views_stage", [] { return std::string(glint::LastGiving(glint::Gives::kViews)->name); },
+      "Name of the stage whose views are fitted.");
   module.def("render", &glint::Render, arg("maps"), arg("size_mm"), arg("convention"),
              arg("camera_mm"), arg("light_mm"), arg("light_rgb"), arg("ambient_rgb"),
              arg("exposure"), arg("threads"), "Radiance, [3, height, width].");
@@ -300,5 +303,6 @@ PYBIND11_MODULE(_glint, module) {
              "The adjoint of render: ∂loss/∂maps, [10, height, width], from ∂loss/∂radiance.");
   module.def("brdf", &glint::Brdf, arg("light"), arg("camera"), arg("normal"), arg("diffuse"),
              arg("specular"), arg("roughness"), arg("one_minus_specular"), arg("narrow_share"),
-             arg("narrow_ratio"), arg("coat_f0"), "The BRDF row by row, [rows, 3], in 1/sr.");
+             arg("narrow_ratio"), arg("coat_f0"), arg("tail"),
+             "The BRDF row by row, [rows, 3], in 1/sr.");
 }

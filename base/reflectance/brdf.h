@@ -68,11 +68,13 @@ T FresnelWeight(const T& v_dot_h) {
 // As the formulas take them.
 template <class S>
 LobeMix<S> LobeMixOf(const SpecularLobes& lobes) {
-  if (!lobes.two()) return {};
+  const LobeTail<S> tail = {lobes.tail_exponent, S(std::sqrt(lobes.tail_exponent - 1.0))};
+  if (!lobes.two()) return {.tail = tail};
   const double wide = std::pow(lobes.narrow_ratio, -lobes.narrow_share);
   return {true,
           {S(1 - lobes.narrow_share), S(lobes.narrow_share)},
           {S(wide), S(wide * lobes.narrow_ratio)},
+          tail,
           S(lobes.coat_f0)};
 }
 

@@ -74,18 +74,20 @@ struct SpecularTerms {
   Cosines<T> free;
   T n_dot_l, n_dot_v, n_dot_h;  // clamped
   T alpha, k;
-  T t;            // D = (α/t)²/π, before t's clamp
-  T ratio;        // α/t
-  T inverse_t;    // of the clamped t
-  T inverse_a;    // G1(NoL) = NoL/a
-  T inverse_b;    // G1(NoV) = NoV/b
-  T masking;      // G/(4π·NoL·NoV) = 1/(4π·a·b)
+  T wide;       // α·√(γ−1), of GGX α
+  T t;          // D = (wide/t)²/π · tail, before t's clamp
+  T ratio;      // wide/t
+  T inverse_t;  // of the clamped t
+  T inverse_a;  // G1(NoL) = NoL/a
+  T inverse_b;  // G1(NoV) = NoV/b
+  T masking;  // G/(4π·NoL·NoV) = 1/(4π·a·b), times tail = (γ−1)·(NoH²·wide²/t)^(γ−2)
   T over_cosine;  // S/NoL = D·G/(4·NoL·NoV)
   T value;        // S
 };
 
 template <class T>
-GLINT_BRDF SpecularTerms<T> EvaluateSpecular(const Cosines<T>& cosines, const T& roughness) {
+GLINT_BRDF SpecularTerms<T> EvaluateSpecular(const Cosines<T>& cosines, const T& roughness,
+                                             const LobeTail<ScalarOf<T>>& tail = {}) {
   using A = Arithmetic<T>;
   using S = ScalarOf<T>;
   SpecularTerms<T> s;
@@ -94,10 +96,11 @@ GLINT_BRDF SpecularTerms<T> EvaluateSpecular(const Cosines<T>& cosines, const T&
   s.n_dot_v = A::AtLeast(cosines.n_dot_v, S(kDotClamp));
   s.n_dot_h = A::AtLeast(cosines.n_dot_h, S(kDotClamp));
   s.alpha = roughness * roughness;
+  s.wide = s.alpha * tail.stretch;
   s.k = A::AtLeast(s.alpha * S(0.5), S(kDenominatorClamp));
   const T sine_squared = A::WhereAbove(cosines.n_dot_h, S(kDotClamp), cosines.sine_squared,
                                        A::Constant(S(1 - kDotClamp * kDotClamp)));
-  const T projected = s.n_dot_h * s.alpha;
+  const T projected = s.n_dot_h * s.wide;
   s.t = A::MultiplyAdd(projected, projected, sine_squared);
 
   // One division for the reciprocals of t, a and b: t·a·b ≥ 1e-24.
@@ -110,8 +113,13 @@ GLINT_BRDF SpecularTerms<T> EvaluateSpecular(const Cosines<T>& cosines, const T&
   s.inverse_t = inverse * ab;
   s.inverse_a = inverse_ab * b;
   s.inverse_b = inverse_ab * a;
-  s.ratio = s.alpha * s.inverse_t;
+  s.ratio = s.wide * s.inverse_t;
   s.masking = inverse_ab * S(0.25 * kInversePi);
+  if (tail.exponent > 2) {
+    const T share = projected * projected * s.inverse_t;  // at most 1
+    s.masking = s.masking * S(tail.exponent - 1);
+    for (int i = 2; i < tail.exponent; ++i) s.masking = s.masking * share;
+  }
   s.over_cosine = s.ratio * s.ratio * s.masking;
   s.value = s.over_cosine * s.n_dot_l;
   return s;
@@ -136,19 +144,22 @@ struct SpecularSlopes {
 // `weight` comes first, so that what cancels between slopes by n·h and by n·n is rounded alike.
 template <class T>
 GLINT_BRDF SpecularSlopes<T> DifferentiateSpecular(
-    const SpecularTerms<T>& s, const T& roughness,
+    const SpecularTerms<T>& s, const T& roughness, const LobeTail<ScalarOf<T>>& tail = {},
     const T& weight = Arithmetic<T>::Constant(ScalarOf<T>(1))) {
   using A = Arithmetic<T>;
   using S = ScalarOf<T>;
   const T zero = A::Constant(S(0));
   const T weighted = weight * s.value;
-  const T by_t = A::WhereAbove(s.t, S(kDenominatorClamp), weighted * s.inverse_t * S(-2), zero);
+  const T by_t =
+      A::WhereAbove(s.t, S(kDenominatorClamp), weighted * s.inverse_t * S(-tail.exponent), zero);
   // α directly, through t = sin² + (NoH·α)², and through k = α/2 in a and b.
   const T cosine_squared = s.n_dot_h * s.n_dot_h;
   const T direct = s.ratio * s.inverse_t * s.masking * s.n_dot_l;
   const T through_k =
       A::MultiplyAdd(S(1) - s.n_dot_l, s.inverse_a, (S(1) - s.n_dot_v) * s.inverse_b) * weighted;
-  T by_alpha = A::MultiplyAdd(by_t * s.alpha, cosine_squared, weight * direct) * S(2);
+  T by_alpha =
+      A::MultiplyAdd(by_t * s.wide, cosine_squared, weight * direct * S(tail.exponent - 1)) * S(2) *
+      tail.stretch;
   by_alpha -= A::WhereAbove(s.alpha * S(0.5), S(kDenominatorClamp), through_k * S(0.5), zero);
 
   SpecularSlopes<T> slopes;
@@ -158,7 +169,11 @@ GLINT_BRDF SpecularSlopes<T> DifferentiateSpecular(
   slopes.by_n_dot_v =
       A::WhereAbove(s.free.n_dot_v, S(kDotClamp), weighted * (s.k - S(1)) * s.inverse_b, zero);
   slopes.by_n_dot_n = A::WhereAbove(s.free.n_dot_h, S(kDotClamp), by_t, zero);
-  slopes.by_n_dot_h = slopes.by_n_dot_n * s.n_dot_h * (s.alpha * s.alpha - S(1)) * S(2);
+  slopes.by_n_dot_h = slopes.by_n_dot_n * s.n_dot_h * (s.wide * s.wide - S(1)) * S(2);
+  if (tail.exponent > 2) {
+    slopes.by_n_dot_h += A::WhereAbove(s.free.n_dot_h, S(kDotClamp),
+                                       weighted * S(2 * tail.exponent - 4) / s.n_dot_h, zero);
+  }
   return slopes;
 }
 
@@ -185,14 +200,14 @@ GLINT_BRDF MixTerms<T> EvaluateMix(const Cosines<T>& cosines, const T& roughness
   MixTerms<T> s;
   s.coat_over_cosine = s.coat = Arithmetic<T>::Constant(S(0));
   if (!mix.two) {
-    s.lobes[0] = EvaluateSpecular(cosines, roughness);
+    s.lobes[0] = EvaluateSpecular(cosines, roughness, mix.tail);
     s.n_dot_l = s.lobes[0].n_dot_l;
     s.over_cosine = s.lobes[0].over_cosine;
     s.value = s.lobes[0].value;
     return s;
   }
   for (int i = 0; i < 2; ++i) {
-    s.lobes[i] = EvaluateSpecular(cosines, LobeRoughness(roughness, mix, i));
+    s.lobes[i] = EvaluateSpecular(cosines, LobeRoughness(roughness, mix, i), mix.tail);
   }
   s.n_dot_l = s.lobes[0].n_dot_l;
   s.over_cosine = s.lobes[0].over_cosine * mix.share[0];
@@ -213,7 +228,7 @@ GLINT_BRDF SpecularSlopes<T> DifferentiateLobe(const MixTerms<T>& s, const T& ro
                                                const LobeMix<S>& mix, int lobe, const T& weight) {
   using A = Arithmetic<T>;
   SpecularSlopes<T> by = DifferentiateSpecular(s.lobes[lobe], LobeRoughness(roughness, mix, lobe),
-                                               T(weight * mix.share[lobe]));
+                                               mix.tail, T(weight * mix.share[lobe]));
   // A lobe as rough as can be stays so.
   by.by_roughness = A::WhereAbove(T(roughness * mix.scale[lobe]), S(1), A::Constant(S(0)),
                                   T(by.by_roughness * mix.scale[lobe]));
@@ -224,7 +239,7 @@ template <class T, class S>
 GLINT_BRDF SpecularSlopes<T> DifferentiateMix(
     const MixTerms<T>& s, const T& roughness, const LobeMix<S>& mix,
     const T& weight = Arithmetic<T>::Constant(ScalarOf<T>(1))) {
-  if (!mix.two) return DifferentiateSpecular(s.lobes[0], roughness, weight);
+  if (!mix.two) return DifferentiateSpecular(s.lobes[0], roughness, mix.tail, weight);
   SpecularSlopes<T> sum = DifferentiateLobe(s, roughness, mix, 0, weight);
   if (mix.coat()) return sum;
   sum += DifferentiateLobe(s, roughness, mix, 1, weight);

@@ -14,10 +14,10 @@ namespace {
       "'; use photograph, dir2019, materialgan, or words of diffuse=one|one_minus_specular, "
       "light=none|inverse_square, sampling=pixel_centres|corner_to_corner, "
       "narrow_lobe=SHARExRATIO[@F0] (a share from 0 to below 1, a ratio of roughnesses up to 1, a "
-      "coat's F0 up to 1)");
+      "coat's F0 up to 1), tail=EXPONENT (a whole number from 2, GGX, to 32)");
 }
 
-constexpr std::string_view kNarrowLobe = "narrow_lobe=";
+constexpr std::string_view kNarrowLobe = "narrow_lobe=", kTail = "tail=";
 
 // The shortest digits that mean this number.
 std::string Shortest(double x) {
@@ -44,6 +44,15 @@ SpecularLobes ParseLobes(std::string_view text) {
   return lobes;
 }
 
+int ParseTail(std::string_view text) {
+  int tail = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, tail);
+  const bool in_range = tail >= kLeastTail && tail <= kMostTail;
+  if (read.ec != std::errc() || read.ptr != end || !in_range) Reject(text);
+  return tail;
+}
+
 void SetWord(const std::string& word, ReflectanceConvention* convention) {
   if (word == "diffuse=one") {
     convention->diffuse_weight = DiffuseWeight::kOne;
@@ -58,7 +67,11 @@ void SetWord(const std::string& word, ReflectanceConvention* convention) {
   } else if (word == "sampling=corner_to_corner") {
     convention->sampling = TexelSampling::kCornerToCorner;
   } else if (word.starts_with(kNarrowLobe)) {
+    const int tail = convention->lobes.tail_exponent;
     convention->lobes = ParseLobes(std::string_view(word).substr(kNarrowLobe.size()));
+    convention->lobes.tail_exponent = tail;
+  } else if (word.starts_with(kTail)) {
+    convention->lobes.tail_exponent = ParseTail(std::string_view(word).substr(kTail.size()));
   } else {
     Reject(word);
   }
@@ -80,6 +93,8 @@ std::string ToString(const ReflectanceConvention& convention) {
             Shortest(lobes.narrow_ratio);
     if (lobes.coat_f0 > 0) text += "@" + Shortest(lobes.coat_f0);
   }
+  if (lobes.tail_exponent != 2)
+    text += " " + std::string(kTail) + std::to_string(lobes.tail_exponent);
   return text;
 }
 

@@ -25,14 +25,22 @@ enum class TexelSampling { kPixelCentres, kCornerToCorner };
 // their geometric mean by these shares; a lobe's own roughness is at most 1. Or the narrow one is a
 // coat's, a varnish's on wood or on paper: it reflects white light by an F0 of its own, the same
 // all over, and the specular map is the wide one's F0 alone.
+//
+// Each lobe's normals have Student's t-distribution of slopes (Ribardière, Bringier, Meneveaux and
+// Simonot 2017), with γ the exponent of its tails:
+//   D = (γ − 1)^γ α^(2γ − 2) / (π cos⁴θ ((γ − 1)α² + tan²θ)^γ)
+// GGX for γ = 2, Beckmann's for γ → ∞; D(0) = 1/(πα²) for any γ.
 struct SpecularLobes {
   double narrow_share = 0;  // s in [0, 1); 0: one lobe
   double narrow_ratio = 1;  // q in (0, 1]
   double coat_f0 = 0;       // of a coat, up to 1; 0: the narrow lobe has the specular map's F0
+  int tail_exponent = 2;    // γ, kLeastTail to kMostTail
 
   bool two() const { return narrow_share > 0; }
   bool operator==(const SpecularLobes&) const = default;
 };
+
+inline constexpr int kLeastTail = 2, kMostTail = 32;
 
 struct ReflectanceConvention {
   DiffuseWeight diffuse_weight = DiffuseWeight::kOne;

@@ -59,6 +59,10 @@ std::optional<LobeChoice> SearchKind(double coat_f0, const HeldOutErrors& one,
 
 }  // namespace
 
+bool AskForShortTails(const HeldOutErrors& short_tails, const HeldOutErrors& ggx) {
+  return short_tails.EnergyAgainst(ggx) < -constants::kShortTailLogOdds;
+}
+
 bool AskForTwoLobes(const HeldOutErrors& two, const HeldOutErrors& one) {
   return two.EnergyAgainst(one) < -constants::kSecondLobeLogOdds;
 }

@@ -15,6 +15,10 @@ namespace glint {
 // shows as such (log odds 3).
 bool AskForTwoLobes(const HeldOutErrors& two, const HeldOutErrors& one);
 
+// The same of lobes whose tails are shorter than GGX's: about every second sample has them, and
+// other programs know GGX alone (log odds 1).
+bool AskForShortTails(const HeldOutErrors& short_tails, const HeldOutErrors& ggx);
+
 // From one lobe on over a lattice of shares and ratios of roughness, to the next that predicts
 // better until none does: once for a narrow lobe that has the specular map's F0, once for a coat's
 // of `coat_f0`. Those of the two that ask for two lobes, the better one first; empty: one lobe.

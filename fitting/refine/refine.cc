@@ -102,6 +102,9 @@ std::string RefineSummary::BriefReport() const {
     text << "a second specular lobe (share " << lobes.narrow_share << ", " << lobes.narrow_ratio
          << " times as rough as the other" << (lobes.coat_f0 > 0 ? ", a coat's" : "") << "), ";
   }
+  if (lobes.tail_exponent > 2) {
+    text << "lobes with tails shorter than GGX's (exponent " << lobes.tail_exponent << "), ";
+  }
   if (exposure_spread > 0) text << "exposures scatter " << 100 * exposure_spread << " %, ";
   text << 100.0 * converged << " % converged";
   return text.str();

@@ -32,6 +32,8 @@ const ManifestField<Summary> kSampleMetrics[] = {
     {"narrow_lobe",
      "second specular lobe: `share`, `roughness_ratio`, and `coat_f0` of a coat; null: none",
      [](const Summary& s) -> Json { return JsonOf(s.lobes); }},
+    {"tail_exponent", "γ of the specular lobes' tails; 2: GGX",
+     [](const Summary& s) -> Json { return s.lobes.tail_exponent; }},
     {"roughness_spread",
      "standard deviation of roughness within a substance; null: not estimated from so few "
      "photographs (likewise below)",

@@ -499,20 +499,25 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
 
 void SampleModel::Estimate(const SamplePart* other, const SampleSolver& solver, int threads) {
   Sampling sampling = Sample(constants::kSampledTexels, solver, threads);
-  learns_normals_ = has_sample_priors_;
-  Fit(&sampling);
-  learns_normals_ = false;
+  const SampleModel pristine(*this);
+  FitNormalsToo(&sampling);
   if (all_views_.size() < constants::kLeastValidatedViews) return;
   const Sampling blocks = SampleBlocks(constants::kSampledTexels, solver, threads);
-  Validate(other, blocks, &sampling);
+  ChooseTails(pristine, other, blocks, &sampling);
+  FitAsChosen(&sampling);
   MeasureFacets(blocks);
 }
 
-// What is chosen by cross-validation, and all else once more by that.
-void SampleModel::Validate(const SamplePart* other, const Sampling& blocks, Sampling* sampling) {
-  FreezeViews(constants::kDiffuseSd, *sampling);
-  ChooseSubstances(other, *sampling, blocks);
-  ChooseLobesAndSpreads(blocks);
+void SampleModel::FitNormalsToo(Sampling* sampling) {
+  sampling->solver->reflect(lobes_);
+  sampling->solver->deviate(deviations_);
+  learns_normals_ = has_sample_priors_;
+  Fit(sampling);
+  learns_normals_ = false;
+}
+
+// All else once more by what cross-validation chose.
+void SampleModel::FitAsChosen(Sampling* sampling) {
   if (deviations_.any()) {
     // Views are found while nothing is known of how far diffuse albedo departs from its substances:
     // its departures are alike in neighbouring texels, and views would be moved to make them even.

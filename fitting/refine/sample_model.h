@@ -148,7 +148,9 @@ class SampleModel {
   // and diffuse albedo is shared too, from what was found of it without.
   void FreezeViews(double diffuse_spread, const Sampling& sampling);
   SampleWorth WorthOf(const Sampling& sampling) const;
-  void Validate(const SamplePart* other, const Sampling& blocks, Sampling* sampling);
+  // Fit with normals' scatter too, from what is believed before any round.
+  void FitNormalsToo(Sampling* sampling);
+  void FitAsChosen(Sampling* sampling);
   // By cross-validation, sample_spreads.cc.
   // visit(model, sampling, fitted, held_out) with what is found of the sampled texels without the
   // views held out, one fold after the other.
@@ -160,7 +162,15 @@ class SampleModel {
   // From factors of these powers on; returns those that predict best, and takes their mean.
   SpreadPowers ChooseSpreads(const Sampling& sampling, const SpreadPowers& from);
   std::vector<SpecularLobes> LobesToTry(const Sampling& sampling) const;
-  void ChooseLobesAndSpreads(const Sampling& sampling);
+  void SetLobes(SpecularLobes lobes);  // with the tails as they are
+  // With one exponent of tails, from the spreads that others had; returns those of one lobe.
+  SpreadPowers ChooseLobesAndSpreads(const Sampling& sampling, const SpreadPowers& from);
+  // What is chosen by cross-validation over `blocks` with one exponent of tails.
+  SpreadPowers Choose(const SamplePart* other, const Sampling& sampling, const Sampling& blocks,
+                      const SpreadPowers& from);
+  // The same with the exponent chosen too; `pristine`: before anything was fitted.
+  void ChooseTails(const SampleModel& pristine, const SamplePart* other, const Sampling& blocks,
+                   Sampling* sampling);
 
   // What is known of a texel by itself; what its substance and a level surface say; both.
   TexelGaussian Initialisation(size_t texel) const;

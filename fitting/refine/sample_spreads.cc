@@ -161,33 +161,67 @@ SpreadPowers SampleModel::ChooseSpreads(const Sampling& sampling, const SpreadPo
 
 std::vector<SpecularLobes> SampleModel::LobesToTry(const Sampling& sampling) const {
   if (!options_.second_lobe || lobes_.two() ||
-      all_views_.size() < constants::kLeastViewsForTwoLobes) {
+      all_views_.size() < constants::kLeastViewsForOtherLobes) {
     return {};
   }
   SampleModel model(*this);
   return SearchLobes(kDielectric.f0 * means_.LightPower(), [&](const SpecularLobes& lobes) {
-    model.lobes_ = lobes;
+    model.SetLobes(lobes);
     return model.CrossValidate(sampling);
   });
 }
 
+void SampleModel::SetLobes(SpecularLobes lobes) {
+  lobes.tail_exponent = lobes_.tail_exponent;
+  lobes_ = lobes;
+}
+
 // Lobes are looked for before spreads, which would make up for the one that is missing, and are
 // judged with the spreads that each choice asks for.
-void SampleModel::ChooseLobesAndSpreads(const Sampling& sampling) {
+SpreadPowers SampleModel::ChooseLobesAndSpreads(const Sampling& sampling,
+                                                const SpreadPowers& from) {
   const SampleModel nominal(*this);
   const std::vector<SpecularLobes> to_try = LobesToTry(sampling);
-  const SpreadPowers powers = ChooseSpreads(sampling, {});
+  const SpreadPowers powers = ChooseSpreads(sampling, from);
   const std::optional<HeldOutErrors> one =
       to_try.empty() ? std::nullopt : std::optional(CrossValidate(sampling));
   for (const SpecularLobes& lobes : to_try) {
     SampleModel two(nominal);
-    two.lobes_ = lobes;
+    two.SetLobes(lobes);
     two.ChooseSpreads(sampling, powers);
     if (!AskForTwoLobes(two.CrossValidate(sampling), *one)) continue;
     *this = two;
     break;
   }
-  sampling.solver->reflect(lobes_);
+  return powers;
+}
+
+SpreadPowers SampleModel::Choose(const SamplePart* other, const Sampling& sampling,
+                                 const Sampling& blocks, const SpreadPowers& from) {
+  FreezeViews(constants::kDiffuseSd, sampling);
+  ChooseSubstances(other, sampling, blocks);
+  return ChooseLobesAndSpreads(blocks, from);
+}
+
+// Each exponent from the beginning and with all that it asks for: lobes with shorter tails are
+// rougher, what their tails leave over is another lobe's, and an estimate stays in the valley that
+// it is in.
+void SampleModel::ChooseTails(const SampleModel& pristine, const SamplePart* other,
+                              const Sampling& blocks, Sampling* sampling) {
+  const SpreadPowers powers = Choose(other, *sampling, blocks, {});
+  if (options_.lobe_tails && all_views_.size() >= constants::kLeastViewsForOtherLobes) {
+    SampleModel model(pristine);
+    model.lobes_.tail_exponent = constants::kShortTail;
+    Sampling own = model.SamplingOf(sampling->texels, *sampling->solver, sampling->threads);
+    model.FitNormalsToo(&own);
+    model.Choose(other, own, blocks, powers);
+    if (AskForShortTails(model.CrossValidate(blocks), CrossValidate(blocks))) {
+      *this = model;
+      *sampling = std::move(own);
+    }
+  }
+  sampling->solver->reflect(lobes_);
+  sampling->solver->deviate(deviations_);
 }
 
 }  // namespace glint

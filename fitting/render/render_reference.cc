@@ -15,20 +15,25 @@ using torch::Tensor;
 
 Tensor Dot(const Tensor& a, const Tensor& b) { return (a * b).sum(2, /*keepdim=*/true); }
 
-// D·G / (4·NoL·NoV) of one lobe, from clamped cosines.
+// D·G / (4·NoL·NoV) of one lobe, from clamped cosines. D is Student's t (convention.h) with
+// t = sin²θ + cos²θ·(γ−1)α²: (γ−1)^γ α^(2γ−2) cos^(2γ−4)θ / (π t^γ).
 Tensor LobeFactor(const Tensor& normal, const Tensor& half, const Tensor& n_dot_l,
-                  const Tensor& n_dot_v, const Tensor& roughness) {
+                  const Tensor& n_dot_v, const Tensor& roughness, int tail) {
   const Tensor alpha = roughness * roughness;
   const Tensor k = (alpha * 0.5).clamp_min(kDenominatorClamp);
   const Tensor n_dot_h = Dot(normal, half);
   const Tensor sine_squared = Dot(normal, normal) - n_dot_h * n_dot_h;
   const Tensor facing = n_dot_h > kDotClamp;
-  const Tensor clamped = n_dot_h.clamp_min(kDotClamp) * alpha;
-  const Tensor t =
-      torch::where(facing, sine_squared, torch::ones_like(sine_squared)) + clamped * clamped;
-  const Tensor ratio = alpha / t.clamp_min(kDenominatorClamp);
+  const Tensor cosine = n_dot_h.clamp_min(kDotClamp);
+  const Tensor wide = alpha * std::sqrt(tail - 1.0);
+  const Tensor t = torch::where(facing, sine_squared, torch::ones_like(sine_squared)) +
+                   cosine * cosine * wide * wide;
+  const Tensor ratio = wide / t.clamp_min(kDenominatorClamp);
   const Tensor masking = (n_dot_l * (1 - k) + k) * (n_dot_v * (1 - k) + k);
-  return ratio * ratio * (0.25 * kInversePi) / masking;
+  const Tensor peak = ratio * ratio * (0.25 * kInversePi) / masking;
+  if (tail == 2) return peak;
+  const Tensor share = cosine * cosine * wide * wide / t.clamp_min(kDenominatorClamp);
+  return peak * (tail - 1) * share.pow(tail - 2);
 }
 
 // Of the sample's lobes (base/reflectance/convention.h), with the specular map's F0 and with a
@@ -39,10 +44,11 @@ struct SpecularFactors {
 SpecularFactors FactorsOf(const SpecularLobes& lobes, const Tensor& normal, const Tensor& half,
                           const Tensor& n_dot_l, const Tensor& n_dot_v, const Tensor& roughness) {
   const auto of = [&](double scale) {
-    return LobeFactor(normal, half, n_dot_l, n_dot_v, (roughness * scale).clamp_max(1));
+    return LobeFactor(normal, half, n_dot_l, n_dot_v, (roughness * scale).clamp_max(1),
+                      lobes.tail_exponent);
   };
   if (!lobes.two()) {
-    const Tensor only = LobeFactor(normal, half, n_dot_l, n_dot_v, roughness);
+    const Tensor only = LobeFactor(normal, half, n_dot_l, n_dot_v, roughness, lobes.tail_exponent);
     return {only, torch::zeros_like(only)};
   }
   const double share = lobes.narrow_share, wide = std::pow(lobes.narrow_ratio, -share);

@@ -96,7 +96,10 @@ Json ViewsJson(const ReportInput& input, const std::vector<ShownView>& shown) {
 
 Json LobesJson(const SpecularLobes& lobes) {
   const LobeMix<double> mix = LobeMixOf<double>(lobes);
-  return {{"shares", mix.share}, {"scales", mix.scale}, {"coat_f0", mix.coat_f0}};
+  return {{"shares", mix.share},
+          {"scales", mix.scale},
+          {"coat_f0", mix.coat_f0},
+          {"tail_exponent", mix.tail.exponent}};
 }
 
 // JSON inside <script>: what could end it is escaped.

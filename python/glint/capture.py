@@ -15,6 +15,7 @@ from .maps import CHANNELS, Confidence, Maps, channels_last, frozen
 from .rendering import render
 
 STAGES: tuple[str, ...] = tuple(_glint.stages())
+_VIEWS_STAGE = _glint.views_stage()
 _MANIFEST_FORMAT = 1
 _T = TypeVar("_T")
 _ARRAYS = {"rotation": (3, 3), "registration": (3, 3)}  # row-major in files
@@ -157,7 +158,7 @@ class Capture:
         Raises:
             UserError: as `manifest` of rectify.
         """
-        data = self.manifest("rectify")["data"]
+        data = self.manifest(_VIEWS_STAGE)["data"]
         return float(data["width_mm"]), float(data["height_mm"])
 
     @property
@@ -167,7 +168,7 @@ class Capture:
         Raises:
             UserError: as `manifest` of rectify.
         """
-        return [view["name"] for view in self.manifest("rectify")["data"]["views"]]
+        return [view["name"] for view in self.manifest(_VIEWS_STAGE)["data"]["views"]]
 
     def view(self, name: str | int) -> View:
         """The rectified `View` of a name, a photograph's file name, or a number from 0.
@@ -175,7 +176,7 @@ class Capture:
         Raises:
             UserError: no view has that name, or as `manifest` of rectify.
         """
-        views = self._cached("rectify", "views", self._make_views)
+        views = self._cached(_VIEWS_STAGE, "views", self._make_views)
         if isinstance(name, int):
             return views[name]
         for view in views:
@@ -249,9 +250,9 @@ class Capture:
         return self._manifest_file(stage).parent / name
 
     def _make_views(self) -> list[View]:
-        folder = self._manifest_file("rectify").parent
+        folder = self._manifest_file(_VIEWS_STAGE).parent
         return [View(folder / data["file"], data)
-                for data in self.manifest("rectify")["data"]["views"]]
+                for data in self.manifest(_VIEWS_STAGE)["data"]["views"]]
 
     def _read_maps(self, stage: str) -> Maps:
         file = self._output(stage, "svbrdf.exr")

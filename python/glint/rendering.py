@@ -143,7 +143,7 @@ def _colours(value: ArrayLike) -> Doubles:
 
 def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayLike,
          specular: ArrayLike, roughness: ArrayLike, *, diffuse_weight: str = "one",
-         narrow_lobe: tuple[float, ...] = (0.0, 1.0)) -> Doubles:
+         narrow_lobe: tuple[float, ...] = (0.0, 1.0), tail: int = 2) -> Doubles:
     """The BRDF f, without the cosine; vectorised, in double precision.
 
     Arguments broadcast against each other as NumPy's do, the last axis aside.
@@ -158,13 +158,15 @@ def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayL
         narrow_lobe: share and ratio of roughnesses of a second specular lobe, as a convention's
             "narrow_lobe=0.5x0.4"; share 0: one lobe. A third number, as in "0.5x0.4@0.04", is the
             F0 of a coat, which the narrow lobe then has in place of `specular`.
+        tail: exponent of the lobes' tails, as a convention's "tail=4"; 2: GGX.
 
     Returns:
         (..., 3) float64, 1/sr.
 
     Raises:
         ValueError: shapes that do not agree, a vector of length 0, an unknown weight, a share that
-            is not in [0, 1), a ratio that is not in (0, 1], an F0 that is not in [0, 1].
+            is not in [0, 1), a ratio that is not in (0, 1], an F0 that is not in [0, 1], a tail
+            that is no whole number from 2 to 32.
     """
     if diffuse_weight not in ("one", "one_minus_specular"):
         raise ValueError(f"diffuse_weight: found {diffuse_weight!r}; "
@@ -174,6 +176,8 @@ def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayL
         raise ValueError(f"narrow_lobe: found {narrow_lobe!r}; a share from 0 to below 1, a "
                          "ratio of roughnesses above 0, up to 1, and perhaps the F0 of a coat, up "
                          "to 1, are expected")
+    if tail not in range(2, 33):
+        raise ValueError(f"tail: found {tail!r}; a whole number from 2 to 32 is expected")
     vectors = [_unit("light", light), _unit("camera", camera), _unit("normal", normal),
                _colours(diffuse), _colours(specular)]
     widths = np.asarray(roughness, dtype=float)
@@ -181,7 +185,8 @@ def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayL
     rows = [np.broadcast_to(vector, (*shape, 3)).reshape(-1, 3) for vector in vectors]
     values = _glint.brdf(rows[0], rows[1], rows[2], rows[3], rows[4],
                          np.broadcast_to(widths, shape).reshape(-1),
-                         diffuse_weight == "one_minus_specular", share, ratio, coat_f0)
+                         diffuse_weight == "one_minus_specular", share, ratio, coat_f0,
+                         tail)
     return values.reshape((*shape, 3))
 
 

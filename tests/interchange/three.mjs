@@ -20,11 +20,12 @@ const kPage = `<script type="importmap">{"imports": {"three": "/three/build/thre
 
 // The sample's specular lobes by its convention's text: share, factor on roughness, F0 (null: the map's).
 function lobesOf(convention) {
+  const tail = Number(/tail=(\d+)/.exec(convention)?.[1] ?? 2);
   const found = /narrow_lobe=([\d.e-]+)x([\d.e-]+)(?:@([\d.e-]+))?/.exec(convention);
-  if (!found) return [{ share: 1, scale: 1, f0: null }];
+  if (!found) return [{ share: 1, scale: 1, f0: null, tail }];
   const [share, ratio, f0] = found.slice(1).map((text) => (text === undefined ? null : Number(text)));
   const wide = ratio ** -share;
-  return [{ share: 1 - share, scale: wide, f0: null }, { share, scale: wide * ratio, f0 }];
+  return [{ share: 1 - share, scale: wide, f0: null, tail }, { share, scale: wide * ratio, f0, tail }];
 }
 
 // In the page. Returns the mean log-L1.
@@ -78,9 +79,10 @@ async function compare({ glb, maps, size, whole, lobes, unchanged }) {
       const to = [light[0] - x, light[1] - y, light[2]], squared = to[0] ** 2 + to[1] ** 2 + to[2] ** 2;
       const l = unit(to), v = [0, 0, 1], h = unit([l[0], l[1], l[2] + 1]);
       const nl = dot(n, l), nv = dot(n, v), nh = dot(n, h), vh = dot(v, h);
-      const mirrored = lobes.map(({ share, scale }) => {
+      const mirrored = lobes.map(({ share, scale, tail }) => {
         const alpha = Math.min(Math.max(roughness.data[i] / 255, 0.03) * scale, 1) ** 2;
-        const lobe = (alpha / (nh * nh * (alpha * alpha - 1) + 1)) ** 2 / Math.PI;
+        const lobe = (tail - 1) ** tail * alpha ** (2 * tail - 2)
+          / (Math.PI * nh ** 4 * ((tail - 1) * alpha * alpha + 1 / (nh * nh) - 1) ** tail);
         const masking = (nl * (1 - alpha / 2) + alpha / 2) * (nv * (1 - alpha / 2) + alpha / 2);
         return share * lobe / (4 * masking);
       });

@@ -64,6 +64,26 @@ def test_brdf_is_the_formula_and_reciprocal():
     np.testing.assert_allclose(glint.brdf(camera, light, normal, 0.5, 0.04, 0.6), f, rtol=1e-12)
 
 
+def test_tails_fall_off_as_students_distribution_of_slopes():
+    light = np.array((0.5, -0.1, 1.0))
+    camera = np.array((0.1, 0.3, 1.0))
+    l, v = (x / np.linalg.norm(x) for x in (light, camera))
+    h = (l + v) / np.linalg.norm(l + v)
+    alpha, tangent2 = 0.36, 1 / h[2]**2 - 1
+
+    def distribution(tail):
+        return ((tail - 1)**tail * alpha**(2 * tail - 2)
+                / (np.pi * h[2]**4 * ((tail - 1) * alpha**2 + tangent2)**tail))
+
+    def f(tail):
+        return glint.brdf(light, camera, (0, 0, 1), 0.0, 0.04, 0.6, tail=tail)
+
+    for tail in (3, 4, 8):
+        np.testing.assert_allclose(f(tail) / f(2), distribution(tail) / distribution(2), rtol=1e-12)
+    with pytest.raises(ValueError, match="tail"):
+        f(1)
+
+
 def test_a_coat_reflects_white_by_its_own_f0():
     light, camera = (0.3, 0.2, 1), (-0.3, -0.2, 1)
 

@@ -49,6 +49,7 @@ export class MaterialScene {
       diffuseWhole: { value: this.material.diffuse_whole },
       lobeShares: { value: new THREE.Vector2(...this.material.lobes.shares) },
       lobeScales: { value: new THREE.Vector2(...this.material.lobes.scales) },
+      lobeTail: { value: this.material.lobes.tail_exponent },
       coatF0: { value: this.material.lobes.coat_f0 },
       fallsOff: { value: true }, lighting: { value: 0 }, exposure: { value: 1 },
       channel: { value: 0 }, tiles: { value: new THREE.Vector2(1, 1) },

@@ -14,6 +14,7 @@ uniform sampler2D geometryLowMap;   // … and low bytes of 16 bits
 uniform bool diffuseWhole;
 uniform vec2 lobeShares;  // of the wide and the narrow specular lobe …
 uniform vec2 lobeScales;  // … and what multiplies roughness in them
+uniform float lobeTail;   // exponent γ of the lobes' tails; 2: GGX
 uniform float coatF0;     // of a narrow lobe that is a coat's; 0: it has the map's
 
 Texel texelAt(vec2 uv) {
@@ -29,17 +30,19 @@ Texel texelAt(vec2 uv) {
   return t;
 }
 
-// D·G/(4·NoL·NoV) of one lobe.
+// D·G/(4·NoL·NoV) of one lobe; D is Student's t, GGX where γ = 2.
 float specularLobe(float roughness, vec3 n, vec3 h, float noL, float noV) {
   float alpha = roughness * roughness;
   vec3 across = n - dot(n, h) * h;
   float noH = max(dot(n, h), 0.0);
-  // noH²(α² − 1) + 1, without cancellation near the peak.
-  float denominator = noH > 0.0 ? dot(across, across) + noH * noH * alpha * alpha : 1.0;
-  float ratio = alpha / max(denominator, 1e-8);
+  float wide = alpha * sqrt(lobeTail - 1.0);
+  // noH²((γ − 1)α² − 1) + 1, without cancellation near the peak.
+  float denominator = max(noH > 0.0 ? dot(across, across) + noH * noH * wide * wide : 1.0, 1e-8);
+  float ratio = wide / denominator;
+  float tail = (lobeTail - 1.0) * pow(noH * noH * wide * wide / denominator, lobeTail - 2.0);
   float k = 0.5 * alpha;
   float masking = (noL * (1.0 - k) + k) * (noV * (1.0 - k) + k);
-  return ratio * ratio / (4.0 * 3.14159265358979 * masking);
+  return (lobeTail > 2.0 ? tail : 1.0) * ratio * ratio / (4.0 * 3.14159265358979 * masking);
 }
 
 float lobeRoughness(Texel t, int lobe) { return min(t.roughness * lobeScales[lobe], 1.0); }

@@ -78,7 +78,10 @@ std::array<double, 3> TextbookRadiance(const Point& point, const ReflectanceConv
   const double nov = clamped_dot(s.normal, g.camera), voh = clamped_dot(g.camera, h);
   const auto lobe = [&](double roughness) {  // D·G
     const double alpha = roughness * roughness, k = alpha / 2;
-    const double d = std::pow(alpha / (noh * noh * (alpha * alpha - 1) + 1), 2) / kPi;
+    const double tail = model.lobes.tail_exponent, tangent2 = 1 / (noh * noh) - 1;
+    const double d =
+        std::pow(tail - 1, tail) * std::pow(alpha, 2 * tail - 2) /
+        (kPi * std::pow(noh, 4) * std::pow((tail - 1) * alpha * alpha + tangent2, tail));
     const auto g1 = [k](double x) { return x / (x * (1 - k) + k); };
     return d * g1(nol) * g1(nov);
   };
@@ -101,14 +104,17 @@ std::array<double, 3> TextbookRadiance(const Point& point, const ReflectanceConv
   return radiance;
 }
 
-// Each diffuse weight, with one specular lobe, with two and with a coat's.
-const std::array<ReflectanceConvention, 6> kModels = {
+// Each diffuse weight, with one specular lobe, with two and with a coat's; and with shorter tails.
+const std::array<ReflectanceConvention, 9> kModels = {
     {{.diffuse_weight = DiffuseWeight::kOne},
      {.diffuse_weight = DiffuseWeight::kOneMinusSpecular},
      {.diffuse_weight = DiffuseWeight::kOne, .lobes = {0.5, 0.4}},
      {.diffuse_weight = DiffuseWeight::kOneMinusSpecular, .lobes = {0.85, 0.25}},
      {.diffuse_weight = DiffuseWeight::kOne, .lobes = {0.3, 0.4, 0.04}},
-     {.diffuse_weight = DiffuseWeight::kOneMinusSpecular, .lobes = {0.85, 0.25, 0.03}}}};
+     {.diffuse_weight = DiffuseWeight::kOneMinusSpecular, .lobes = {0.85, 0.25, 0.03}},
+     {.diffuse_weight = DiffuseWeight::kOne, .lobes = {.tail_exponent = 4}},
+     {.diffuse_weight = DiffuseWeight::kOneMinusSpecular, .lobes = {.tail_exponent = 3}},
+     {.diffuse_weight = DiffuseWeight::kOne, .lobes = {0.3, 0.4, 0.04, 8}}}};
 
 TEST(BrdfTest, RadianceIsTheTextbookFormula) {
   RandomPoints random(1);

@@ -14,7 +14,8 @@ TEST(ConventionTest, TextRoundTripKeepsEverySwitch) {
     for (const auto falloff : {LightFalloff::kNone, LightFalloff::kInverseSquare}) {
       for (const auto sampling : {TexelSampling::kPixelCentres, TexelSampling::kCornerToCorner}) {
         for (const SpecularLobes& lobes :
-             {SpecularLobes(), SpecularLobes{0.85, 0.25}, SpecularLobes{0.3, 0.4, 0.04}}) {
+             {SpecularLobes(), SpecularLobes{0.85, 0.25}, SpecularLobes{0.3, 0.4, 0.04},
+              SpecularLobes{.tail_exponent = 4}, SpecularLobes{0.3, 0.4, 0.04, 8}}) {
           const ReflectanceConvention convention{diffuse, falloff, sampling, lobes};
           EXPECT_EQ(ParseReflectanceConvention(ToString(convention)), convention);
         }
@@ -34,6 +35,13 @@ TEST(ConventionTest, RefusesLobesThatAreNone) {
                            "0.5x0.4@-1", "0.5x0.4@nan", "0.5x0.4@0.04x"}) {
     EXPECT_THROW(ParseReflectanceConvention(std::string("narrow_lobe=") + text),
                  std::invalid_argument)
+        << text;
+  }
+}
+
+TEST(ConventionTest, RefusesTailsThatAreNone) {
+  for (const char* text : {"", "1", "2.5", "33", "-4", "4x", "nan"}) {
+    EXPECT_THROW(ParseReflectanceConvention(std::string("tail=") + text), std::invalid_argument)
         << text;
   }
 }

@@ -103,7 +103,21 @@ TEST(Refine, ACoatedSampleHasItsCoat) {
   EXPECT_NEAR(found.summary.lobes.narrow_share, truth.narrow_share, 0.21);
 }
 
-TEST(Refine, ASampleOfOneLobeKeepsIt) { EXPECT_FALSE(Refined({}, {}).summary.lobes.two()); }
+TEST(Refine, ASampleOfOneLobeOfGgxKeepsIt) {
+  EXPECT_EQ(Refined({}, {}).summary.lobes, SpecularLobes());
+}
+
+TEST(Refine, ASampleWhoseLobeFallsOffFasterThanGgxHasShorterTails) {
+  const SpecularLobes truth = {.tail_exponent = 4};
+  const RefineResult found = Refined(truth, {});
+  EXPECT_FALSE(found.summary.lobes.two());
+  EXPECT_EQ(found.summary.lobes.tail_exponent, truth.tail_exponent);
+  RefineOptions ggx;
+  ggx.lobe_tails = false;
+  const RefineResult as_ggx = Refined(truth, ggx);
+  EXPECT_EQ(as_ggx.summary.lobes.tail_exponent, 2);
+  EXPECT_LT(found.summary.residual_sigma, as_ggx.summary.residual_sigma);
+}
 
 }  // namespace
 }  // namespace glint

@@ -13,6 +13,8 @@ CONVENTIONS = [
     "diffuse=one_minus_specular light=inverse_square sampling=pixel_centres",
     "diffuse=one light=inverse_square sampling=pixel_centres narrow_lobe=0.4x0.3",
     "diffuse=one light=inverse_square sampling=pixel_centres narrow_lobe=0.7x0.25@0.04",
+    "diffuse=one light=inverse_square sampling=pixel_centres tail=4",
+    "diffuse=one light=inverse_square sampling=pixel_centres narrow_lobe=0.4x0.3 tail=8",
 ]
 ROWS_OF_EACH = 24
 
@@ -30,12 +32,14 @@ def fresnel(f0, v_dot_h):
     return f0 + (1 - f0) * 2 ** ((-5.55473 * v_dot_h - 6.98316) * v_dot_h)
 
 
-def lobe(n, l, v, roughness):
-    """D·G / (4·NoL·NoV) of GGX."""
+def lobe(n, l, v, roughness, tail):
+    """D·G / (4·NoL·NoV) of Student's t-distribution of slopes, which is GGX with tail 2."""
     h = unit([a + b for a, b in zip(l, v)])
     alpha = min(roughness, 1) ** 2
     k = alpha / 2
-    d = (alpha / (dot(n, h) ** 2 * (alpha**2 - 1) + 1)) ** 2 / math.pi
+    square = dot(n, h) ** 2
+    d = (tail - 1) ** tail * alpha ** (2 * tail - 2) / (math.pi * square**2)
+    d /= ((tail - 1) * alpha**2 + (1 - square) / square) ** tail
     g = math.prod(x / (x * (1 - k) + k) for x in (dot(n, l), dot(n, v)))
     return d * g / (4 * dot(n, l) * dot(n, v))
 
@@ -46,12 +50,13 @@ def radiance(convention, camera, light, power, ambient, exposure, n, diffuse, sp
     h = unit([a + b for a, b in zip(l, v)])
     falloff = dot(light, light) if words["light"] == "inverse_square" else 1
     share, ratio, coat = 0.0, 1.0, 0.0
+    tail = int(words.get("tail", 2))
     if "narrow_lobe" in words:
         share, rest = words["narrow_lobe"].split("x")
         ratio, _, coat = rest.partition("@")
         share, ratio, coat = float(share), float(ratio), float(coat or 0)
-    wide = (1 - share) * lobe(n, l, v, roughness * ratio**-share)
-    narrow = share * lobe(n, l, v, roughness * ratio ** (1 - share)) if share else 0.0
+    wide = (1 - share) * lobe(n, l, v, roughness * ratio**-share, tail)
+    narrow = share * lobe(n, l, v, roughness * ratio ** (1 - share), tail) if share else 0.0
     result = []
     for c in range(3):
         weight = 1 - specular[c] if words["diffuse"] == "one_minus_specular" else 1

@@ -70,7 +70,15 @@ inline const std::vector<ReflectanceConvention>& AllConventions() {
       {DiffuseWeight::kOne,
        LightFalloff::kInverseSquare,
        TexelSampling::kPixelCentres,
-       {0.3, 0.4, 0.05}}};
+       {0.3, 0.4, 0.05}},
+      {DiffuseWeight::kOne,
+       LightFalloff::kInverseSquare,
+       TexelSampling::kPixelCentres,
+       {.tail_exponent = 4}},
+      {DiffuseWeight::kOneMinusSpecular,
+       LightFalloff::kNone,
+       TexelSampling::kCornerToCorner,
+       {0.3, 0.4, 0.05, 8}}};
   return conventions;
 }
 
