@@ -132,7 +132,7 @@ TEST_F(SampleHeight, PlainSamplesStayWhereTheyAreSaidToBe) {
   Lay({0, 0, 0}, true);
   const test::Outcome outcome = Calibrate();
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("no texture"));
+  EXPECT_THAT(outcome.out, HasSubstr("too little texture"));
   EXPECT_THAT(outcome.out, HasSubstr("height_mm"));
   EXPECT_FALSE(Plane()["told_by_texture"].get<bool>());
   EXPECT_EQ(Plane()["height_mm"].get<double>(), 0);

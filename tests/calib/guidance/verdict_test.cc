@@ -168,7 +168,7 @@ TEST(Verdict, RepeatsWhyPhotographsAreLeftOut) {
 TEST(Verdict, SpeaksOfTheFocalLengthWhereItIsPoorlyKnown) {
   GuidanceInput input = GoodCapture();
   input.focal_sigma = 0.023;
-  EXPECT_THAT(Sentence(input, "focal"), HasSubstr("known to 2.3 % only"));
+  EXPECT_THAT(Sentence(input, "focal"), HasSubstr("known only to 2.3 %"));
   input.focal_sigma = 0.002;
   EXPECT_EQ(Sentence(input, "focal"), "");
   input.focal_assumed = true;
