@@ -119,7 +119,7 @@ void FindDuplicate(const std::vector<PhotoMeasures>& photos, size_t index,
          fmt::format("shows the same as {}: reduced in size, they differ by {:.2f} of 255 (limit "
                      "{:.1f}); it only gives this view more weight: leave one out",
                      other.name, difference, options.duplicate),
-         difference, options.duplicate, true});
+         difference, options.duplicate, true, other.name});
     return;
   }
 }

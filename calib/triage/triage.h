@@ -19,6 +19,7 @@ struct Remark {
   std::string text;               // what was found, with the measure and its limit, and the remedy
   double measure = 0, limit = 0;  // 0, 0: a contradiction is not a number
   bool condemns = false;          // the photograph does more harm than good
+  std::string same_as = {};       // of a duplicate: the photograph that it repeats
 };
 
 struct TriageOptions {

@@ -82,17 +82,6 @@ PhotoVerdict JudgeAlone(const PhotoCheck& check, const CheckTask& task) {
   return {};
 }
 
-// The photograph before this one that its remark names.
-std::string NamedIn(const std::string& text, const std::vector<PhotoMeasures>& measures) {
-  std::string longest;
-  for (const PhotoMeasures& one : measures) {
-    if (text.find(one.name + " shows") != std::string::npos && one.name.size() > longest.size()) {
-      longest = one.name;
-    }
-  }
-  return longest;
-}
-
 void AddRemarks(const std::vector<PhotoMeasures>& measures, std::vector<PhotoVerdict>* verdicts,
                 const std::vector<size_t>& index) {
   for (const Remark& remark : Triage(measures)) {
@@ -105,7 +94,7 @@ void AddRemarks(const std::vector<PhotoMeasures>& measures, std::vector<PhotoVer
       verdict.state = remark.condemns ? PhotoVerdict::State::kBad : PhotoVerdict::State::kWeak;
       verdict.reason = Sentence(remark.text);
       verdict.remedy = RemedyFor(remark.kind);
-      if (remark.kind == RemarkKind::kDuplicate) verdict.same_as = NamedIn(remark.text, measures);
+      verdict.same_as = remark.same_as;
     }
   }
 }
