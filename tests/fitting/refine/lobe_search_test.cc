@@ -104,17 +104,19 @@ TEST(Refine, ACoatedSampleHasItsCoat) {
 }
 
 TEST(Refine, ASampleOfOneLobeOfGgxKeepsIt) {
-  EXPECT_EQ(Refined({}, {}).summary.lobes, SpecularLobes());
+  RefineOptions options;
+  options.lobe_tails = true;
+  EXPECT_EQ(Refined({}, options).summary.lobes, SpecularLobes());
 }
 
 TEST(Refine, ASampleWhoseLobeFallsOffFasterThanGgxHasShorterTails) {
   const SpecularLobes truth = {.tail_exponent = 4};
-  const RefineResult found = Refined(truth, {});
+  RefineOptions options;
+  options.lobe_tails = true;
+  const RefineResult found = Refined(truth, options);
   EXPECT_FALSE(found.summary.lobes.two());
   EXPECT_EQ(found.summary.lobes.tail_exponent, truth.tail_exponent);
-  RefineOptions ggx;
-  ggx.lobe_tails = false;
-  const RefineResult as_ggx = Refined(truth, ggx);
+  const RefineResult as_ggx = Refined(truth, {});
   EXPECT_EQ(as_ggx.summary.lobes.tail_exponent, 2);
   EXPECT_LT(found.summary.residual_sigma, as_ggx.summary.residual_sigma);
 }
