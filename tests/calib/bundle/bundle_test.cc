@@ -64,8 +64,7 @@ TEST_P(Models, AreRecoveredWithinTheirOwnUncertainty) {
     EXPECT_NEAR(photo.tilt_deg, 5 + 3.0 * i, 0.5);
   }
 }
-INSTANTIATE_TEST_SUITE_P(All, Models,
-                         ::testing::ValuesIn(CalibratedModels(Calibrated::kOnDemand)));
+INSTANTIATE_TEST_SUITE_P(All, Models, ::testing::ValuesIn(CalibratedModels(Calibrated::kOnDemand)));
 
 // σ is what repetition shows: the spread of the focal length over 120 draws of the noise.
 TEST(AdjustBundle, SigmaIsTheSpreadOverRepetitions) {
