@@ -21,7 +21,7 @@
 #include "datasets/evaluation/predicted_deviation.h"
 #include "datasets/evaluation/relight_verb.h"
 #include "datasets/evaluation/tiling_verb.h"
-#include "datasets/looks/looks.h"
+#include "datasets/looks/looks_figures.h"
 #include "datasets/looks/view_error.h"
 #include "datasets/synth/material_source.h"
 
@@ -141,19 +141,36 @@ std::string ErrorsText(const std::vector<ViewFigures>& lines) {
   return text;
 }
 
-std::string LooksTableText(const std::vector<ViewFigures>& lines) {
-  std::string text = fmt::format("\n{:<12} {:>6}  {:<27} {}\n", "", "", "contrast", "correlation");
-  text += fmt::format("{:<12} {:>6}", "view", "free");
-  for (const char* band : {"1–2", "2–4", "4–8", "8–16", "1–2", "2–4", "4–8"}) {
-    text += fmt::format(" {:>6}", band);
+// A figure with bands has its own name above those of the bands.
+std::string ShortHeading(const LooksColumn& column) {
+  const LooksFigure& figure = *column.figure;
+  return figure.bands.empty() ? figure.heading : figure.bands[column.band].heading;
+}
+
+std::string LooksHeads(const std::vector<LooksColumn>& columns) {
+  std::string names(12, ' '), bands = fmt::format("{:<12}", "view");
+  size_t named = names.size();
+  for (const LooksColumn& column : columns) {
+    const std::string heading = ShortHeading(column);
+    const int width = LooksWidth(heading);
+    if (!column.figure->bands.empty() && column.band == 0) {
+      names.resize(named, ' ');
+      names += fmt::format("  {}", column.figure->heading);
+    }
+    bands += fmt::format(" {:>{}}", heading, width);
+    named += static_cast<size_t>(width) + 1;
   }
-  text += fmt::format(" {:>6} {:>9}\n", "SSIM", "highlight");
+  return "\n" + names + "\n" + bands + "\n";
+}
+
+std::string LooksTableText(const std::vector<ViewFigures>& lines) {
+  const std::vector<LooksColumn> columns = LooksColumns();
+  std::string text = LooksHeads(columns);
   for (const ViewFigures& view : lines) {
-    const auto figures = LooksList(view.looks);
     text += fmt::format("{:<12}", view.name);
-    for (size_t i = 0; i < figures.size(); ++i) {
-      const int width = i + 1 == figures.size() ? 9 : 6;
-      text += fmt::format(" {:>{}}", LooksText(figures[i], 3), width);
+    for (const LooksColumn& column : columns) {
+      text += fmt::format(" {:>{}}", LooksText(column.ValueOf(view.looks), 3),
+                          LooksWidth(ShortHeading(column)));
     }
     text += "\n";
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "datasets/evaluation/held_out_views.h"
+#include "datasets/looks/looks_figures.h"
 
 namespace glint {
 namespace {
@@ -53,39 +54,26 @@ std::string Line(const std::vector<HoldoutEntry>& entries, const std::vector<std
   return text;
 }
 
-// Columns of the table of looks.
-struct LooksColumn {
-  const char* name;
-  int width;
-  size_t figure;  // of LooksList()
-  int decimals;
-};
-constexpr LooksColumn kLooksColumns[] = {{"free", 6, 0, 4},
-                                         {"contrast 1–2", 12, 1, 3},
-                                         {"contrast 2–4", 12, 2, 3},
-                                         {"correlation 1–2", 15, 5, 3},
-                                         {"correlation 2–4", 15, 6, 3},
-                                         {"SSIM", 6, 8, 3},
-                                         {"highlight", 9, 9, 3}};
 constexpr int kLooksNameWidth = 34;
 
 std::string LooksHead(const std::string& method) {
   std::string text = fmt::format("| {:<{}} | {:<16} |", "looks of held-out views, " + method,
                                  kLooksNameWidth, "split");
   std::string rule = "|" + std::string(kLooksNameWidth + 2, '-') + "|" + std::string(18, '-') + "|";
-  for (const LooksColumn& column : kLooksColumns) {
-    text += fmt::format(" {:>{}} |", column.name, column.width);
-    rule += std::string(static_cast<size_t>(column.width) + 1, '-') + ":|";
+  for (const LooksColumn& column : LooksColumns(kFineBands)) {
+    const std::string heading = column.heading();
+    const int width = LooksWidth(heading);
+    text += fmt::format(" {:>{}} |", heading, width);
+    rule += std::string(static_cast<size_t>(width) + 1, '-') + ":|";
   }
   return text + "\n" + rule + "\n";
 }
 
 std::string LooksLine(const std::string& set, const std::string& split, const Looks& looks) {
-  const auto figures = LooksList(looks);
   std::string text = fmt::format("| {:<{}} | {:<16} |", set, kLooksNameWidth, split);
-  for (const LooksColumn& column : kLooksColumns) {
-    text +=
-        fmt::format(" {:>{}} |", LooksText(figures[column.figure], column.decimals), column.width);
+  for (const LooksColumn& column : LooksColumns(kFineBands)) {
+    text += fmt::format(" {:>{}} |", LooksText(column.ValueOf(looks), column.figure->decimals),
+                        LooksWidth(column.heading()));
   }
   return text + "\n";
 }
@@ -186,7 +174,10 @@ std::string HoldoutResult::Csv() const {
   std::string text =
       "set,split,method,fitted_views,held_out_views,fitted_log_l1,held_out_log_l1,fitted_mse,"
       "held_out_mse,standardised_rms";
-  for (const char* name : kLooksNames) text += fmt::format(",fitted_{0},held_out_{0}", name);
+  const std::vector<LooksColumn> columns = LooksColumns();
+  for (const LooksColumn& column : columns) {
+    text += fmt::format(",fitted_{0},held_out_{0}", column.key());
+  }
   text += "\n";
   const std::vector<HoldoutEntry> means = Means();
   for (const auto* list : {&entries, &means}) {
@@ -195,9 +186,9 @@ std::string HoldoutResult::Csv() const {
                           e.method, e.fitted_views, e.held_out_views, e.fitted.log_l1,
                           e.held_out.log_l1, e.fitted.mse, e.held_out.mse);
       if (e.held_out.standardised >= 0) text += fmt::format("{:.4g}", e.held_out.standardised);
-      const auto fitted = LooksList(e.fitted.looks), held_out = LooksList(e.held_out.looks);
-      for (size_t i = 0; i < kLooksFigures; ++i) {
-        text += "," + CsvFigure(fitted[i]) + "," + CsvFigure(held_out[i]);
+      for (const LooksColumn& column : columns) {
+        text += "," + CsvFigure(column.ValueOf(e.fitted.looks)) + "," +
+                CsvFigure(column.ValueOf(e.held_out.looks));
       }
       text += "\n";
     }

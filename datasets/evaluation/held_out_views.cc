@@ -16,6 +16,7 @@
 #include "datasets/evaluation/link_files.h"
 #include "datasets/evaluation/predicted_deviation.h"
 #include "datasets/evaluation/their_rendering.h"
+#include "datasets/looks/looks_figures.h"
 #include "datasets/looks/view_error.h"
 
 namespace glint {

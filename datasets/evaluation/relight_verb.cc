@@ -13,6 +13,7 @@
 #include "base/stages/stages.h"
 #include "datasets/evaluation/held_out_views.h"
 #include "datasets/evaluation/light_interpolation.h"
+#include "datasets/looks/looks_figures.h"
 #include "datasets/looks/view_error.h"
 
 namespace glint {
@@ -167,18 +168,45 @@ HoldoutSplit EveryNth(size_t photographs, int every, int first) {
   return split;
 }
 
+// Those that judge whole pictures come first.
+std::vector<LooksFigure> TableFigures() {
+  const auto all = LooksFigures();
+  std::vector<LooksFigure> figures(all.begin(), all.end());
+  std::stable_partition(figures.begin(), figures.end(),
+                        [](const LooksFigure& figure) { return figure.overall; });
+  return figures;
+}
+
+// One cell for a figure's bands: "contrast 1–2, 2–4".
+std::string LooksHeadCell(const LooksFigure& figure) {
+  std::string bands;
+  for (const LooksBand& band : figure.bands.first(std::min(figure.bands.size(), kFineBands))) {
+    bands += (bands.empty() ? " " : ", ") + std::string(band.heading);
+  }
+  return fmt::format(" {}{} |", figure.heading, bands);
+}
+
+std::string LooksCell(const LooksFigure& figure, const Looks& looks) {
+  std::string text;
+  for (const LooksColumn& column : ColumnsOf(figure, kFineBands)) {
+    text += " " + LooksText(column.ValueOf(looks), figure.overall ? 3 : 2);
+  }
+  return text + " |";
+}
+
 std::string TableText(const std::vector<RelightRow>& rows) {
-  std::string text =
-      "| set | relit by | log-L1 | PSNR, dB | free | SSIM | contrast 1–2, 2–4 | "
-      "correlation 1–2, 2–4 | highlight |\n|---|---|---:|---:|---:|---:|---|---|---:|\n";
+  const std::vector<LooksFigure> figures = TableFigures();
+  std::string text = "| set | relit by | log-L1 | PSNR, dB |", rule = "|---|---|---:|---:|";
+  for (const LooksFigure& figure : figures) {
+    text += LooksHeadCell(figure);
+    rule += figure.bands.empty() ? "---:|" : "---|";
+  }
+  text += "\n" + rule + "\n";
   for (const RelightRow& row : rows) {
-    const Looks& looks = row.figures.looks;
-    text +=
-        fmt::format("| {} | {} | {:.3f} | {:.1f} | {} | {} | {} {} | {} {} | {} |\n", row.set,
-                    row.method, row.figures.log_l1, row.figures.psnr_db, LooksText(looks.free, 3),
-                    LooksText(looks.ssim, 3), LooksText(looks.contrast[0], 2),
-                    LooksText(looks.contrast[1], 2), LooksText(looks.correlation[0], 2),
-                    LooksText(looks.correlation[1], 2), LooksText(looks.highlight, 2));
+    text += fmt::format("| {} | {} | {:.3f} | {:.1f} |", row.set, row.method, row.figures.log_l1,
+                        row.figures.psnr_db);
+    for (const LooksFigure& figure : figures) text += LooksCell(figure, row.figures.looks);
+    text += "\n";
   }
   return text;
 }

@@ -1,7 +1,5 @@
 #include "datasets/looks/looks.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -344,48 +342,6 @@ Looks CompareLooks(std::span<const float> rendered, const RectifiedImage& photog
   looks.ssim = SsimOf(pictures);
   looks.highlight = HighlightOf(pictures);
   return looks;
-}
-
-std::array<double, kLooksFigures> LooksList(const Looks& l) {
-  return {l.free,           l.contrast[0],    l.contrast[1],    l.contrast[2], l.contrast[3],
-          l.correlation[0], l.correlation[1], l.correlation[2], l.ssim,        l.highlight};
-}
-
-Looks MeanLooks(std::span<const Looks> looks) {
-  std::array<double, kLooksFigures> means;
-  for (size_t i = 0; i < means.size(); ++i) {
-    double sum = 0, known = 0;
-    for (const Looks& one : looks) {
-      const double figure = LooksList(one)[i];
-      if (std::isnan(figure)) continue;
-      sum += figure;
-      known += 1;
-    }
-    means[i] = known > 0 ? sum / known : Looks::kUnknown;
-  }
-  return {means[0],
-          {means[1], means[2], means[3], means[4]},
-          {means[5], means[6], means[7]},
-          means[8],
-          means[9]};
-}
-
-Json ToJson(const Looks& looks) {
-  const auto json = [](double figure) { return std::isnan(figure) ? Json() : Json(figure); };
-  const auto list = [&json](std::span<const double> figures) {
-    Json array = Json::array();
-    for (const double figure : figures) array.push_back(json(figure));
-    return array;
-  };
-  return {{"free", json(looks.free)},
-          {"contrast", list(looks.contrast)},
-          {"correlation", list(looks.correlation)},
-          {"ssim", json(looks.ssim)},
-          {"highlight", json(looks.highlight)}};
-}
-
-std::string LooksText(double figure, int decimals) {
-  return std::isnan(figure) ? "–" : fmt::format("{:.{}f}", figure, decimals);
 }
 
 }  // namespace glint

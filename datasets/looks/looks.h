@@ -6,9 +6,7 @@
 #include <array>
 #include <limits>
 #include <span>
-#include <string>
 
-#include "base/files/json.h"
 #include "base/formats/rectified_set.h"
 
 namespace glint {
@@ -16,7 +14,8 @@ namespace glint {
 // Of two pictures as a screen shows them: linear radiance clipped to [0, 1], gamma 2.2, rounded to
 // 8 bits, and for figures in radiance decoded again. A figure that cannot be told is NaN: each says
 // when. Bands are those of a picture 256 texels wide; another has them in proportion, so that
-// contrast and correlation of one photograph at two sizes are about the same.
+// contrast and correlation of one photograph at two sizes are about the same. Names and meanings,
+// for files and tables: looks_figures.h.
 struct Looks {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -50,23 +49,5 @@ struct Looks {
 // its place, in both. All are unknown when it says nothing anywhere. Throws std::invalid_argument
 // when sizes differ.
 Looks CompareLooks(std::span<const float> rendered, const RectifiedImage& photograph, bool ldr);
-
-// The figures in one list, for tables: free, contrast of four bands, correlation of three, ssim,
-// highlight; and what the columns of a file call them.
-inline constexpr size_t kLooksFigures = 10;
-inline constexpr std::array<const char*, kLooksFigures> kLooksNames = {
-    "free",          "contrast_1_2",    "contrast_2_4",    "contrast_4_8",
-    "contrast_8_16", "correlation_1_2", "correlation_2_4", "correlation_4_8",
-    "ssim",          "highlight"};
-std::array<double, kLooksFigures> LooksList(const Looks& looks);
-
-// Mean of each figure over those that know it; unknown where none does.
-Looks MeanLooks(std::span<const Looks> looks);
-
-// {free, contrast [4], correlation [3], ssim, highlight}; what is unknown is null.
-Json ToJson(const Looks& looks);
-
-// A figure for people; "–" where it is unknown.
-std::string LooksText(double figure, int decimals);
 
 }  // namespace glint

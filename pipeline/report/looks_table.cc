@@ -2,52 +2,38 @@
 
 #include <utility>
 
+#include "datasets/looks/looks_figures.h"
 #include "pipeline/report/html.h"
 
 namespace glint {
 namespace {
 
-struct ShownFigure {
-  const char* name;
-  const char* field;
-  int index;  // in the field's list; below 0: it is no list
-  const char* says;
-};
+// Of a figure with bands the page has the finest.
+std::string ShownHeading(const LooksFigure& figure) {
+  if (figure.bands.empty()) return figure.heading;
+  return std::string(figure.heading) + " (" + figure.bands[0].heading + ")";
+}
 
-constexpr ShownFigure kShownFigures[] = {
-    {"free", "free", -1,
-     "the log error that remains after the best factor of each colour channel: what is not "
-     "exposure (0.02: 2 %)."},
-    {"contrast (1–2)", "contrast", 0,
-     "how strong fine detail is, rendering by photograph: below 1 the rendering is blurred, above "
-     "1 harsh or noisy."},
-    {"correlation (1–2)", "correlation", 0,
-     "whether that detail is the photograph's: 1 all of it, 0 none."},
-    {"SSIM", "ssim", -1, "structural similarity of the two as grey pictures: 1 the same picture."},
-    {"highlight", "highlight", -1,
-     "how bright the rendering is where the photograph is brightest (2 % of it), rendering by "
-     "photograph: below 1 highlights are too dull."}};
+std::string ShownFigure(const LooksFigure& figure, const Json& figures, const Trace& trace) {
+  const Json& value = figures[figure.key];
+  const Trace field = trace.Field(figure.key);
+  return figure.bands.empty() ? FigureHtml(value, field) : FigureHtml(value[0], field.Index(0));
+}
 
 }  // namespace
 
 std::string LooksHeadCells() {
   std::string html;
-  for (const ShownFigure& shown : kShownFigures) {
-    html += "<th class=\"number\">" + HtmlText(shown.name) + "</th>";
+  for (const LooksFigure& figure : LooksFigures()) {
+    html += "<th class=\"number\">" + HtmlText(ShownHeading(figure)) + "</th>";
   }
   return html;
 }
 
 std::string LooksCells(const Json& figures, const Trace& trace) {
   std::string html;
-  for (const ShownFigure& shown : kShownFigures) {
-    const Json& value = figures[shown.field];
-    const Trace field = trace.Field(shown.field);
-    const auto index = static_cast<size_t>(shown.index);
-    html += "<td class=\"number\">" +
-            (shown.index < 0 ? FigureHtml(value, field)
-                             : FigureHtml(value[index], field.Index(index))) +
-            "</td>";
+  for (const LooksFigure& figure : LooksFigures()) {
+    html += "<td class=\"number\">" + ShownFigure(figure, figures, trace) + "</td>";
   }
   return html;
 }
@@ -62,8 +48,8 @@ std::string LooksTable(const Json& own_metrics, const Trace& own, const std::str
   }
   if (rows.empty()) return "";
   std::string says;
-  for (const ShownFigure& shown : kShownFigures) {
-    says += "<br><b>" + HtmlText(shown.name) + "</b> " + HtmlText(shown.says) + "\n";
+  for (const LooksFigure& figure : LooksFigures()) {
+    says += "<br><b>" + HtmlText(ShownHeading(figure)) + "</b> " + HtmlText(figure.says) + "\n";
   }
   return "<div class=\"scroll\"><table><tr><th>photographs, mean</th>" + LooksHeadCells() +
          "</tr>\n" + rows +

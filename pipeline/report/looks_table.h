@@ -1,4 +1,4 @@
-// How renderings look beside their photographs (datasets/looks/looks.h), on the page.
+// How renderings look beside their photographs (datasets/looks/looks_figures.h), on the page.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace glint {
 
-// The page shows five of the figures, as cells of a table's head and of a row. `figures` holds what
-// ToJson(Looks) has; `trace`: where it is in a manifest.
+// Every figure, as cells of a table's head and of a row. `figures` holds what ToJson(Looks) has;
+// `trace`: where it is in a manifest.
 std::string LooksHeadCells();
 std::string LooksCells(const Json& figures, const Trace& trace);
 

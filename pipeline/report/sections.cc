@@ -10,6 +10,7 @@
 #include "base/photos/photo.h"
 #include "base/resampling/resampling.h"
 #include "base/stages/stages.h"
+#include "datasets/looks/looks_figures.h"
 #include "pipeline/report/downloads_section.h"
 #include "pipeline/report/figure.h"
 #include "pipeline/report/guidance_section.h"
