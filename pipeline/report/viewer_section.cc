@@ -118,7 +118,7 @@ constexpr char kElements[] = R"(<div id="viewer" class="viewer">
 <label>Show <select id="viewer-view"></select></label>
 <label class="relight">Shape <select id="viewer-shape"></select></label>
 <label class="relight">Channel <select id="viewer-channel"></select></label>
-<label class="relight">Light <select id="viewer-light"><option value="point">Point light</option><option value="environment">Environment</option></select></label>
+<label class="relight">Light <select id="viewer-light"></select></label>
 <label class="relight">Drag moves <select id="viewer-drag"><option value="light">the light</option><option value="camera">the camera</option></select></label>
 <label class="relight">Exposure <input id="viewer-exposure" type="range" min="-4" max="4" step="0.1" value="0"></label>
 <label class="compare">Photograph | rendering <input id="viewer-slider" type="range" min="0" max="100" value="50"></label>

@@ -66,19 +66,23 @@ for (const [index, view] of material.views.entries()) {
   verdict(mean <= 1 && near >= 0.99,
     `${view.name}: mean ${mean.toFixed(3)}/255, ${(100 * near).toFixed(2)} % within 4/255`);
 }
-// A room's light: drawn, neither black nor white.
+// Every light of the menu: drawn, neither black nor white.
 await page.reload();
 await page.waitForFunction(() => window.glintViewer?.ready, null, { timeout: 120000 });
-await page.selectOption('#viewer-light', 'environment');
-const brightness = await page.evaluate(async () => {
-  const uri = document.getElementById('viewer-canvas').toDataURL('image/png');
-  const bitmap = await createImageBitmap(await (await fetch(uri)).blob());
-  const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
-  context.drawImage(bitmap, 0, 0);
-  const { data } = context.getImageData(bitmap.width / 2 - 50, bitmap.height / 2 - 50, 100, 100);
-  return data.reduce((sum, value, i) => sum + (i % 4 < 3 ? value : 0), 0) / 30000;
-});
-verdict(brightness > 5 && brightness < 250, `environment: mean ${brightness.toFixed(0)}/255`);
+const lights = await page.$$eval('#viewer-light option', (all) => all.map((one) => one.value));
+verdict(lights[0] === 'point' && lights.length > 1, `lights: ${lights.join(', ')}`);
+for (const light of lights) {
+  await page.selectOption('#viewer-light', light);
+  const brightness = await page.evaluate(async () => {
+    const uri = document.getElementById('viewer-canvas').toDataURL('image/png');
+    const bitmap = await createImageBitmap(await (await fetch(uri)).blob());
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(bitmap.width / 2 - 50, bitmap.height / 2 - 50, 100, 100);
+    return data.reduce((sum, value, i) => sum + (i % 4 < 3 ? value : 0), 0) / 30000;
+  });
+  verdict(brightness > 5 && brightness < 250, `${light}: mean ${brightness.toFixed(0)}/255`);
+}
 await page.addScriptTag({ path: require.resolve('axe-core/axe.min.js') });
 const { violations } = await page.evaluate(() => window.axe.run());
 const serious = violations.filter((v) => ['serious', 'critical'].includes(v.impact));

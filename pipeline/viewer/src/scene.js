@@ -2,7 +2,7 @@
 // saw it.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { roomEnvironment } from './environment.js';
+import { environments } from './environments.js';
 import fragment from './fragment.glsl';
 import shading from './shading.glsl';
 import { shapes } from './shapes.js';
@@ -12,7 +12,6 @@ import vertex from './vertex.glsl';
 export const channels = ['Rendering', 'Diffuse', 'Specular (F0)', 'Roughness', 'Normal'];
 
 const kLightDistance = 2.6;  // of half the width
-const kEnvironmentScale = 0.5; // a white plane below the room's lamps is just not overexposed
 const kMatteWhite = Math.PI; // radiance 1 of a white matte texel under it
 
 export class MaterialScene {
@@ -30,7 +29,8 @@ export class MaterialScene {
     this.lightAcross = [-0.45, 0.55];  // of the light's direction, x and y
     this.exposure = 1;
     this.channel = 0;
-    this.environment = false;
+    this.environment = null;
+    this.environmentMaps = {};
   }
 
   async load() {
@@ -66,14 +66,16 @@ export class MaterialScene {
     this.wear('plane');
   }
 
-  // A room's light instead of the point light. It is made when it is first asked for.
-  useEnvironment(used) {
-    if (used && !this.uniforms.environmentMap.value) {
-      const texture = roomEnvironment(this.renderer);
+  // An environment instead of the point light, or the point light again: any other name. It is made
+  // when it is first asked for.
+  useEnvironment(name) {
+    this.environment = environments[name] || null;
+    if (this.environment) {
+      this.environmentMaps[name] ||= this.environment.make(this.renderer);
+      const texture = this.environmentMaps[name];
       this.uniforms.environmentMap.value = texture;
       this.uniforms.environmentLods.value = texture.mipmaps.length - 1;
     }
-    this.environment = used;
     this.draw();
   }
 
@@ -123,7 +125,7 @@ export class MaterialScene {
     u.environmentTurn.value.set(Math.cos(azimuth), Math.sin(azimuth));
     u.lightPosition.value.set(x, y, z).multiplyScalar(kLightDistance);
     u.lightRadiance.value.setScalar(
-      this.environment ? kEnvironmentScale : kMatteWhite * kLightDistance * kLightDistance);
+      this.environment ? this.environment.scale : kMatteWhite * kLightDistance * kLightDistance);
     u.ambient.value.set(0, 0, 0);
     u.fallsOff.value = true;
     u.exposure.value = this.exposure;

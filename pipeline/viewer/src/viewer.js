@@ -1,4 +1,5 @@
 // The viewer of the report page: finds the page's material and its elements, and connects them.
+import { environments } from './environments.js';
 import { channels, MaterialScene } from './scene.js';
 import { shapes } from './shapes.js';
 
@@ -33,13 +34,17 @@ function connectLight(scene, canvas, isLight) {
   });
 }
 
+function labels(table) {
+  return Object.entries(table).map(([key, { label }]) => [key, label]);
+}
+
 function connectRelighting(scene, canvas) {
   const drag = byId('viewer-drag');
   const isLight = () => drag.value === 'light' && !scene.view;
   drag.addEventListener('change', () => { scene.controls.enableRotate = drag.value !== 'light'; });
   scene.controls.enableRotate = drag.value !== 'light';
   connectLight(scene, canvas, isLight);
-  options(byId('viewer-shape'), Object.entries(shapes).map(([name, s]) => [name, s.label]));
+  options(byId('viewer-shape'), labels(shapes));
   byId('viewer-shape').addEventListener('change', (event) => scene.wear(event.target.value));
   options(byId('viewer-channel'), channels.map((label, i) => [i, label]));
   if (scene.material.maps.confidence) options(byId('viewer-channel'), [[5, 'Roughness, standard deviation']]);
@@ -47,9 +52,8 @@ function connectRelighting(scene, canvas) {
     scene.channel = Number(event.target.value);
     scene.draw();
   });
-  byId('viewer-light').addEventListener('change', (event) => {
-    scene.useEnvironment(event.target.value === 'environment');
-  });
+  options(byId('viewer-light'), [['point', 'Point light'], ...labels(environments)]);
+  byId('viewer-light').addEventListener('change', (event) => scene.useEnvironment(event.target.value));
   byId('viewer-exposure').addEventListener('input', (event) => {
     scene.exposure = 2 ** Number(event.target.value);
     scene.draw();
