@@ -69,9 +69,9 @@ void AddFew(const Verdict& v, List* list) {
   const ExpectedError a = ErrorForPhotos(static_cast<double>(now)), b = ErrorForPhotos(then);
   list->push_back(
       {"few", very_few ? Importance::kUseful : Importance::kHint,
-       fmt::format("{} more ({} in all) would lower the error of renderings by about {} % and that "
-                   "of the maps by {} % (docs/results/table1.md; rough)",
-                   Counted(then - now), then, Percent(1 - b.render / a.render),
+       fmt::format("{} more photograph{} ({} in all) would lower the error of renderings by about "
+                   "{} % and that of the maps by {} % (docs/results/table1.md; rough)",
+                   then - now, then - now == 1 ? "" : "s", then, Percent(1 - b.render / a.render),
                    Percent(1 - b.maps / a.maps))});
 }
 
@@ -93,8 +93,8 @@ void AddTilted(const Verdict& v, List* list) {
 void AddSides(const Verdict& v, List* list) {
   if (v.tilted_views == 0 || v.gap.width_deg <= v.limits.gap_deg) return;
   list->push_back({"sides", Importance::kUseful,
-                   fmt::format("no tilted photograph from the {} (a gap of {:.0f}° of 360): take "
-                               "one from there, 20 to 40° from straight above",
+                   fmt::format("no tilted photograph from the {} (a gap of {:.0f}° out of 360°): "
+                               "take one from there, tilted by 20 to 40°",
                                SideName(v.gap.middle_deg), v.gap.width_deg)});
 }
 
@@ -104,8 +104,8 @@ void AddTop(const Verdict& v, List* list) {
   for (const ViewFacts& view : v.views) nearest = std::min(nearest, view.camera.tilt_deg);
   list->push_back(
       {"top", Importance::kUseful,
-       fmt::format("no photograph within {:.0f}° of the top (the nearest is {:.0f}° off), from "
-                   "which the fit is initialised: take one straight from above",
+       fmt::format("no photograph within {:.0f}° of vertical (the nearest is {:.0f}° off), from "
+                   "which the fit would be initialised: take one from directly above",
                    v.limits.top_deg, nearest)});
 }
 
@@ -120,8 +120,8 @@ void AddHighlight(const Verdict& v, List* list) {
   std::string text = fmt::format("{} % of the sample ({}) never shows a highlight",
                                  Percent(dark_share), RegionName(v.coverage.grid, cells));
   if (!v.suggestions.empty()) {
-    text += fmt::format(": take one {} ({} % would gain one)", InWords(v.suggestions[0].direction),
-                        Percent(v.suggestions[0].gain_share));
+    text += fmt::format(": take one {} (adds a highlight to {} %)",
+                        InWords(v.suggestions[0].direction), Percent(v.suggestions[0].gain_share));
   }
   if (v.suggestions.size() > 1) {
     text += ", then";

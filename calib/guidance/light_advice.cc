@@ -27,10 +27,11 @@ void AddFewLights(const Verdict& v, std::vector<Advice>* list) {
 
 void AddLightSides(const Verdict& v, std::vector<Advice>* list) {
   if (v.light_gap.width_deg <= v.limits.light_gap_deg) return;
-  list->push_back({"light_sides", Importance::kUseful,
-                   fmt::format("no light from the {} (a gap of {:.0f}° of 360), so slopes toward "
-                               "it are poorly determined: add some from there",
-                               SideName(v.light_gap.middle_deg), v.light_gap.width_deg)});
+  list->push_back(
+      {"light_sides", Importance::kUseful,
+       fmt::format("no light from the {} (a gap of {:.0f}° out of 360°), so slopes toward "
+                   "it are poorly determined: add some from there",
+                   SideName(v.light_gap.middle_deg), v.light_gap.width_deg)});
 }
 
 void AddHeights(const Verdict& v, std::vector<Advice>* list) {

@@ -115,8 +115,8 @@ std::string SideName(double azimuth_deg) {
 }
 
 std::string InWords(const Direction& direction) {
-  if (direction.tilt_deg < 1) return "straight from above";
-  return fmt::format("{:.0f}° from straight above toward the {}", direction.tilt_deg,
+  if (direction.tilt_deg < 1) return "from directly above";
+  return fmt::format("{:.0f}° off vertical toward the {}", direction.tilt_deg,
                      SideName(direction.azimuth_deg));
 }
 

@@ -30,7 +30,7 @@ struct AzimuthGap {
 };
 AzimuthGap LargestGap(const std::vector<GuidancePhoto>& photos, double least_tilt_deg);
 
-// "12° from straight above toward the top right"; sides as the maps show the sample.
+// "12° off vertical toward the top right"; sides as the maps show the sample.
 std::string InWords(const Direction& direction);
 // "right", "top right", "top" … of an azimuth.
 std::string SideName(double azimuth_deg);

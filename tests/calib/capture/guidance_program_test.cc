@@ -116,7 +116,7 @@ TEST_F(Guidance, MissesTheTopView) {
   EXPECT_EQ(Checked().count("top"), 0u);
   LeaveOut({"top"});
   EXPECT_THAT(Checked()["top"],
-              HasSubstr("no photograph within 10° of the top (the nearest is 12"));
+              HasSubstr("no photograph within 10° of vertical (the nearest is 12"));
 }
 
 TEST_F(Guidance, MissesTheTiltedSide) {
@@ -140,7 +140,7 @@ TEST_F(Guidance, JudgesOnePhotographThatDoesNotTellItsFocalLength) {
   const auto advice = Checked();
   EXPECT_THAT(advice.at("focal"), HasSubstr("cannot be determined"));
   EXPECT_THAT(advice.at("tilted"), HasSubstr("look straight down"));
-  EXPECT_THAT(advice.at("few"), HasSubstr("4 photographs more"));
+  EXPECT_THAT(advice.at("few"), HasSubstr("4 more photographs"));
 }
 
 TEST_F(Guidance, ACheckIsNoPropertyOfACapture) {

@@ -78,8 +78,8 @@ TEST(Words, NameSidesAsTheMapsShowThem) {
   EXPECT_EQ(SideName(90), "top");
   EXPECT_EQ(SideName(135), "top left");
   EXPECT_EQ(SideName(270), "bottom");
-  EXPECT_EQ(InWords({0, 40}), "straight from above");
-  EXPECT_EQ(InWords({12.5, 180}), "12° from straight above toward the left");
+  EXPECT_EQ(InWords({0, 40}), "from directly above");
+  EXPECT_EQ(InWords({12.5, 180}), "12° off vertical toward the left");
 }
 
 TEST(Words, NameTheRegionThatIsMarked) {

@@ -52,7 +52,7 @@ TEST(Verdict, TellsThatTheTopViewIsMissing) {
   EXPECT_EQ(Sentence(input, "top"), "");  // those at 9° stand in for it
   Drop(&input, "near");
   EXPECT_THAT(Sentence(input, "top"),
-              HasSubstr("no photograph within 10° of the top (the nearest is 30° off)"));
+              HasSubstr("no photograph within 10° of vertical (the nearest is 30° off)"));
   EXPECT_EQ(Judge(input).Word(), "usable");
   input.photos.push_back(PhotoFrom(300, 4, 0));
   EXPECT_EQ(Sentence(input, "top"), "");
@@ -96,10 +96,10 @@ TEST(Verdict, ShowsWhereNoHighlightFallsAndItsAdviceMendsThat) {
 TEST(Verdict, TellsWhatMorePhotographsBring) {
   GuidanceInput input = GoodCapture();
   input.photos.resize(3);
-  EXPECT_THAT(Sentence(input, "few"), HasSubstr("2 photographs more (5 in all)"));
+  EXPECT_THAT(Sentence(input, "few"), HasSubstr("2 more photographs (5 in all)"));
   input.photos = GoodCapture().photos;
   input.photos.pop_back();
-  EXPECT_THAT(Sentence(input, "few"), HasSubstr("1 photograph more (12 in all)"));
+  EXPECT_THAT(Sentence(input, "few"), HasSubstr("1 more photograph (12 in all)"));
   EXPECT_EQ(Judge(input).Word(), "good");  // a hint, no more
   EXPECT_EQ(Sentence(GoodCapture(), "few"), "");
 }

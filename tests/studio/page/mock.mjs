@@ -66,7 +66,7 @@ function advise(photographs, kind = 'board') {
   return {
     verdict: used.length === 0 ? 'none' : enough ? 'good' : used.length >= 5 ? 'usable' : 'poor', sentence, enough,
     target: enough ? null : { tilt_deg: next[0], azimuth_deg: next[1] },
-    list: enough ? [] : [sentence, '38 % of the sample (the left edge) never shows a highlight.', `${12 - used.length} photographs more (12 in all) would lower the error of renderings by about 60 %.`],
+    list: enough ? [] : [sentence, '38 % of the sample (the left edge) never shows a highlight.', `${12 - used.length} more photographs (12 in all) would lower the error of renderings by about 60 %.`],
   };
 }
 
