@@ -283,7 +283,7 @@ int RunCameras(int argc, char** argv, const ProgramInfo& info) {
   std::string align = "none";
   OptionSet options;
   options.AddPositional("truth", &truth,
-                        "folder truth/ of a synthetic capture, or manifest.json of calib", true);
+                        "truth/ folder of a synthetic capture, or manifest.json of calib", true);
   options.AddPositional("estimate", &estimate, "manifest.json of calib", true);
   options.AddChoice("align", &align, {"none", "similarity"},
                     "similarity: first align the estimated cameras to the true ones by their "

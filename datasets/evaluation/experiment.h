@@ -40,8 +40,9 @@ struct Method {
   std::function<SvbrdfMaps(const SvbrdfMaps& truth)> start;
 };
 
-// latent, classic, start (no fitting), refined (of latent) or uncorrected (refined from the views
-// as they are said to be). Throws UserError for other names.
+// initial (the initial maps, unfitted), classic (texel by texel), latent, refined (latent, then
+// glint-refine), direct (initial, then glint-refine) or uncorrected (refined without correcting the
+// views). Throws UserError for other names.
 Method NamedMethod(const std::string& name, const std::vector<std::string>& fit_arguments,
                    const std::vector<std::string>& refine_arguments);
 

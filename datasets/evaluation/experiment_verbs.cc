@@ -17,9 +17,9 @@ void AddOptions(const PaperExperiment& paper, PaperExperimentOptions* experiment
                          false);
   options->Add("counts", counts, "numbers of views");
   options->Add("methods", &experiment->methods,
-               "any of: start (no fitting), classic (texel by texel), latent, refined (latent, "
-               "then glint-refine), direct (start, then glint-refine), uncorrected (refined "
-               "without correcting the views)");
+               "any of: initial (the initial maps, unfitted), classic (texel by texel), latent, "
+               "refined (latent, then glint-refine), direct (initial, then glint-refine), "
+               "uncorrected (refined without correcting the views)");
   options->Add("work", &experiment->work, "folder in which views and results are kept (required)");
   options->AddRange("size", &experiment->size, 8, 4096, "texels per side");
   ViewSetOptions* views = &experiment->views;

@@ -58,8 +58,8 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
                    "width in texels at which sets are imported; 0: the images' width");
   options.Add(
       "methods", &experiment.methods,
-      "any of: start (the initial maps), classic, latent, refined, direct (the initial maps, "
-      "refined)");
+      "any of: initial (the initial maps, unfitted), classic, latent, refined, direct (the initial "
+      "maps, refined)");
   options.Add("programs", &programs,
               "other builds to compare with, as NAME=FOLDER,…; FOLDER holds the build's programs");
   options.Add("import-args", &experiment.import_arguments,
@@ -86,7 +86,7 @@ int RunHoldoutVerb(int argc, char** argv, const ProgramInfo& info) {
 Verb HoldoutVerb() {
   return {"holdout",
           "Fits maps to some photographs of real captures and compares renderings with the "
-          "photographs held out.",
+          "held-out photographs.",
           "Example: glint-eval holdout sets/cards sets/wood --pairs '2,6;7,8' --shown 0 --work h",
           RunHoldoutVerb};
 }

@@ -20,7 +20,8 @@ int RunLight(int argc, char** argv, const ProgramInfo& info) {
   options.AddRange("resolution", &experiment.resolution, 16, 4096, "texels per side of the maps");
   options.AddRange("photos", &plan.photos, 1, 1000, "number of photographs per capture");
   options.AddRange("megapixels", &plan.megapixels, 0.05, 60, "size of a photograph");
-  options.AddRange("vignetting", &plan.vignetting, 0, 0.8, "light lost in the picture's corners");
+  options.AddRange("vignetting", &plan.vignetting, 0, 0.8,
+                   "fraction of the light lost in the picture's corners");
   options.AddRange("exposure-ev", &plan.exposure_ev, 0, 4, "spread of the exposures, in stops");
   options.AddRange("ambient", &plan.ambient, 0, 10, "ambient illumination relative to the flash");
   options.Add("fit-args", &experiment.fit_arguments,

@@ -201,8 +201,8 @@ int RunLimits(int argc, char** argv, const ProgramInfo& info) {
 
 Verb LimitsVerb() {
   return {"limits",
-          "How well auto-encoders represent materials: errors in maps after encoding and "
-          "decoding, and in maps decoded from directly fitted codes.",
+          "Measures how well auto-encoders represent materials: errors in maps after encoding and "
+          "decoding, and in maps decoded from codes fitted to the maps.",
           "Example: glint-eval limits procedural:1000000000 --work /tmp/limits", RunLimits};
 }
 

@@ -312,7 +312,7 @@ const std::vector<PaperExperiment>& PaperExperiments() {
        PaperOfCount,
        Table1Summary},
       {"table2",
-       "Errors with wrong light directions and with ambient illumination (table 2).",
+       "Errors with incorrect light directions and with ambient illumination (table 2).",
        "glint-eval table2 procedural:1000000000 --environment city.hdr --work /tmp/table2",
        {20},
        {"refined"},
@@ -320,8 +320,8 @@ const std::vector<PaperExperiment>& PaperExperiments() {
        PaperOfTable2,
        Degradation},
       {"lights",
-       "Errors with light directions wrong by 10°, and the direction error that remains after "
-       "glint-refine has corrected them.",
+       "Errors with light directions off by 10°, and the direction error that remains after "
+       "correction by glint-refine.",
        "glint-eval lights procedural:1000000000 --work /tmp/lights",
        {20},
        {"uncorrected", "refined"},
@@ -345,7 +345,7 @@ const std::vector<PaperExperiment>& PaperExperiments() {
        {},
        Degradation},
       {"start",
-       "Errors by initial maps (figs. 6 and 16).",
+       "Errors by choice of initial maps (figs. 6 and 16).",
        "glint-eval start procedural:1000000000 --starts heuristic,truth --work /tmp/start",
        {1, 5},
        with_initial,
@@ -369,7 +369,7 @@ const std::vector<PaperExperiment>& PaperExperiments() {
        PaperOfCount,
        {}},
       {"ablation",
-       "Errors with auto-encoders that were trained differently (figs. 4 and 15).",
+       "Errors with auto-encoders trained in different ways (figs. 4 and 15).",
        "glint-eval ablation procedural:1000000000 --weights all=a.safetensors,none=b.safetensors "
        "--work /tmp/ablation",
        {1, 2, 5},

@@ -241,12 +241,12 @@ int RunRelight(int argc, char** argv, const ProgramInfo& info) {
   int every = 4, first = 3;
   bool pairs = false;
   OptionSet options;
-  options.AddPositional("captures", &sets, "captures with a fixed camera, rectified", true);
+  options.AddPositional("captures", &sets, "rectified captures taken with a fixed camera", true);
   options.Add("work", &work, "folder in which captures and results are kept (required)");
   options.AddRange("every", &every, 2, 1000, "hold out every Nth photograph");
   options.AddRange("first", &first, 0, 999, "index of the first held-out photograph, from 0");
   options.Add("pairs", &pairs,
-              "also write pictures: photograph, relit, 4 × difference, of every method");
+              "also write pictures for every method: photograph, rendering, 4 × difference");
   options.Add("fit-args", &fit_arguments, "additional arguments for glint-fit, comma-separated");
   options.Add("refine-args", &refine_arguments,
               "additional arguments for glint-refine, comma-separated");
@@ -286,7 +286,7 @@ int RunRelight(int argc, char** argv, const ProgramInfo& info) {
 
 Verb RelightVerb() {
   return {"relight",
-          "Fits maps to some photographs of a fixed camera and compares renderings under the "
+          "Fits maps to some photographs from a fixed camera and compares renderings under the "
           "held-out lights with interpolations of the photographs: polynomial texture maps, "
           "spherical harmonics, radial basis functions.",
           "Example: glint-eval relight icon door --work relit", RunRelight};
