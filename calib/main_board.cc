@@ -122,8 +122,8 @@ void AddOptions(OptionSet* set, BoardOptions* options) {
            "use the ChArUco layout of OpenCV versions before 4.6");
   set->Add("window", &sheet.window,
            "FIRST_COLUMN,FIRST_ROW,COLUMNS,ROWS of squares left out for the sample");
-  set->Add("sample-mm", &sheet.sample_mm, "WIDTH,HEIGHT of the sample that the window must hold");
-  set->Add("full-board", &sheet.full_board, "no window");
+  set->Add("sample-mm", &sheet.sample_mm, "WIDTH,HEIGHT of the sample that must fit in the window");
+  set->Add("full-board", &sheet.full_board, "make a board without a window");
   set->Add("patches", &sheet.patches,
            "reflectances of grey patches above the board, such as 0.85,0.6,0.36,0.18,0.09,0.04");
   set->AddRange("paper-reflectance", &sheet.paper_reflectance, 0.05, 1,
@@ -145,8 +145,8 @@ int main(int argc, char** argv) {
   glint::AddOptions(&set, &options);
   const glint::ProgramInfo info{
       "glint-board",
-      "Writes a calibration board to print: PDF and SVG, true to scale, and board.json, "
-      "which calib reads.",
+      "Makes a calibration board to print: PDF and SVG at true scale, and board.json, which calib "
+      "reads.",
       GLINT_VERSION,
       "Examples:\n  glint board wood --sample-mm 100,100\n"
       "  glint board wood --measured 149.2      the printed ruler's length: corrects board.json\n"

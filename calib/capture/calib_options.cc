@@ -66,7 +66,7 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   set->AddChoice("cameras", &options->cameras, {"auto", "one", "each"},
                  "auto: photographs of the same size and EXIF focal length share their intrinsics; "
                  "one: all photographs share one set; each: every photograph has its own");
-  set->Add("hold", &options->hold, "distortion parameters held at 0, such as p1,p2");
+  set->Add("hold", &options->hold, "distortion parameters fixed at 0, such as p1,p2");
   set->Add("fix-intrinsics", &options->fix_intrinsics,
            "manifest of another calibration whose intrinsics are used unchanged",
            Invalidates::kNo);  // its content is an input, and the place of the file tells nothing
