@@ -229,9 +229,10 @@ Json Data(const FitResult& fit, const RectifiedSet& set, const FitStageOptions& 
 
 void AddFitOptions(OptionSet* set, FitStageOptions* options) {
   set->AddChoice("method", &options->method, {"latent", "classic", "initial"},
-                 "latent: in the auto-encoder's latent space (a single photograph keeps the "
-                 "initial maps, which explain it better, unless --iterations is given); classic: "
-                 "the maps themselves, texel by texel; initial: the initial maps, unfitted");
+                 "latent: fit in the auto-encoder's latent space (for a single photograph, keep "
+                 "the initial maps, which explain it better, unless --iterations is given); "
+                 "classic: fit the maps themselves, texel by texel; initial: the initial maps, "
+                 "unfitted");
   set->AddChoice(
       "initial-maps", &options->initial_maps, {"estimator", "rules"},
       "how the initial maps are estimated; estimator: a trained network; rules: lobes fitted "
@@ -241,7 +242,7 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
                  "export; rare: glass, lacquer, print and the like; possible: perhaps metal");
   set->AddRange("estimator-size", &options->estimator_size, 0, kFullSize,
                 "maximum number of texels along the longer side of the estimator's input; 0: "
-                "chosen by the number of photographs and recorded in the manifest");
+                "chosen from the number of photographs and recorded in the manifest");
   set->AddRange(
       "iterations", &options->iterations, 0, 1e6,
       "maximum number of steps at the first, coarse level; 0: the method's default, which "
@@ -253,18 +254,18 @@ void AddFitOptions(OptionSet* set, FitStageOptions* options) {
       "latent: maximum number of texels along the longer side of the finest level; finer detail is "
       "left to refinement, which recovers it equally well from any initial maps");
   set->AddRange("learning-rate", &options->learning_rate, 1e-6, 1,
-                "Adam's rate at the start of a level");
+                "Adam's initial learning rate at each level");
   set->AddRange("tune-iterations", &options->tune_iterations, 0, 1e6,
-                "latent: fine-tuning steps for the decoder on this sample, once the latent code "
-                "has been fitted");
+                "latent: number of steps that fine-tune the decoder to this sample after the "
+                "latent code has been fitted");
   set->AddRange("tune-rate", &options->tune_rate, 1e-6, 1,
                 "latent: learning rate of the decoder's weights, relative to the latent code's");
   set->AddRange("code-prior", &options->code_prior, 0, 1e6,
                 "latent: weight of the penalty on the latent code's magnitude");
   set->Add("start", &options->start,
-           "initial maps, an svbrdf.exr (default: estimated from the photographs)");
-  set->Add("weights", &options->weights, "the auto-encoder's weights (default: those shipped)");
-  set->Add("estimator", &options->estimator, "the estimator's weights (default: those shipped)");
+           "initial maps, an svbrdf.exr file (default: estimated from the photographs)");
+  set->Add("weights", &options->weights, "the auto-encoder's weights (default: the shipped ones)");
+  set->Add("estimator", &options->estimator, "the estimator's weights (default: the shipped ones)");
   set->Add("views", &options->views,
            "views to use, by view name or photograph name (default: all)");
   set->Add("exclude", &options->exclude, "views to hold out, by view name or photograph name");

@@ -25,13 +25,14 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "larger maps are uniformly subsampled to this size");
   set->Add("second-lobe", &refine->second_lobe,
            "look for a second, narrow specular lobe of the whole sample (varnish, polish); it is "
-           "accepted only if it predicts held-out photographs clearly better, which takes at least "
-           "five photographs");
+           "accepted only if it predicts held-out photographs clearly better, which requires at "
+           "least five photographs");
   set->Add("lobe-tails", &refine->lobe_tails,
            "look for specular lobes of the whole sample whose tails are shorter than GGX's "
-           "(plastics, print, varnish); accepted only if they predict held-out photographs better, "
-           "which takes at least five photographs; Glint's renderings then look more like the "
-           "sample, those of programs that know GGX alone less; takes about twice the time");
+           "(plastics, print, varnish); they are accepted only if they predict held-out "
+           "photographs better, which requires at least five photographs; renderings by Glint then "
+           "look more like the sample, but those by programs that support only GGX look less like "
+           "it; takes about twice as long");
   set->AddRange("prior", &refine->prior, 0, 1e6, "factor on the weight of the priors; 0: none");
   set->AddRange(
       "point-spread", &refine->point_spread_px, 0, 100,
@@ -72,7 +73,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
   set->AddRange("residual-sigma", &options->residual_sigma, 1e-3, 10,
                 "expected standard deviation (a weak prior) of the log-radiance residuals, if the "
                 "light was not calibrated (otherwise 0.05); it is then estimated from the "
-                "photographs, and matters where there are few");
+                "photographs; it matters most if there are few photographs");
   set->AddRange(
       "flash-beam", &options->flash_beam, 0, 10,
       "prior standard deviation of the slope of the flash's log intensity across its "
@@ -91,19 +92,19 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "memory allows",
                 Invalidates::kNo);
   set->Add("part", &options->part,
-           "K/N: refine only the K-th of N parts of the maps, from the top, as a job of its own; "
-           "its result is kept in glint/refine-KofN until --join",
+           "K/N: refine only the K-th of N parts of the maps, counted from the top, as a separate "
+           "job; its result is kept in glint/refine-KofN until --join",
            Invalidates::kNo);
   set->AddRange("join", &options->join, 0, kMostRowParts,
                 "join the results of this many parts, made with --part; the result is identical to "
                 "a run without parts; 0: refine",
                 Invalidates::kNo);
   set->Add("correct-exposures", &options->correction.view.exposure,
-           "let corrections change the photographs' relative exposures too");
+           "also let corrections change the photographs' relative exposures");
   set->Add("views", &options->views,
            "views to use, by view name or photograph name (default: those that glint-fit used)");
   set->Add("exclude", &options->exclude, "views to hold out, by view name or photograph name");
-  set->Add("from", &options->from, "initial maps, an svbrdf.exr (default: the fit's)");
+  set->Add("from", &options->from, "initial maps, an svbrdf.exr file (default: the fit's)");
 }
 
 }  // namespace glint

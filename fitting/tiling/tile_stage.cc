@@ -30,11 +30,11 @@ void AddTilingOptions(OptionSet* set, TileOptions* options) {
 
 void AddTileOptions(OptionSet* set, TileStageOptions* options) {
   set->AddChoice("from", &options->from, StagesWithMaps(ReadsMaps::kWhole),
-                 "stage whose maps are tiled");
+                 "stage whose maps to tile");
   set->AddRange(
       "border", &options->border, 0, kMostBorderRings,
-      "outermost rings of texels, which may include the sample's surroundings, to replace with "
-      "the nearest inner texels; 0: none");
+      "number of outermost rings of texels to replace with the nearest inner texels, since they "
+      "may include the sample's surroundings; 0: none");
   AddTilingOptions(set, &options->tile);
 }
 
