@@ -54,7 +54,7 @@ glint::ProgramResult Demo(const fs::path& folder) {
 int main(int argc, char** argv) {
   fs::path folder;
   glint::OptionSet options;
-  options.AddPositional("DIR", &folder, "folder to make the capture in", true);
+  options.AddPositional("DIR", &folder, "folder of the new capture", true);
   return glint::RunProgram(
       argc, argv,
       {"glint-demo",

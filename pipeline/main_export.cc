@@ -66,8 +66,8 @@ int main(int argc, char** argv) {
   return RunProgram(
       argc, argv,
       {"glint-export",
-       "Writes the material for other programs: maps as PNG files under the file names that other "
-       "programs expect, and complete materials for glTF, MaterialX, USD and Blender.",
+       "Exports the material for other programs: maps as PNG files, named as those programs "
+       "expect, and complete materials for glTF, MaterialX, USD and Blender.",
        GLINT_VERSION, "Example: glint export wood --bits both --formats gltf,blender"},
       &set, [&](const CommonOptions& common) { return Export(folder, &set, &options, common); });
 }

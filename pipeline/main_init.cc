@@ -11,36 +11,37 @@ void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
   options->Add("create", &o->create, "make the folder if it does not exist");
   std::vector<std::string> boards = glint::BoardKindNames(true);
   boards.emplace_back("none");
-  options->AddChoice("board", &o->board, boards, "kind of board; none: COLMAP finds the cameras");
+  options->AddChoice("board", &o->board, boards,
+                     "kind of board; none: COLMAP estimates the cameras");
   options->Add("squares", &o->squares, "COLUMNS,ROWS of squares");
   options->AddRange("square-mm", &o->square_mm, 0.1, 1000, "side of a square");
   options->AddRange("marker-mm", &o->marker_mm, 0.1, 1000, "side of a ChArUco marker");
   options->Add("dictionary", &o->dictionary, "OpenCV's name for the ArUco dictionary");
   options->Add("window", &o->window,
                "FIRST_COLUMN,FIRST_ROW,COLUMNS,ROWS of squares left out for the sample");
-  options->Add("full-board", &o->full_board, "no window");
+  options->Add("full-board", &o->full_board, "the board has no window");
   options->Add("sample-mm", &o->sample_mm, "WIDTH,HEIGHT of the sample");
   options->AddRange(
       "resolution", &o->resolution_px, 0, 16384,
       "width of the maps in texels; 0: 1024, or with --lights the picture's width, at most 2048");
   options->Add("encoding", &o->encoding,
-               "how the photographs store radiance: auto, srgb, gamma2.2, linear, or the path of "
+               "encoding of the photographs: auto, srgb, gamma2.2, linear, or the path of "
                "a response-curve file (as written by glint-response)");
   options->AddRange("every", &o->every, 1, 1000000, "use every Nth frame of a video");
   options->Add("single", &o->single,
-               "one photograph from straight above, without a board; with --width-mm or "
+               "one photograph from directly above, without a board; requires --width-mm or "
                "--distance-mm");
   options->AddRange("width-mm", &o->width_mm, 0, 1e5,
                     "with --single or --lights: width of the area that the picture shows");
   options->AddRange("distance-mm", &o->distance_mm, 0, 1e5,
                     "with --single: distance from the lens to the sample");
   options->Add("lights", &o->lights,
-               "camera fixed, light moved (RTI): the file with the lights' directions or "
-               "positions, .lp, .relight or .dome, inside DIR; with --width-mm or --sample-mm");
+               "fixed camera and moving light (RTI): file with the lights' directions or positions "
+               "(.lp, .relight or .dome), inside DIR; requires --width-mm or --sample-mm");
   options->Add(
       "balls-px", &o->balls_px,
-      "the same without such a file: X,Y of three points on the rim of a reflecting ball in "
-      "the photographs (of two balls: six points)");
+      "the same, without such a file: X,Y of three points on the rim of a reflective ball in "
+      "the photographs (for two balls, six points)");
   options->Add("light-offset-mm", &o->light_offset_mm,
                "X,Y,Z of the flash in the camera frame: x right, y down, z forward");
 }

@@ -26,9 +26,9 @@ void AddOptions(glint::OptionSet* options, RunArguments* o) {
   options->AddRange("jobs,-j", &o->jobs, 0, 1024, "same as --threads");
   options->AddChoice(
       "method", &o->run.choices.method, {"initial", "classic", "latent", "refined"},
-      "initial: maps as estimated by a network, without fitting; classic: maps "
-      "fitted texel by texel; latent: in the auto-encoder's latent space; refined (default): "
-      "latent, then per texel");
+      "initial: maps as estimated by a network, without fitting; classic: maps fitted texel by "
+      "texel; latent: maps fitted in the auto-encoder's latent space; refined (default): latent, "
+      "then refined texel by texel");
   options->Add("quick", &o->quick,
                "a first look in seconds, before you put the sample away: the same as "
                "--method initial; run again without it to fit the maps");

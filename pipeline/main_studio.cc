@@ -65,13 +65,13 @@ int main(int argc, char** argv) {
   options.AddPositional("FOLDER", &o.folder, "folder of captures", false);
   options.AddRange("port", &o.port, 0, 65535, "port on 127.0.0.1; 0: any free one");
   options.Add("lan", &o.lan,
-              "also allow other machines on the network, at a second address with its own secret");
+              "also accept other machines on the network, at a second address with its own secret");
   options.Add("no-browser", &no_browser, "only print the address");
   return glint::RunProgram(
       argc, argv,
       {"glint-studio",
        "Opens a folder of captures in the browser: take photographs with a phone, with advice on "
-       "what to shoot next, run them, and look at the material.",
+       "what to shoot next, run the stages, and view the material.",
        GLINT_VERSION, "Examples:\n  glint studio captures\n  glint studio --no-browser --port 0",
        false},
       &options, [&](const glint::CommonOptions& common) {

@@ -80,15 +80,14 @@ MapPicture PackedPicture(const std::string& name, int width, int height, const R
 void AddExportOptions(OptionSet* set, ExportOptions* options) {
   set->Add("name", &options->name, "prefix of the file names");
   set->AddChoice("from", &options->from, StagesWithMaps(ReadsMaps::kAny),
-                 "stage whose maps are exported");
+                 "stage whose maps to export");
   set->AddChoice("bits", &options->bits, {"8", "16", "both", "exr"},
                  "bits per channel of the PNG files (the height map is always 16-bit); both: 8 and "
-                 "16; exr: 8, and "
-                 "linear float32 EXR files in the folder exr/");
+                 "16; exr: 8, plus linear float32 EXR files in the folder exr/");
   set->AddRange(
       "border", &options->border, 0, kMostBorderRings,
-      "outermost rings of texels, which may include the sample's surroundings, to replace with "
-      "the nearest inner texels; 0: none; ignored for tiles");
+      "number of outermost rings of texels to replace with the nearest inner texels, since they "
+      "may include the sample's surroundings; 0: none; ignored for tiles");
   set->AddRange(
       "height-longest", &options->height_longest, 0, 100,
       "longest wavelength kept in the height map, as a fraction of the sample's shorter side; "

@@ -53,7 +53,7 @@ std::vector<std::string> UsedViews(const Manifest& manifest, const RectifiedSet&
 
 void AddReportOptions(OptionSet* set, ReportOptions* options) {
   set->AddChoice("from", &options->from, StagesWithMaps(ReadsMaps::kWhole),
-                 "stage whose maps are shown");
+                 "stage whose maps to show");
   set->AddRange(
       "picture-px", &options->picture_px, 64, 4096,
       "longest side of the map images, in pixels; photographs are shown at half that size");
