@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
   glint::AddImportOptions(&set, &options);
   const glint::ProgramInfo info{
       "glint-import",
-      "Makes a capture from views that another program rectified; glint run continues with fit.\n"
+      "Makes a capture from views rectified by another program; glint run continues with fit.\n"
       "docs/views.md describes the layouts.",
       GLINT_VERSION,
       "Examples:\n  glint import materialgan/cards-blue cards --size 512\n"

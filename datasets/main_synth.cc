@@ -39,8 +39,7 @@ struct MaterialChoice {
     options->Add("maps", &maps,
                  "svbrdf.exr, strip or folder of maps to use instead of generating them");
     options->Add("family", &family,
-                 "family of the procedural material; if omitted: chosen at random, as determined "
-                 "by the seed");
+                 "family of the procedural material; if omitted, the seed determines it");
   }
   MaterialSource Load(std::uint64_t seed, int size) const {
     if (!maps.empty()) return LoadMaterial(maps.string(), size);
@@ -126,8 +125,8 @@ int RunPack(int argc, char** argv, const ProgramInfo& info) {
   fs::path out;
   int size = 512;
   OptionSet options;
-  options.AddPositional("materials", &given, "folders of maps, or folders that hold such folders",
-                        true);
+  options.AddPositional("materials", &given,
+                        "folders of maps, or folders that contain such folders", true);
   options.Add("out", &out, "pack to write, ….safetensors (required)");
   options.AddRange("size", &size, 8, 8192, "texels per side");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions&) {
@@ -169,7 +168,8 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
               "camera's distance: nearest,farthest (default: 270,330 for a sample of 100 mm and "
               "for your own boards; in proportion to --sample-mm otherwise)");
   options.AddRange("tilt-deg", &plan.largest_tilt_deg, 0, 65, "largest tilt of the later views");
-  options.Add("flash-offset-mm", &flash_mm, "flash in the camera frame: right,down,forward");
+  options.Add("flash-offset-mm", &flash_mm,
+              "flash position in the camera frame: right,down,forward");
   options.Add("flash-tint", &tint, "colour of the flash: r,g,b in (0, 1]");
   options.AddRange("ambient", &plan.ambient, 0, 10, "ambient illumination relative to the flash");
   options.AddRange("vignetting", &plan.vignetting, 0, 0.8,
@@ -193,7 +193,7 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   options.AddChoice("encoding", &capture.encoding, {"gamma2.2", "srgb", "linear"},
                     "tone curve of 8-bit photographs");
   options.AddRange("resolution", &capture.resolution_px, 8, 8192,
-                   "resolution_px that capture.toml asks for");
+                   "value of resolution_px in capture.toml");
   return RunProgram(argc, argv, info, &options, [&](const CommonOptions& common) {
     if (!distance_mm.empty() && distance_mm.size() != 2) {
       throw UserError("distance-mm: give two numbers, as in 270,330");
@@ -252,7 +252,8 @@ int RunDome(int argc, char** argv, const ProgramInfo& info) {
   OptionSet options;
   options.AddPositional("out", &out, "new folder for photographs and dirs.lp", true);
   choice.AddTo(&options);
-  options.AddRange("texels", &texels, 16, 4096, "side of the pictures and of the maps");
+  options.AddRange("texels", &texels, 16, 4096,
+                   "side of the pictures and of the maps, in pixels and texels");
   options.AddRange("lights", &dome.lights, 1, 1000, "number of lamps, and of photographs");
   options.AddRange("lowest-deg", &dome.lowest_deg, 1, 89, "elevation of the lowest lamp");
   options.AddRange("highest-deg", &dome.highest_deg, 1, 90, "elevation of the highest lamp");
@@ -268,7 +269,7 @@ int RunDome(int argc, char** argv, const ProgramInfo& info) {
   options.AddRange(
       "jitter-deg", &dome.jitter_deg, 0, 30,
       "standard deviation of the error of the directions in dirs.lp, in each of two components");
-  options.Add("shadows", &dome.shadows, "the relief casts shadows");
+  options.Add("shadows", &dome.shadows, "render the shadows that the relief casts");
   options.AddRange("blur-px", &dome.blur_px, 0, 10,
                    "standard deviation of the point-spread function of lens and pixel");
   options.AddRange("noise", &dome.noise.scale, 0, 100, "sensor noise; 0: none, 1: a phone's");
@@ -290,10 +291,10 @@ int RunStatistics(int argc, char** argv, const ProgramInfo& info) {
   int seeds = 200, first = 0, size = 256;
   OptionSet options;
   options.AddPositional("materials", &materials,
-                        "real maps, or folders of folders of maps, to compare with", true);
+                        "real maps to compare with, or folders that contain folders of maps", true);
   options.Add("out", &out, "folder for statistics.json, .csv and .png");
   options.Add("family", &family,
-              "compare one procedural family; if omitted: families chosen at random");
+              "compare only this procedural family; if omitted, families are chosen at random");
   options.AddRange("seeds", &seeds, 1, 100000, "number of procedural materials");
   options.AddRange("first-seed", &first, 0, 2e9, "seed of the first one");
   options.AddRange("size", &size, 8, 2048, "texels per side, a power of two");
@@ -320,10 +321,9 @@ int main(int argc, char** argv) {
        "Example: glint-synth capture demo --seed 3 --megapixels 3\n"
        "Then: glint run demo; glint-eval cameras demo/truth demo/glint/calib/manifest.json",
        RunCapture},
-      {"pack", "Packs folders of maps into one file that glint-train mixes into its data.",
+      {"pack", "Packs folders of maps into one file that glint-train mixes into its training data.",
        "Example: glint-synth pack materials/train --out materials.safetensors", RunPack},
-      {"views",
-       "Renders rectified views from maps, as a capture with its rectify stage already done.",
+      {"views", "Renders rectified views from maps: a capture whose rectify stage is already done.",
        "Example: glint-synth views procedural:7 set --count 5 && glint-fit set", RunViews},
       {"dome",
        "Renders photographs taken by a fixed camera under the lamps of a dome or under a hand-held "
