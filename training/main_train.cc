@@ -38,16 +38,17 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
                   "training time in minutes, in total, over all resumed runs");
   app->add_option("--batch", o->batch, "number of crops per step")->capture_default_str();
   app->add_option("--crop", o->crops,
-                  "crop sizes in texels, multiples of 32; each step takes one of them at random, "
+                  "crop sizes in texels, multiples of 32; each step picks one at random, "
                   "with as many texels as --batch crops of the first size")
       ->delimiter(',')
       ->capture_default_str();
   app->add_option("--lr", o->learning_rate, "peak learning rate")->capture_default_str();
-  app->add_option("--clip", o->max_gradient_norm,
-                  "maximum norm of a step's gradient; longer ones are scaled down; 0: no maximum")
+  app->add_option(
+         "--clip", o->max_gradient_norm,
+         "maximum norm of a step's gradient; larger gradients are scaled down; 0: no maximum")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app->add_option("--warmup", o->warmup_steps, "steps over which the learning rate rises")
+  app->add_option("--warmup", o->warmup_steps, "number of steps over which the learning rate rises")
       ->capture_default_str();
   app->add_option("--warmup-from", o->warmup_from,
                   "step at which warm-up starts; set it to the checkpoint's step when --resume "
@@ -55,8 +56,9 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
       ->capture_default_str();
   app->add_option("--accumulate", o->accumulate, "batches whose gradients are accumulated per step")
       ->capture_default_str();
-  app->add_option("--from", o->from,
-                  "initial weights, from any earlier training run (default: newly initialised)")
+  app->add_option(
+         "--from", o->from,
+         "file of initial weights from any earlier training run (default: newly initialised)")
       ->check(CLI::ExistingFile);
   app->add_option("--map-weight", o->map_weight, "weight of the map term")->capture_default_str();
   app->add_option("--render-weight", o->render_weight, "weight of the rendering term")
@@ -70,7 +72,7 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
       ->capture_default_str();
   app->add_option("--bf16", o->bf16, "multiply in bf16 where the device supports it")
       ->capture_default_str();
-  app->add_option("--pool-window", o->pool.window, "number of materials that a step chooses from")
+  app->add_option("--pool-window", o->pool.window, "number of materials from which each step draws")
       ->capture_default_str();
   app->add_option("--pool-first", o->pool.first,
                   "number of materials generated before the first step")
@@ -99,7 +101,7 @@ void AddCommonOptions(CLI::App* app, TrainOptions* o, TrainFiles* files) {
                   "threads that generate materials and cut crops; they do not change results")
       ->capture_default_str();
   app->add_option("--device", o->device,
-                  "cpu, or cuda if libtorch supports it; results are reproducible on a CPU only")
+                  "cpu, or cuda if libtorch supports it; results are reproducible only on a CPU")
       ->check(CLI::IsMember({"cpu", "cuda"}))
       ->capture_default_str();
 }
@@ -183,12 +185,12 @@ struct MaterialOptions {
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
     app->add_option("--metal-share", metal_share,
-                    "fraction of materials with metal; the metals of the others become paint; "
-                    "negative: as generated and packed")
+                    "fraction of materials with metal; metals in the others become paint; "
+                    "negative: leave all metals as generated and packed")
         ->check(CLI::Range(-1.0, 1.0))
         ->capture_default_str();
     app->add_option("--varnish-share", varnish_share,
-                    "fraction of wood and paint given a clear varnish; of all other non-metals, a "
+                    "fraction of wood and paint given a clear varnish; for all other non-metals, a "
                     "fifth of that fraction")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
