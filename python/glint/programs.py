@@ -23,14 +23,14 @@ _PATIENCE_S = 10  # with a program that was told to end
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a program is.
+    """How far a program has got.
 
     Attributes:
-        label: what is being done, mostly a stage's name.
-        share: 0 to 1: of the whole run where `run` foresaw that this stage would run, else of what
-            the label says.
-        remaining_s: seconds; None while that cannot be told.
-        note: what the program adds in words; may be empty.
+        label: what is being done, usually a stage's name.
+        share: 0 to 1: of the whole run if `run` planned to run this stage, otherwise of what the
+            label describes.
+        remaining_s: seconds; None while no estimate is available.
+        note: further text from the program; may be empty.
     """
 
     label: str
@@ -168,7 +168,7 @@ def _failure(process: subprocess.Popen[bytes], words: _Words, name: str) -> Erro
     message = "\n".join(words.error).strip()
     if not message:
         how = f"was ended by signal {-code}" if code < 0 else f"failed (exit code {code})"
-        message = f"{name} {how} and said nothing"
+        message = f"{name} {how} without an error message"
     error = error_type(code)(message)
     error.program = words.program or name
     return error
@@ -176,7 +176,7 @@ def _failure(process: subprocess.Popen[bytes], words: _Words, name: str) -> Erro
 
 def call(verb: str, *arguments: Any, progress: Callable[[Progress], Any] | None = None,
          **options: Any) -> dict[str, Any]:
-    """Runs `glint VERB ARGUMENTS --OPTIONS --json` and returns what it says.
+    """Runs `glint VERB ARGUMENTS --OPTIONS --json` and returns its result.
 
     Args:
         verb, arguments: what to do, and with what: `call("synth", "views", "procedural:7", "set")`.
@@ -225,7 +225,7 @@ def run(folder: Path, stage: str | None = None, *,
         progress, options: as for `call`.
 
     Returns:
-        What the program says with --json: of a whole run `{"capture", "stages": [{"stage",
+        What the program prints with --json; for a whole run, `{"capture", "stages": [{"stage",
         "state", "manifest"}], "started"}`.
 
     Raises:
