@@ -40,7 +40,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("capture")
     parser.add_argument("sheet", nargs="?", default="sheet.png", help="PNG to write")
-    parser.add_argument("--stage", default="refine", help="whose maps: refine or fit")
+    parser.add_argument("--stage", default="refine", help="stage whose maps to show: refine or fit")
     parser.add_argument("--show", action="store_true", help="show a window instead")
     options = parser.parse_args()
 

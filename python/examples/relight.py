@@ -15,9 +15,9 @@ import glint
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("capture")
-    parser.add_argument("folder", type=pathlib.Path, help="of the frames, PNG files")
+    parser.add_argument("folder", type=pathlib.Path, help="folder for the frames (PNG files)")
     parser.add_argument("--frames", type=int, default=24)
-    parser.add_argument("--elevation-deg", type=float, default=50, help="of the lamp")
+    parser.add_argument("--elevation-deg", type=float, default=50, help="elevation of the lamp")
     options = parser.parse_args()
 
     maps = glint.Capture(options.capture).maps()

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""Where the time of a run goes, stage by stage, beside the least that it could take.
+"""Where the time of a run goes, stage by stage, next to its lower bound.
 
-Runs `glint run` on a capture at each size, in a folder of its own, and prints a table for each: what
-every stage took, from the run.json that it wrote in that very run (docs/manifest.md), what the whole
-run took, and in brackets the floor of a figure where there is one:
+Runs `glint run` on a capture at each size, in a separate folder, and prints a table for each size: what
+every stage took, from the run.json that it wrote during that run (docs/manifest.md), what the whole
+run took, and in brackets the lower bound of a figure if it has one:
 
   wall, cpu      decoding the stage's photographs once, on all cores (measured by decode_photos)
   decodes        the number of photographs
-  read           what the stage's manifest lists as read, once; of an earlier stage its views or maps.
-                 The whole run: what no stage has written
-  written        what the stage's manifest lists as written (the manifest itself comes after run.json).
-                 The whole run: all that, and the manifests
+  read           the files that the stage's manifest lists as read, once; from an earlier stage, its
+                 views or maps. Whole run: the files that no stage has written
+  written        the files that the stage's manifest lists as written (except the manifest itself, which
+                 is written after run.json). Whole run: all of these, and the manifests
 
-"between" is the whole run less its stages: starting and ending processes, Ninja, hashes. Idle is the
-share of the cores' time that the run did not use; what other processes used of it, which slows the
-run, stands above the table. Figures are comparable only where that is little.
+"between" is the time of the whole run minus that of its stages: starting and ending processes, Ninja,
+hashes. Idle is the share of the cores' time that the run did not use. The share used by other processes,
+which slows the run down, is printed above the table. Figures are comparable only if it is small.
 """
 
 import argparse
@@ -439,7 +439,7 @@ def arguments(words: Optional[list[str]]) -> argparse.Namespace:
     parser.add_argument(
         "--folder", type=pathlib.Path, help="keep the capture and the last run here (default: a temporary folder)"
     )
-    parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="write all figures to this file, too")
+    parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also write all figures to this file")
     parser.add_argument(
         "--bin", type=pathlib.Path, default=pathlib.Path("build/bin"), help="Glint's programs (default: build/bin)"
     )
