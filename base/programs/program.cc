@@ -111,8 +111,8 @@ OptionSet CommonOptionSet(CommonOptions* common, bool keeps_results) {
                "threads to use; 0: one per core; does not affect the result");
   set.AddRange(
       "memory", &common->memory_gb, 0, kMostMemory_gb,
-      "memory limit in GB; a stage that would exceed it fails with an error; 0: 80 % of what "
-      "the machine (or the process's cgroup) has; does not affect the result");
+      "memory limit in GB; a stage that would exceed it fails with an error; 0: 80 % of the "
+      "memory of the machine (or of the process's cgroup); does not affect the result");
   set.Add("seed", &common->seed, "random seed");
   set.AddChoice("log-level", &common->log_level, {"debug", "info", "warning", "error", "off"},
                 "verbosity on stderr");

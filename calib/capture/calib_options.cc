@@ -61,8 +61,8 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
   set->AddChoice(
       "model", &options->model, ModelChoices(),
       "camera model, by its COLMAP name; auto: the simplest one whose held-out error is not "
-      "significantly above that of the best; with --poses colmap, which has no board to hold out, "
-      "auto is OPENCV");
+      "significantly above that of the best; with --poses colmap, auto means OPENCV, since there "
+      "is no board to hold out");
   set->AddChoice("cameras", &options->cameras, {"auto", "one", "each"},
                  "auto: photographs of the same size and EXIF focal length share their intrinsics; "
                  "one: all photographs share one set; each: every photograph has its own");

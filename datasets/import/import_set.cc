@@ -98,10 +98,10 @@ void AddImportOptions(OptionSet* set, ImportOptions* options) {
                 "resample to this width in texels; 0: keep the images' width");
   set->AddRange(
       "crop", &options->crop, 0, kLargest_px,
-      "the sample is the central square with sides of this many pixels; 0: use the layout's");
+      "the sample is the central square with sides of this many pixels; 0: the layout's default");
   set->AddChoice("registration", &options->registration, {"auto", "none"},
-                 "auto: find the sample's plane and bring photographs into one frame; none: take "
-                 "the views as they are, as is always done with renderings (convention dir2019)");
+                 "auto: find the sample's plane and bring photographs into one frame; none: use "
+                 "the views as they are (always so for renderings, convention dir2019)");
   set->Add("convention", &options->convention,
            "reflectance convention: photograph, dir2019, materialgan, or keywords as in "
            "docs/views.md; if omitted, the source's");

@@ -202,10 +202,9 @@ void AddViewSetOptions(ViewSetOptions* options, OptionSet* set) {
   Disturbance* disturbance = &options->disturbance;
   set->AddRange("light-off-deg", &disturbance->light_off_deg, 0, 60,
                 "rotate every light direction by this angle; not recorded in the manifest");
-  set->Add(
-      "light-together", &disturbance->light_together,
-      "rotate all lights in the same direction, as if the flash sat at a different place beside "
-      "the lens");
+  set->Add("light-together", &disturbance->light_together,
+           "rotate all lights in the same direction, as if the flash were mounted elsewhere beside "
+           "the lens");
   set->AddRange("registration-texel", &disturbance->registration_texel, 0, 100,
                 "shift the corners of every view by this many texels (RMS); not recorded in the "
                 "manifest");

@@ -12,13 +12,13 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
                 "roughness values; with two or more, also from values that all texels share and "
                 "from other initial normals");
   set->AddRange("neighbour-passes", &refine->neighbour_passes, 0, 16,
-                "how many times a texel tries its neighbours' solutions");
+                "number of times that each texel tries its neighbours' solutions");
   set->AddRange("substances", &refine->substances, 1, kMostSubstances,
                 "maximum number of substances (clusters of texels of one material); the texels of "
                 "a substance share roughness and albedos");
   set->AddRange("estimation-rounds", &refine->estimation_rounds, 0, 100,
-                "rounds of estimating variances and substances from sampled texels; repeated once "
-                "the prior standard deviations are chosen");
+                "number of rounds that estimate variances and substances from sampled texels; run "
+                "again once the prior standard deviations are chosen");
   set->AddRange(
       "estimation-size", &refine->estimation_size, 16, 1 << 20,
       "longer side, in texels, of the grid from which texels are drawn for the estimation; "

@@ -23,8 +23,8 @@ void AddRectifyOptions(OptionSet* set, RectifyOptions* options) {
                 "the same for float photographs; 0: they never clip");
   set->AddChoice(
       "exposure", &options->exposure, {"calib", "exif", "equal"},
-      "relative exposure of the photographs; calib: from calib, or like exif if calib estimated "
-      "none; exif: from EXIF if all photographs have it; equal: the same for all");
+      "relative exposure of the photographs; calib: as estimated by calib, or as for exif if "
+      "calib estimated none; exif: from EXIF if all photographs have it; equal: the same for all");
   set->AddRange(
       "frame-height-mm", &options->frame_height_mm, 0, 100,
       "thickness of the board around the sample; texels that it shadows or hides are masked");
