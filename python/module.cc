@@ -219,7 +219,8 @@ void RequireRows(const DoubleArray& array, const char* name, py::ssize_t rows, b
 DoubleArray Brdf(const DoubleArray& light, const DoubleArray& camera, const DoubleArray& normal,
                  const DoubleArray& diffuse, const DoubleArray& specular,
                  const DoubleArray& roughness, bool one_minus_specular, double narrow_share,
-                 double narrow_ratio, double coat_f0, int tail) {
+                 double narrow_ratio, double coat_f0, int tail, double anisotropy_ratio,
+                 double anisotropy_deg) {
   const py::ssize_t rows = roughness.ndim() == 1 ? roughness.shape(0) : 0;
   RequireRows(light, "light", rows, true);
   RequireRows(camera, "camera", rows, true);
@@ -229,7 +230,8 @@ DoubleArray Brdf(const DoubleArray& light, const DoubleArray& camera, const Doub
   RequireRows(roughness, "roughness", rows, false);
   ReflectanceConvention convention;
   if (one_minus_specular) convention.diffuse_weight = DiffuseWeight::kOneMinusSpecular;
-  convention.lobes = {narrow_share, narrow_ratio, coat_f0, tail};
+  convention.lobes = {
+      narrow_share, narrow_ratio, coat_f0, tail, {anisotropy_ratio, anisotropy_deg}};
   DoubleArray values(std::vector<py::ssize_t>{rows, 3});
   double* const out = values.mutable_data();
   const double dark[3] = {0, 0, 0};
@@ -303,6 +305,6 @@ PYBIND11_MODULE(_glint, module) {
              "The adjoint of render: ∂loss/∂maps, [10, height, width], from ∂loss/∂radiance.");
   module.def("brdf", &glint::Brdf, arg("light"), arg("camera"), arg("normal"), arg("diffuse"),
              arg("specular"), arg("roughness"), arg("one_minus_specular"), arg("narrow_share"),
-             arg("narrow_ratio"), arg("coat_f0"), arg("tail"),
-             "The BRDF row by row, [rows, 3], in 1/sr.");
+             arg("narrow_ratio"), arg("coat_f0"), arg("tail"), arg("anisotropy_ratio"),
+             arg("anisotropy_deg"), "The BRDF row by row, [rows, 3], in 1/sr.");
 }

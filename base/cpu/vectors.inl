@@ -102,7 +102,7 @@ GLINT_INLINE Floats Exp2OfNegative(const Floats& x) {
 }
 
 GLINT_INLINE Doubles Exp2OfNegative(const Doubles& x) {
-  Doubles power;
+  Doubles power{};
   for (int i = 0; i < kLanes<double>; ++i) power[i] = __builtin_exp2(x[i]);
   return power;
 }
@@ -129,7 +129,7 @@ GLINT_INLINE Floats Log(const Floats& x) {
 }
 
 GLINT_INLINE Doubles Log(const Doubles& x) {
-  Doubles log;
+  Doubles log{};
   for (int i = 0; i < kLanes<double>; ++i) log[i] = __builtin_log(x[i]);
   return log;
 }

@@ -25,6 +25,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include "base/reflectance/brdf_core.h"
 #include "base/reflectance/convention.h"
@@ -67,24 +68,46 @@ T FresnelWeight(const T& v_dot_h) {
 
 // As the formulas take them.
 template <class S>
+LobeShape<S> LobeShapeOf(const SpecularLobes& lobes) {
+  LobeShape<S> shape;
+  shape.exponent = lobes.tail_exponent;
+  shape.stretch = S(std::sqrt(lobes.tail_exponent - 1.0));
+  const Anisotropy& anisotropy = lobes.anisotropy;
+  if (!anisotropy.any()) return shape;
+  const double direction_rad = anisotropy.direction_deg * (std::numbers::pi / 180);
+  shape.anisotropic = true;
+  shape.direction[0] = S(std::cos(direction_rad));
+  shape.direction[1] = S(std::sin(direction_rad));
+  shape.ratio = S(anisotropy.ratio);
+  shape.inverse_ratio = S(1 / anisotropy.ratio);
+  return shape;
+}
+
+template <class S>
 LobeMix<S> LobeMixOf(const SpecularLobes& lobes) {
-  const LobeTail<S> tail = {lobes.tail_exponent, S(std::sqrt(lobes.tail_exponent - 1.0))};
-  if (!lobes.two()) return {.tail = tail};
+  const LobeShape<S> shape = LobeShapeOf<S>(lobes);
+  if (!lobes.two()) return {.shape = shape};
   const double wide = std::pow(lobes.narrow_ratio, -lobes.narrow_share);
   return {true,
           {S(1 - lobes.narrow_share), S(lobes.narrow_share)},
           {S(wide), S(wide * lobes.narrow_ratio)},
-          tail,
+          shape,
           S(lobes.coat_f0)};
 }
 
 template <class T>
-Cosines<T> CosinesOf(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry) {
+Cosines<T> CosinesOf(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
+                     const LobeShape<ScalarOf<T>>& shape = {}) {
   Cosines<T> cosines{Dot(texel.normal, geometry.light), Dot(texel.normal, geometry.camera),
                      Dot(texel.normal, geometry.half), T(0)};
   T across[3];
   for (int i = 0; i < 3; ++i) across[i] = texel.normal[i] - cosines.n_dot_h * geometry.half[i];
   cosines.sine_squared = Dot(across, across);
+  if (shape.anisotropic) {
+    const auto& g = shape.direction;
+    cosines.n_dot_g = texel.normal[0] * g[0] + texel.normal[1] * g[1];
+    cosines.h_dot_g = geometry.half[0] * g[0] + geometry.half[1] * g[1];
+  }
   return cosines;
 }
 
@@ -97,7 +120,8 @@ SpecularTerms<T> EvaluateSpecular(const TexelSvbrdf<T>& texel, const TexelGeomet
 template <class T>
 MixTerms<T> EvaluateMix(const TexelSvbrdf<T>& texel, const TexelGeometry<T>& geometry,
                         const SpecularLobes& lobes) {
-  return EvaluateMix(CosinesOf(texel, geometry), texel.roughness, LobeMixOf<ScalarOf<T>>(lobes));
+  const LobeMix<ScalarOf<T>> mix = LobeMixOf<ScalarOf<T>>(lobes);
+  return EvaluateMix(CosinesOf(texel, geometry, mix.shape), texel.roughness, mix);
 }
 
 // D·G / (4·NoL·NoV) of one lobe.

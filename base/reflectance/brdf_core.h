@@ -66,6 +66,7 @@ GLINT_BRDF T FresnelExponent(const T& v_dot_h) {
 template <class T>
 struct Cosines {
   T n_dot_l, n_dot_v, n_dot_h, sine_squared;
+  T n_dot_g{}, h_dot_g{};  // g: LobeShape::direction; where lobes are anisotropic
 };
 
 // S and what its slopes need again.
@@ -83,11 +84,17 @@ struct SpecularTerms {
   T masking;  // G/(4π·NoL·NoV) = 1/(4π·a·b), times tail = (γ−1)·(NoH²·wide²/t)^(γ−2)
   T over_cosine;  // S/NoL = D·G/(4·NoL·NoV)
   T value;        // S
+  // Of anisotropic lobes. With g' the tangent that n leaves of g, a unit vector, h·g' = p/√m,
+  // p = h·g − (n·h)(n·g), m = 1 − (n·g)²: p/m.
+  T along_by_m;
 };
+
+// Of m: a normal within 2° of the sample's plane leaves no tangent.
+inline constexpr double kLeastTangent = 1e-3;
 
 template <class T>
 GLINT_BRDF SpecularTerms<T> EvaluateSpecular(const Cosines<T>& cosines, const T& roughness,
-                                             const LobeTail<ScalarOf<T>>& tail = {}) {
+                                             const LobeShape<ScalarOf<T>>& shape = {}) {
   using A = Arithmetic<T>;
   using S = ScalarOf<T>;
   SpecularTerms<T> s;
@@ -96,10 +103,18 @@ GLINT_BRDF SpecularTerms<T> EvaluateSpecular(const Cosines<T>& cosines, const T&
   s.n_dot_v = A::AtLeast(cosines.n_dot_v, S(kDotClamp));
   s.n_dot_h = A::AtLeast(cosines.n_dot_h, S(kDotClamp));
   s.alpha = roughness * roughness;
-  s.wide = s.alpha * tail.stretch;
+  s.wide = s.alpha * shape.stretch;
   s.k = A::AtLeast(s.alpha * S(0.5), S(kDenominatorClamp));
-  const T sine_squared = A::WhereAbove(cosines.n_dot_h, S(kDotClamp), cosines.sine_squared,
-                                       A::Constant(S(1 - kDotClamp * kDotClamp)));
+  T sine = cosines.sine_squared;
+  if (shape.anisotropic) {
+    const T along = cosines.h_dot_g - cosines.n_dot_h * cosines.n_dot_g;
+    s.along_by_m =
+        along / A::AtLeast(T(S(1) - cosines.n_dot_g * cosines.n_dot_g), S(kLeastTangent));
+    sine =
+        A::MultiplyAdd(s.along_by_m * along, A::Constant(shape.along_weight()), sine * shape.ratio);
+  }
+  const T sine_squared =
+      A::WhereAbove(cosines.n_dot_h, S(kDotClamp), sine, A::Constant(S(1 - kDotClamp * kDotClamp)));
   const T projected = s.n_dot_h * s.wide;
   s.t = A::MultiplyAdd(projected, projected, sine_squared);
 
@@ -115,10 +130,10 @@ GLINT_BRDF SpecularTerms<T> EvaluateSpecular(const Cosines<T>& cosines, const T&
   s.inverse_b = inverse_ab * a;
   s.ratio = s.wide * s.inverse_t;
   s.masking = inverse_ab * S(0.25 * kInversePi);
-  if (tail.exponent > 2) {
+  if (shape.exponent > 2) {
     const T share = projected * projected * s.inverse_t;  // at most 1
-    s.masking = s.masking * S(tail.exponent - 1);
-    for (int i = 2; i < tail.exponent; ++i) s.masking = s.masking * share;
+    s.masking = s.masking * S(shape.exponent - 1);
+    for (int i = 2; i < shape.exponent; ++i) s.masking = s.masking * share;
   }
   s.over_cosine = s.ratio * s.ratio * s.masking;
   s.value = s.over_cosine * s.n_dot_l;
@@ -127,10 +142,11 @@ GLINT_BRDF SpecularTerms<T> EvaluateSpecular(const Cosines<T>& cosines, const T&
 
 // ∂(weight·S) by roughness and the normal's products, each with the others fixed; sine_squared
 // counts as n·n − (n·h)², so that the derivative by n is
-// by_n_dot_l·l + by_n_dot_v·v + by_n_dot_h·h + 2·by_n_dot_n·n.
+// by_n_dot_l·l + by_n_dot_v·v + by_n_dot_h·h + by_n_dot_g·g + 2·by_n_dot_n·n.
 template <class T>
 struct SpecularSlopes {
   T by_roughness, by_n_dot_l, by_n_dot_v, by_n_dot_h, by_n_dot_n;
+  T by_n_dot_g{};  // of anisotropic lobes
 
   GLINT_BRDF void operator+=(const SpecularSlopes& other) {
     by_roughness += other.by_roughness;
@@ -138,28 +154,29 @@ struct SpecularSlopes {
     by_n_dot_v += other.by_n_dot_v;
     by_n_dot_h += other.by_n_dot_h;
     by_n_dot_n += other.by_n_dot_n;
+    by_n_dot_g += other.by_n_dot_g;
   }
 };
 
 // `weight` comes first, so that what cancels between slopes by n·h and by n·n is rounded alike.
 template <class T>
 GLINT_BRDF SpecularSlopes<T> DifferentiateSpecular(
-    const SpecularTerms<T>& s, const T& roughness, const LobeTail<ScalarOf<T>>& tail = {},
+    const SpecularTerms<T>& s, const T& roughness, const LobeShape<ScalarOf<T>>& shape = {},
     const T& weight = Arithmetic<T>::Constant(ScalarOf<T>(1))) {
   using A = Arithmetic<T>;
   using S = ScalarOf<T>;
   const T zero = A::Constant(S(0));
   const T weighted = weight * s.value;
   const T by_t =
-      A::WhereAbove(s.t, S(kDenominatorClamp), weighted * s.inverse_t * S(-tail.exponent), zero);
+      A::WhereAbove(s.t, S(kDenominatorClamp), weighted * s.inverse_t * S(-shape.exponent), zero);
   // α directly, through t = sin² + (NoH·α)², and through k = α/2 in a and b.
   const T cosine_squared = s.n_dot_h * s.n_dot_h;
   const T direct = s.ratio * s.inverse_t * s.masking * s.n_dot_l;
   const T through_k =
       A::MultiplyAdd(S(1) - s.n_dot_l, s.inverse_a, (S(1) - s.n_dot_v) * s.inverse_b) * weighted;
   T by_alpha =
-      A::MultiplyAdd(by_t * s.wide, cosine_squared, weight * direct * S(tail.exponent - 1)) * S(2) *
-      tail.stretch;
+      A::MultiplyAdd(by_t * s.wide, cosine_squared, weight * direct * S(shape.exponent - 1)) *
+      S(2) * shape.stretch;
   by_alpha -= A::WhereAbove(s.alpha * S(0.5), S(kDenominatorClamp), through_k * S(0.5), zero);
 
   SpecularSlopes<T> slopes;
@@ -169,10 +186,19 @@ GLINT_BRDF SpecularSlopes<T> DifferentiateSpecular(
   slopes.by_n_dot_v =
       A::WhereAbove(s.free.n_dot_v, S(kDotClamp), weighted * (s.k - S(1)) * s.inverse_b, zero);
   slopes.by_n_dot_n = A::WhereAbove(s.free.n_dot_h, S(kDotClamp), by_t, zero);
-  slopes.by_n_dot_h = slopes.by_n_dot_n * s.n_dot_h * (s.wide * s.wide - S(1)) * S(2);
-  if (tail.exponent > 2) {
+  slopes.by_n_dot_h = slopes.by_n_dot_n * s.n_dot_h * (s.wide * s.wide - shape.ratio) * S(2);
+  if (shape.anisotropic) {
+    const T by_p = slopes.by_n_dot_n * s.along_by_m * (shape.along_weight() * S(2));
+    const T n_dot_g = s.free.n_dot_g;
+    const T through_m = A::WhereAbove(T(S(1) - n_dot_g * n_dot_g), S(kLeastTangent),
+                                      T(s.along_by_m * n_dot_g), zero);
+    slopes.by_n_dot_h -= by_p * n_dot_g;
+    slopes.by_n_dot_g = by_p * (through_m - s.free.n_dot_h);
+    slopes.by_n_dot_n = slopes.by_n_dot_n * shape.ratio;
+  }
+  if (shape.exponent > 2) {
     slopes.by_n_dot_h += A::WhereAbove(s.free.n_dot_h, S(kDotClamp),
-                                       weighted * S(2 * tail.exponent - 4) / s.n_dot_h, zero);
+                                       weighted * S(2 * shape.exponent - 4) / s.n_dot_h, zero);
   }
   return slopes;
 }
@@ -200,14 +226,14 @@ GLINT_BRDF MixTerms<T> EvaluateMix(const Cosines<T>& cosines, const T& roughness
   MixTerms<T> s;
   s.coat_over_cosine = s.coat = Arithmetic<T>::Constant(S(0));
   if (!mix.two) {
-    s.lobes[0] = EvaluateSpecular(cosines, roughness, mix.tail);
+    s.lobes[0] = EvaluateSpecular(cosines, roughness, mix.shape);
     s.n_dot_l = s.lobes[0].n_dot_l;
     s.over_cosine = s.lobes[0].over_cosine;
     s.value = s.lobes[0].value;
     return s;
   }
   for (int i = 0; i < 2; ++i) {
-    s.lobes[i] = EvaluateSpecular(cosines, LobeRoughness(roughness, mix, i), mix.tail);
+    s.lobes[i] = EvaluateSpecular(cosines, LobeRoughness(roughness, mix, i), mix.shape);
   }
   s.n_dot_l = s.lobes[0].n_dot_l;
   s.over_cosine = s.lobes[0].over_cosine * mix.share[0];
@@ -228,7 +254,7 @@ GLINT_BRDF SpecularSlopes<T> DifferentiateLobe(const MixTerms<T>& s, const T& ro
                                                const LobeMix<S>& mix, int lobe, const T& weight) {
   using A = Arithmetic<T>;
   SpecularSlopes<T> by = DifferentiateSpecular(s.lobes[lobe], LobeRoughness(roughness, mix, lobe),
-                                               mix.tail, T(weight * mix.share[lobe]));
+                                               mix.shape, T(weight * mix.share[lobe]));
   // A lobe as rough as can be stays so.
   by.by_roughness = A::WhereAbove(T(roughness * mix.scale[lobe]), S(1), A::Constant(S(0)),
                                   T(by.by_roughness * mix.scale[lobe]));
@@ -239,7 +265,7 @@ template <class T, class S>
 GLINT_BRDF SpecularSlopes<T> DifferentiateMix(
     const MixTerms<T>& s, const T& roughness, const LobeMix<S>& mix,
     const T& weight = Arithmetic<T>::Constant(ScalarOf<T>(1))) {
-  if (!mix.two) return DifferentiateSpecular(s.lobes[0], roughness, mix.tail, weight);
+  if (!mix.two) return DifferentiateSpecular(s.lobes[0], roughness, mix.shape, weight);
   SpecularSlopes<T> sum = DifferentiateLobe(s, roughness, mix, 0, weight);
   if (mix.coat()) return sum;
   sum += DifferentiateLobe(s, roughness, mix, 1, weight);

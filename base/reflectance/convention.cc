@@ -14,10 +14,12 @@ namespace {
       "'; use photograph, dir2019, materialgan, or words of diffuse=one|one_minus_specular, "
       "light=none|inverse_square, sampling=pixel_centres|corner_to_corner, "
       "narrow_lobe=SHARExRATIO[@F0] (a share from 0 to below 1, a ratio of roughnesses up to 1, a "
-      "coat's F0 up to 1), tail=EXPONENT (a whole number from 2, GGX, to 32)");
+      "coat's F0 up to 1), tail=EXPONENT (a whole number from 2, GGX, to 32), "
+      "anisotropy=RATIO@DEGREES (a ratio from 1 to 100, a direction from 0 to below 180)");
 }
 
-constexpr std::string_view kNarrowLobe = "narrow_lobe=", kTail = "tail=";
+constexpr std::string_view kNarrowLobe = "narrow_lobe=", kTail = "tail=",
+                           kAnisotropy = "anisotropy=";
 
 // The shortest digits that mean this number.
 std::string Shortest(double x) {
@@ -53,6 +55,25 @@ int ParseTail(std::string_view text) {
   return tail;
 }
 
+// "1.5@90"
+Anisotropy ParseAnisotropy(std::string_view text) {
+  Anisotropy found;
+  const char* const end = text.data() + text.size();
+  const auto ratio = std::from_chars(text.data(), end, found.ratio);
+  if (ratio.ec != std::errc() || ratio.ptr == end || *ratio.ptr != '@') Reject(text);
+  const auto direction = std::from_chars(ratio.ptr + 1, end, found.direction_deg);
+  const bool in_range = found.ratio >= 1 && found.ratio <= kMostAnisotropy &&
+                        found.direction_deg >= 0 && found.direction_deg < 180;
+  if (direction.ec != std::errc() || direction.ptr != end || !in_range) Reject(text);
+  return found;
+}
+
+void SetNarrowLobe(const SpecularLobes& narrow, SpecularLobes* lobes) {
+  lobes->narrow_share = narrow.narrow_share;
+  lobes->narrow_ratio = narrow.narrow_ratio;
+  lobes->coat_f0 = narrow.coat_f0;
+}
+
 void SetWord(const std::string& word, ReflectanceConvention* convention) {
   if (word == "diffuse=one") {
     convention->diffuse_weight = DiffuseWeight::kOne;
@@ -67,11 +88,13 @@ void SetWord(const std::string& word, ReflectanceConvention* convention) {
   } else if (word == "sampling=corner_to_corner") {
     convention->sampling = TexelSampling::kCornerToCorner;
   } else if (word.starts_with(kNarrowLobe)) {
-    const int tail = convention->lobes.tail_exponent;
-    convention->lobes = ParseLobes(std::string_view(word).substr(kNarrowLobe.size()));
-    convention->lobes.tail_exponent = tail;
+    SetNarrowLobe(ParseLobes(std::string_view(word).substr(kNarrowLobe.size())),
+                  &convention->lobes);
   } else if (word.starts_with(kTail)) {
     convention->lobes.tail_exponent = ParseTail(std::string_view(word).substr(kTail.size()));
+  } else if (word.starts_with(kAnisotropy)) {
+    convention->lobes.anisotropy =
+        ParseAnisotropy(std::string_view(word).substr(kAnisotropy.size()));
   } else {
     Reject(word);
   }
@@ -93,8 +116,13 @@ std::string ToString(const ReflectanceConvention& convention) {
             Shortest(lobes.narrow_ratio);
     if (lobes.coat_f0 > 0) text += "@" + Shortest(lobes.coat_f0);
   }
-  if (lobes.tail_exponent != 2)
+  if (lobes.tail_exponent != 2) {
     text += " " + std::string(kTail) + std::to_string(lobes.tail_exponent);
+  }
+  if (lobes.anisotropy.any()) {
+    text += " " + std::string(kAnisotropy) + Shortest(lobes.anisotropy.ratio) + "@" +
+            Shortest(lobes.anisotropy.direction_deg);
+  }
   return text;
 }
 

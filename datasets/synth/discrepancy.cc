@@ -58,7 +58,7 @@ std::vector<float> WithOtherLobe(const Discrepancy& discrepancy, const DrawnDisc
                                  const ReflectanceConvention& convention, int threads) {
   const double strength = discrepancy.strength;
   std::vector<float> sum(3 * maps.texels(), 0.0f);
-  if (drawn.lobe == LobeShape::kSecondLobe) {
+  if (drawn.lobe == DiscrepantLobe::kSecondLobe) {
     const double share = std::min(1.0, strength * discrepancy.second_lobe_share);
     const SvbrdfMaps wide = Rougher(maps, discrepancy.second_lobe_width);
     AddScaled(Rendered(maps, plane, view, convention, threads), 1 - share, &sum);
@@ -187,7 +187,7 @@ std::vector<float> SeenOnRelief(const HeightField& relief, const SamplePlane& pl
 DrawnDiscrepancy DrawDiscrepancy(const Discrepancy& discrepancy, std::uint64_t seed, int views) {
   procedural::Rng rng(procedural::Mix64(seed) ^ 0xd15c4e9aull);
   DrawnDiscrepancy drawn;
-  drawn.lobe = rng.Unit() < 0.5 ? LobeShape::kSecondLobe : LobeShape::kAnisotropic;
+  drawn.lobe = rng.Unit() < 0.5 ? DiscrepantLobe::kSecondLobe : DiscrepantLobe::kAnisotropic;
   drawn.azimuth_rad = std::numbers::pi * rng.Unit();
   for (int i = 0; i < views; ++i) {
     drawn.exposures.push_back(std::exp(discrepancy.strength * discrepancy.exposure * rng.Normal()));

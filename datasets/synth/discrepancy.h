@@ -13,7 +13,7 @@
 
 namespace glint {
 
-enum class LobeShape { kSecondLobe, kAnisotropic };
+enum class DiscrepantLobe { kSecondLobe, kAnisotropic };
 
 // What a set's photographs are made with, at strength 1.
 struct Discrepancy {
@@ -41,7 +41,7 @@ struct Discrepancy {
 
 // The set's own draws.
 struct DrawnDiscrepancy {
-  LobeShape lobe = LobeShape::kSecondLobe;
+  DiscrepantLobe lobe = DiscrepantLobe::kSecondLobe;
   double azimuth_rad = 0;         // along which normals scatter
   std::vector<double> exposures;  // factors, by view
 };

@@ -59,7 +59,8 @@ GLINT_INLINE Directions<T> Direct(const View<T>& view, bool inverse_square, cons
 }
 
 template <class T>
-GLINT_INLINE Cosines<VectorOf<T>> CosinesOf(const Texels<T>& texels, const Directions<T>& d) {
+GLINT_INLINE Cosines<VectorOf<T>> CosinesOf(const Texels<T>& texels, const Directions<T>& d,
+                                            const LobeShape<T>& shape) {
   using V = VectorOf<T>;
   Cosines<V> cosines;
   cosines.n_dot_l = Dot3<T>(texels.normal, d.light);
@@ -71,6 +72,12 @@ GLINT_INLINE Cosines<VectorOf<T>> CosinesOf(const Texels<T>& texels, const Direc
     across[i] = Fma(-scale, d.light[i] + d.camera[i], texels.normal[i]);
   }
   cosines.sine_squared = Dot3<T>(across, across);
+  if (shape.anisotropic) {
+    const T* g = shape.direction;
+    cosines.n_dot_g = Fma(texels.normal[1], Broadcast(g[1]), texels.normal[0] * g[0]);
+    cosines.h_dot_g = d.half_inverse * Fma(d.light[1] + d.camera[1], Broadcast(g[1]),
+                                           (d.light[0] + d.camera[0]) * g[0]);
+  }
   return cosines;
 }
 
@@ -78,7 +85,7 @@ template <class T>
 GLINT_INLINE Shading<T> Shade(const Texels<T>& texels, const Directions<T>& d,
                               bool one_minus_specular, const LobeMix<T>& mix) {
   Shading<T> s;
-  s.specular = EvaluateMix(CosinesOf<T>(texels, d), texels.roughness, mix);
+  s.specular = EvaluateMix(CosinesOf<T>(texels, d, mix.shape), texels.roughness, mix);
   const Coat<VectorOf<T>> coat = EvaluateCoat(s.specular.coat, d.fresnel, mix);
   for (int c = 0; c < 3; ++c) {
     s.channels[c] =
@@ -126,6 +133,9 @@ GLINT_INLINE void AddAdjoint(const Texels<T>& texels, const Directions<T>& d, co
   for (int i = 0; i < 3; ++i) {
     V sum = Fma(by_light, d.light[i], gradient[i]);
     sum = Fma(by_camera, d.camera[i], sum);
+    if (i < 2 && mix.shape.anisotropic) {
+      sum = Fma(by.by_n_dot_g, Broadcast(mix.shape.direction[i]), sum);
+    }
     gradient[i] = Fma(by_normal, texels.normal[i], sum);
   }
 }

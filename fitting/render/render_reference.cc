@@ -15,14 +15,32 @@ using torch::Tensor;
 
 Tensor Dot(const Tensor& a, const Tensor& b) { return (a * b).sum(2, /*keepdim=*/true); }
 
+// |h − (n·h)n|², of anisotropic lobes with what h has along the tangent 1/ratio and across it ratio
+// times.
+Tensor StretchedSine(const Tensor& normal, const Tensor& half, const Tensor& n_dot_h,
+                     const Anisotropy& anisotropy) {
+  if (!anisotropy.any()) return Dot(normal, normal) - n_dot_h * n_dot_h;
+  const double direction_rad = anisotropy.direction_deg * (M_PI / 180);
+  const Tensor direction =
+      torch::tensor({std::cos(direction_rad), std::sin(direction_rad), 0.0}, normal.options())
+          .view({1, 1, 3, 1, 1});
+  const Tensor n_dot_g = Dot(normal, direction);
+  const Tensor tangent = (direction - n_dot_g * normal) /
+                         (Dot(normal, normal) - n_dot_g * n_dot_g).clamp_min(1e-3).sqrt();
+  const Tensor sideways = half - n_dot_h * normal;
+  const Tensor along = Dot(sideways, tangent).square();
+  return along / anisotropy.ratio + (Dot(sideways, sideways) - along) * anisotropy.ratio;
+}
+
 // D·G / (4·NoL·NoV) of one lobe, from clamped cosines. D is Student's t (convention.h) with
 // t = sin²θ + cos²θ·(γ−1)α²: (γ−1)^γ α^(2γ−2) cos^(2γ−4)θ / (π t^γ).
 Tensor LobeFactor(const Tensor& normal, const Tensor& half, const Tensor& n_dot_l,
-                  const Tensor& n_dot_v, const Tensor& roughness, int tail) {
+                  const Tensor& n_dot_v, const Tensor& roughness, const SpecularLobes& lobes) {
+  const int tail = lobes.tail_exponent;
   const Tensor alpha = roughness * roughness;
   const Tensor k = (alpha * 0.5).clamp_min(kDenominatorClamp);
   const Tensor n_dot_h = Dot(normal, half);
-  const Tensor sine_squared = Dot(normal, normal) - n_dot_h * n_dot_h;
+  const Tensor sine_squared = StretchedSine(normal, half, n_dot_h, lobes.anisotropy);
   const Tensor facing = n_dot_h > kDotClamp;
   const Tensor cosine = n_dot_h.clamp_min(kDotClamp);
   const Tensor wide = alpha * std::sqrt(tail - 1.0);
@@ -44,11 +62,10 @@ struct SpecularFactors {
 SpecularFactors FactorsOf(const SpecularLobes& lobes, const Tensor& normal, const Tensor& half,
                           const Tensor& n_dot_l, const Tensor& n_dot_v, const Tensor& roughness) {
   const auto of = [&](double scale) {
-    return LobeFactor(normal, half, n_dot_l, n_dot_v, (roughness * scale).clamp_max(1),
-                      lobes.tail_exponent);
+    return LobeFactor(normal, half, n_dot_l, n_dot_v, (roughness * scale).clamp_max(1), lobes);
   };
   if (!lobes.two()) {
-    const Tensor only = LobeFactor(normal, half, n_dot_l, n_dot_v, roughness, lobes.tail_exponent);
+    const Tensor only = LobeFactor(normal, half, n_dot_l, n_dot_v, roughness, lobes);
     return {only, torch::zeros_like(only)};
   }
   const double share = lobes.narrow_share, wide = std::pow(lobes.narrow_ratio, -share);

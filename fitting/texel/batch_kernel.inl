@@ -122,17 +122,30 @@ enum Lobe {
 };
 static_assert(kByRCoat + 1 == BatchViews::kScratchRows);
 
-// Derivatives by slope_x, slope_y and roughness of what has the slopes `by`; of n·l and n·v by the
-// normal's.
+// Of a view: what its lobes' derivatives by a texel need.
+struct InView {
+  const Tilt& tilt;
+  const LobeShape<float>& shape;
+  Floats half_inverse;
+  Floats n_dot_l[2], n_dot_v[2];  // derivatives by slope_x and slope_y
+};
+
+// Derivatives by slope_x, slope_y and roughness of what has the slopes `by`.
 struct ByTexel {
   Floats x, y, r;
 };
-GLINT_INLINE ByTexel Chained(const SpecularSlopes<Floats>& by, const Floats& half_inverse,
-                             const Floats n_dot_l[2], const Floats n_dot_v[2]) {
-  const Floats by_half = by.by_n_dot_h * half_inverse;
+GLINT_INLINE ByTexel Chained(const SpecularSlopes<Floats>& by, const InView& view) {
+  const Floats by_half = by.by_n_dot_h * view.half_inverse;
   const Floats by_light = by.by_n_dot_l + by_half, by_camera = by.by_n_dot_v + by_half;
-  return {Fma(by_light, n_dot_l[0], by_camera * n_dot_v[0]),
-          Fma(by_light, n_dot_l[1], by_camera * n_dot_v[1]), by.by_roughness};
+  ByTexel chained = {Fma(by_light, view.n_dot_l[0], by_camera * view.n_dot_v[0]),
+                     Fma(by_light, view.n_dot_l[1], by_camera * view.n_dot_v[1]), by.by_roughness};
+  if (view.shape.anisotropic) {
+    const float* g = view.shape.direction;
+    const Tilt& tilt = view.tilt;
+    chained.x = Fma(by.by_n_dot_g, tilt.by_x[0] * g[0] + tilt.by_x[1] * g[1], chained.x);
+    chained.y = Fma(by.by_n_dot_g, tilt.by_y[0] * g[0] + tilt.by_y[1] * g[1], chained.y);
+  }
+  return chained;
 }
 
 // Of every view into the scratch memory, as vectors.
@@ -159,6 +172,11 @@ GLINT_INLINE Floats* EvaluateLobes(const KernelOptions& options, const BatchView
     Floats across[3];
     for (int i = 0; i < 3; ++i) across[i] = Fma(-scale, sum[i], tilt.n[i]);
     cosines.sine_squared = Dot3(across, across);
+    if (options.mix.shape.anisotropic) {
+      const float* g = options.mix.shape.direction;
+      cosines.n_dot_g = Fma(tilt.n[1], Broadcast(g[1]), tilt.n[0] * g[0]);
+      cosines.h_dot_g = half_inverse * Fma(sum[1], Broadcast(g[1]), sum[0] * g[0]);
+    }
     const MixTerms<Floats> lobe = EvaluateMix(cosines, roughness, options.mix);
     Floats* out = lobes + v * BatchViews::kScratchRows;
     out[kNormalLight] = lobe.n_dot_l;
@@ -166,20 +184,21 @@ GLINT_INLINE Floats* EvaluateLobes(const KernelOptions& options, const BatchView
     const Floats fresnel = At(rows[Obs::kFresnel], first);
     out[kCoat] = EvaluateCoat(lobe.coat, fresnel, options.mix).reflected;
     if constexpr (kSlopes) {
-      const Floats n_dot_l[] = {Dot3(tilt.by_x, light), Dot3(tilt.by_y, light)};
-      const Floats n_dot_v[] = {Dot3(tilt.by_x, camera), Dot3(tilt.by_y, camera)};
+      const InView in = {tilt,
+                         options.mix.shape,
+                         half_inverse,
+                         {Dot3(tilt.by_x, light), Dot3(tilt.by_y, light)},
+                         {Dot3(tilt.by_x, camera), Dot3(tilt.by_y, camera)}};
       const Ints lit = cosines.n_dot_l > float(kDotClamp);
-      out[kByXNormalLight] = Where(lit, n_dot_l[0], Floats{});
-      out[kByYNormalLight] = Where(lit, n_dot_l[1], Floats{});
-      const ByTexel by =
-          Chained(DifferentiateMix(lobe, roughness, options.mix), half_inverse, n_dot_l, n_dot_v);
+      out[kByXNormalLight] = Where(lit, in.n_dot_l[0], Floats{});
+      out[kByYNormalLight] = Where(lit, in.n_dot_l[1], Floats{});
+      const ByTexel by = Chained(DifferentiateMix(lobe, roughness, options.mix), in);
       out[kByXLobe] = by.x;
       out[kByYLobe] = by.y;
       out[kByRLobe] = by.r;
       if (options.mix.coat()) {
         const Floats weight = Fresnel(Broadcast(options.mix.coat_f0), fresnel);
-        const ByTexel coat = Chained(DifferentiateCoat(lobe, roughness, options.mix, weight),
-                                     half_inverse, n_dot_l, n_dot_v);
+        const ByTexel coat = Chained(DifferentiateCoat(lobe, roughness, options.mix, weight), in);
         out[kByXCoat] = coat.x;
         out[kByYCoat] = coat.y;
         out[kByRCoat] = coat.r;

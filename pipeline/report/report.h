@@ -18,7 +18,7 @@
 
 namespace glint {
 
-inline constexpr int kReportVersion = 12;
+inline constexpr int kReportVersion = 13;
 
 struct ReportOptions {
   std::string from = "refine";  // stage whose maps are shown: refine, fit

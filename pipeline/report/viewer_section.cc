@@ -96,10 +96,9 @@ Json ViewsJson(const ReportInput& input, const std::vector<ShownView>& shown) {
 
 Json LobesJson(const SpecularLobes& lobes) {
   const LobeMix<double> mix = LobeMixOf<double>(lobes);
-  return {{"shares", mix.share},
-          {"scales", mix.scale},
-          {"coat_f0", mix.coat_f0},
-          {"tail_exponent", mix.tail.exponent}};
+  return {{"shares", mix.share},           {"scales", mix.scale},
+          {"coat_f0", mix.coat_f0},        {"tail_exponent", mix.shape.exponent},
+          {"anisotropy", mix.shape.ratio}, {"direction", mix.shape.direction}};
 }
 
 // JSON inside <script>: what could end it is escaped.

@@ -28,4 +28,5 @@ def render_gradients(maps: NDArray[np.float32], radiance_gradient: NDArray[np.fl
 def brdf(light: NDArray[np.float64], camera: NDArray[np.float64], normal: NDArray[np.float64],
          diffuse: NDArray[np.float64], specular: NDArray[np.float64],
          roughness: NDArray[np.float64], one_minus_specular: bool, narrow_share: float,
-         narrow_ratio: float, coat_f0: float, tail: int) -> NDArray[np.float64]: ...
+         narrow_ratio: float, coat_f0: float, tail: int,
+         anisotropy_ratio: float, anisotropy_deg: float) -> NDArray[np.float64]: ...

@@ -143,7 +143,8 @@ def _colours(value: ArrayLike) -> Doubles:
 
 def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayLike,
          specular: ArrayLike, roughness: ArrayLike, *, diffuse_weight: str = "one",
-         narrow_lobe: tuple[float, ...] = (0.0, 1.0), tail: int = 2) -> Doubles:
+         narrow_lobe: tuple[float, ...] = (0.0, 1.0), tail: int = 2,
+         anisotropy: tuple[float, float] = (1.0, 0.0)) -> Doubles:
     """The BRDF f, without the cosine; vectorised, in double precision.
 
     Arguments broadcast against each other as NumPy's do, the last axis aside.
@@ -159,6 +160,8 @@ def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayL
             "narrow_lobe=0.5x0.4"; share 0: one lobe. A third number, as in "0.5x0.4@0.04", is the
             F0 of a coat, which the narrow lobe then has in place of `specular`.
         tail: exponent of the lobes' tails, as a convention's "tail=4"; 2: GGX.
+        anisotropy: ratio of alpha along a direction of the sample to alpha across it, and that
+            direction in degrees from x toward y, as a convention's "anisotropy=1.5@90".
 
     Returns:
         (..., 3) float64, 1/sr.
@@ -166,7 +169,8 @@ def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayL
     Raises:
         ValueError: shapes that do not agree, a vector of length 0, an unknown weight, a share that
             is not in [0, 1), a ratio that is not in (0, 1], an F0 that is not in [0, 1], a tail
-            that is no whole number from 2 to 32.
+            that is no whole number from 2 to 32, an anisotropy whose ratio is not in [1, 100] or
+            whose direction is not in [0, 180).
     """
     if diffuse_weight not in ("one", "one_minus_specular"):
         raise ValueError(f"diffuse_weight: found {diffuse_weight!r}; "
@@ -178,6 +182,10 @@ def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayL
                          "to 1, are expected")
     if tail not in range(2, 33):
         raise ValueError(f"tail: found {tail!r}; a whole number from 2 to 32 is expected")
+    ratio_of_alpha, direction_deg = anisotropy
+    if not (1 <= ratio_of_alpha <= 100 and 0 <= direction_deg < 180):
+        raise ValueError(f"anisotropy: found {anisotropy!r}; a ratio from 1 to 100 and a direction "
+                         "from 0 to below 180 degrees are expected")
     vectors = [_unit("light", light), _unit("camera", camera), _unit("normal", normal),
                _colours(diffuse), _colours(specular)]
     widths = np.asarray(roughness, dtype=float)
@@ -186,7 +194,7 @@ def brdf(light: ArrayLike, camera: ArrayLike, normal: ArrayLike, diffuse: ArrayL
     values = _glint.brdf(rows[0], rows[1], rows[2], rows[3], rows[4],
                          np.broadcast_to(widths, shape).reshape(-1),
                          diffuse_weight == "one_minus_specular", share, ratio, coat_f0,
-                         tail)
+                         tail, ratio_of_alpha, direction_deg)
     return values.reshape((*shape, 3))
 
 

@@ -206,3 +206,16 @@ def test_what_does_not_fit_is_told(random_maps):
         glint.Maps((0, 0, 1), 0.5, 0.5, 0.04, size_mm=0, shape=(2, 2))
     with pytest.raises(ValueError, match="photo"):
         glint.Maps((0, 0, 1), 0.5, 0.5, 0.04, size_mm=1, shape=(2, 2), convention="phong")
+
+
+def test_anisotropic_lobes_are_wider_along_their_direction():
+    def f(azimuth_deg, anisotropy=(2.25, 30.0)):
+        azimuth = np.radians(azimuth_deg)
+        light = (0.5 * np.cos(azimuth), 0.5 * np.sin(azimuth), 1)
+        return glint.brdf(light, (0, 0, 1), (0, 0, 1), 0.0, 0.04, 0.4, anisotropy=anisotropy)[0]
+
+    assert f(30) > 1.5 * f(75) > 2 * f(120)
+    np.testing.assert_allclose(f(30), f(210), rtol=1e-12)
+    np.testing.assert_allclose(f(10, (1.0, 0.0)), f(100, (1.0, 77.0)), rtol=1e-12)
+    with pytest.raises(ValueError, match="anisotropy"):
+        f(0, (0.5, 0.0))

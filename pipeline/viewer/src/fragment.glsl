@@ -52,7 +52,8 @@ vec3 radianceOf(Texel t, vec3 n, vec3 v) {
   vec3 l = normalize(toLight);
   vec3 received = fallsOff ? lightRadiance / dot(toLight, toLight) : lightRadiance;
   if (beam != vec2(0.0)) received *= exp(-dot(beam, toLight.xy) / toLight.z);
-  vec3 reflected = brdf(t, n, l, v) * max(dot(n, l), 1e-8);
+  vec3 g = normalize(lobeDirection.x * vTangent + lobeDirection.y * vBitangent);
+  vec3 reflected = brdf(t, n, l, v, g) * max(dot(n, l), 1e-8);
   vec3 mirrored = lobeShares.x * lobeF0(t, 0) + lobeShares.y * lobeF0(t, 1);
   return received * reflected + ambient * (t.diffuse + mirrored) / 3.14159265358979;
 }

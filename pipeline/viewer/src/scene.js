@@ -50,6 +50,8 @@ export class MaterialScene {
       lobeShares: { value: new THREE.Vector2(...this.material.lobes.shares) },
       lobeScales: { value: new THREE.Vector2(...this.material.lobes.scales) },
       lobeTail: { value: this.material.lobes.tail_exponent },
+      lobeAnisotropy: { value: this.material.lobes.anisotropy },
+      lobeDirection: { value: new THREE.Vector2(...this.material.lobes.direction) },
       coatF0: { value: this.material.lobes.coat_f0 },
       fallsOff: { value: true }, lighting: { value: 0 }, exposure: { value: 1 },
       channel: { value: 0 }, tiles: { value: new THREE.Vector2(1, 1) },

@@ -64,6 +64,24 @@ class RandomPoints {
   std::mt19937 engine_;
 };
 
+// tan² between the normal and h: by h's slopes along the tangent, 1/ratio as much, and across it.
+double StretchedTangent2(const double n[3], const double h[3], const Anisotropy& anisotropy) {
+  const double noh = n[0] * h[0] + n[1] * h[1] + n[2] * h[2];
+  if (noh < 1e-8) return 1e16 - 1;
+  const double azimuth = anisotropy.direction_deg * kPi / 180;
+  const double g[3] = {std::cos(azimuth), std::sin(azimuth), 0};
+  const double n_dot_g = n[0] * g[0] + n[1] * g[1];
+  double t[3], length = 0;
+  for (int i = 0; i < 3; ++i) t[i] = g[i] - n_dot_g * n[i];
+  for (const double x : t) length += x * x;
+  for (double& x : t) x /= std::sqrt(length);
+  const double b[3] = {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2],
+                       n[0] * t[1] - n[1] * t[0]};
+  const double along = (h[0] * t[0] + h[1] * t[1] + h[2] * t[2]) / noh;
+  const double across = (h[0] * b[0] + h[1] * b[1] + h[2] * b[2]) / noh;
+  return along * along / anisotropy.ratio + across * across * anisotropy.ratio;
+}
+
 // The model written as method.md prints it, one line a formula, with nothing rearranged.
 std::array<double, 3> TextbookRadiance(const Point& point, const ReflectanceConvention& model) {
   const auto clamped_dot = [](const double a[3], const double b[3]) {
@@ -78,7 +96,8 @@ std::array<double, 3> TextbookRadiance(const Point& point, const ReflectanceConv
   const double nov = clamped_dot(s.normal, g.camera), voh = clamped_dot(g.camera, h);
   const auto lobe = [&](double roughness) {  // D·G
     const double alpha = roughness * roughness, k = alpha / 2;
-    const double tail = model.lobes.tail_exponent, tangent2 = 1 / (noh * noh) - 1;
+    const double tail = model.lobes.tail_exponent;
+    const double tangent2 = StretchedTangent2(s.normal, h, model.lobes.anisotropy);
     const double d =
         std::pow(tail - 1, tail) * std::pow(alpha, 2 * tail - 2) /
         (kPi * std::pow(noh, 4) * std::pow((tail - 1) * alpha * alpha + tangent2, tail));
@@ -105,7 +124,7 @@ std::array<double, 3> TextbookRadiance(const Point& point, const ReflectanceConv
 }
 
 // Each diffuse weight, with one specular lobe, with two and with a coat's; and with shorter tails.
-const std::array<ReflectanceConvention, 9> kModels = {
+const std::array<ReflectanceConvention, 11> kModels = {
     {{.diffuse_weight = DiffuseWeight::kOne},
      {.diffuse_weight = DiffuseWeight::kOneMinusSpecular},
      {.diffuse_weight = DiffuseWeight::kOne, .lobes = {0.5, 0.4}},
@@ -114,7 +133,9 @@ const std::array<ReflectanceConvention, 9> kModels = {
      {.diffuse_weight = DiffuseWeight::kOneMinusSpecular, .lobes = {0.85, 0.25, 0.03}},
      {.diffuse_weight = DiffuseWeight::kOne, .lobes = {.tail_exponent = 4}},
      {.diffuse_weight = DiffuseWeight::kOneMinusSpecular, .lobes = {.tail_exponent = 3}},
-     {.diffuse_weight = DiffuseWeight::kOne, .lobes = {0.3, 0.4, 0.04, 8}}}};
+     {.diffuse_weight = DiffuseWeight::kOne, .lobes = {0.3, 0.4, 0.04, 8}},
+     {.diffuse_weight = DiffuseWeight::kOne, .lobes = {.anisotropy = {2.5, 30}}},
+     {.diffuse_weight = DiffuseWeight::kOneMinusSpecular, .lobes = {0.5, 0.4, 0, 4, {1.5, 120}}}}};
 
 TEST(BrdfTest, RadianceIsTheTextbookFormula) {
   RandomPoints random(1);

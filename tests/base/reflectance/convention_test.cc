@@ -15,7 +15,8 @@ TEST(ConventionTest, TextRoundTripKeepsEverySwitch) {
       for (const auto sampling : {TexelSampling::kPixelCentres, TexelSampling::kCornerToCorner}) {
         for (const SpecularLobes& lobes :
              {SpecularLobes(), SpecularLobes{0.85, 0.25}, SpecularLobes{0.3, 0.4, 0.04},
-              SpecularLobes{.tail_exponent = 4}, SpecularLobes{0.3, 0.4, 0.04, 8}}) {
+              SpecularLobes{.tail_exponent = 4}, SpecularLobes{0.3, 0.4, 0.04, 8},
+              SpecularLobes{.anisotropy = {1.5, 90}}, SpecularLobes{0.3, 0.4, 0, 4, {2.25, 0}}}) {
           const ReflectanceConvention convention{diffuse, falloff, sampling, lobes};
           EXPECT_EQ(ParseReflectanceConvention(ToString(convention)), convention);
         }

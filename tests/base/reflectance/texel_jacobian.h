@@ -39,6 +39,7 @@ inline void ShadeTexel(const TexelSvbrdf<double>& texel, const TexelGeometry<dou
       row[kNormalX + i] = lit * geometry.light[i] + by.by_n_dot_l * geometry.light[i] +
                           by.by_n_dot_v * geometry.camera[i] + by.by_n_dot_h * geometry.half[i] +
                           2.0 * by.by_n_dot_n * texel.normal[i];
+      if (i < 2) row[kNormalX + i] += by.by_n_dot_g * mix.shape.direction[i];
     }
   }
 }

@@ -49,7 +49,7 @@ class DiscrepancyTest : public testing::Test {
 };
 
 TEST_F(DiscrepancyTest, LobesAreOtherOnesWhereThereIsSpecular) {
-  for (const LobeShape lobe : {LobeShape::kSecondLobe, LobeShape::kAnisotropic}) {
+  for (const DiscrepantLobe lobe : {DiscrepantLobe::kSecondLobe, DiscrepantLobe::kAnisotropic}) {
     drawn_.lobe = lobe;
     maps_ = MakeMaterial(77, kSize, kSize);
     EXPECT_GT(Difference(Discrepant(), Exact()), 1e-3);
@@ -64,7 +64,7 @@ TEST_F(DiscrepancyTest, AnAnisotropicLobeIsWiderAlongItsDirection) {
     for (float& s : maps_.plane(kSpecularR + c)) s = 0.05f;
   }
   view_.camera_in_sample_mm = view_.light_in_sample_mm = {0, 0, 150};
-  drawn_.lobe = LobeShape::kAnisotropic;
+  drawn_.lobe = DiscrepantLobe::kAnisotropic;
   drawn_.azimuth_rad = 0;  // along x
   const std::vector<float> rgb = Discrepant();
   const size_t middle = kSize / 2, right = middle * kSize + kSize - 4;
@@ -76,7 +76,7 @@ TEST_F(DiscrepancyTest, BlurKeepsTheLight) {
   for (int c = 0; c < 3; ++c) {
     for (float& s : maps_.plane(kSpecularR + c)) s = 0;
   }
-  drawn_.lobe = LobeShape::kAnisotropic;
+  drawn_.lobe = DiscrepantLobe::kAnisotropic;
   discrepancy_.anisotropy = 0;
   const std::vector<float> sharp = Discrepant();
   discrepancy_.diffuse_blur_mm = 6;

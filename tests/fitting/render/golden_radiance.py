@@ -15,6 +15,8 @@ CONVENTIONS = [
     "diffuse=one light=inverse_square sampling=pixel_centres narrow_lobe=0.7x0.25@0.04",
     "diffuse=one light=inverse_square sampling=pixel_centres tail=4",
     "diffuse=one light=inverse_square sampling=pixel_centres narrow_lobe=0.4x0.3 tail=8",
+    "diffuse=one light=inverse_square sampling=pixel_centres anisotropy=2.5@30",
+    "diffuse=one light=inverse_square sampling=pixel_centres narrow_lobe=0.4x0.3@0.04 tail=4 anisotropy=1.5@135",
 ]
 ROWS_OF_EACH = 24
 
@@ -32,14 +34,20 @@ def fresnel(f0, v_dot_h):
     return f0 + (1 - f0) * 2 ** ((-5.55473 * v_dot_h - 6.98316) * v_dot_h)
 
 
-def lobe(n, l, v, roughness, tail):
-    """D·G / (4·NoL·NoV) of Student's t-distribution of slopes, which is GGX with tail 2."""
+def lobe(n, l, v, roughness, tail, ratio, direction_deg):
+    """D·G / (4·NoL·NoV) of Student's t-distribution of slopes, which is GGX with tail 2. α is √ratio times as
+    large along the direction, projected onto the texel's plane, and 1/√ratio across."""
     h = unit([a + b for a, b in zip(l, v)])
+    azimuth = math.radians(direction_deg)
+    g = [math.cos(azimuth), math.sin(azimuth), 0]
+    along = unit([x - dot(n, g) * y for x, y in zip(g, n)])
+    across = [n[1] * along[2] - n[2] * along[1], n[2] * along[0] - n[0] * along[2], n[0] * along[1] - n[1] * along[0]]
+    tangent = ((dot(h, along) / dot(h, n)) ** 2 / ratio + (dot(h, across) / dot(h, n)) ** 2 * ratio)
     alpha = min(roughness, 1) ** 2
     k = alpha / 2
     square = dot(n, h) ** 2
     d = (tail - 1) ** tail * alpha ** (2 * tail - 2) / (math.pi * square**2)
-    d /= ((tail - 1) * alpha**2 + (1 - square) / square) ** tail
+    d /= ((tail - 1) * alpha**2 + tangent) ** tail
     g = math.prod(x / (x * (1 - k) + k) for x in (dot(n, l), dot(n, v)))
     return d * g / (4 * dot(n, l) * dot(n, v))
 
@@ -51,12 +59,13 @@ def radiance(convention, camera, light, power, ambient, exposure, n, diffuse, sp
     falloff = dot(light, light) if words["light"] == "inverse_square" else 1
     share, ratio, coat = 0.0, 1.0, 0.0
     tail = int(words.get("tail", 2))
+    shape = [tail, *(float(x) for x in words.get("anisotropy", "1@0").split("@"))]
     if "narrow_lobe" in words:
         share, rest = words["narrow_lobe"].split("x")
         ratio, _, coat = rest.partition("@")
         share, ratio, coat = float(share), float(ratio), float(coat or 0)
-    wide = (1 - share) * lobe(n, l, v, roughness * ratio**-share, tail)
-    narrow = share * lobe(n, l, v, roughness * ratio ** (1 - share), tail) if share else 0.0
+    wide = (1 - share) * lobe(n, l, v, roughness * ratio**-share, *shape)
+    narrow = share * lobe(n, l, v, roughness * ratio ** (1 - share), *shape) if share else 0.0
     result = []
     for c in range(3):
         weight = 1 - specular[c] if words["diffuse"] == "one_minus_specular" else 1

@@ -76,7 +76,7 @@ std::vector<Golden> ReadGolden() {
 
 TEST(GoldenRadiance, IsWhatTheFormulasOfBrdfGive) {
   const std::vector<Golden> all = ReadGolden();
-  ASSERT_EQ(all.size(), 168u);
+  ASSERT_EQ(all.size(), 216u);
   for (const Golden& golden : all) {
     const TexelGeometry<double> geometry =
         TexelGeometryInView(golden.view, golden.convention.falloff, 0.0, 0.0);

@@ -78,7 +78,15 @@ inline const std::vector<ReflectanceConvention>& AllConventions() {
       {DiffuseWeight::kOneMinusSpecular,
        LightFalloff::kNone,
        TexelSampling::kCornerToCorner,
-       {0.3, 0.4, 0.05, 8}}};
+       {0.3, 0.4, 0.05, 8}},
+      {DiffuseWeight::kOne,
+       LightFalloff::kInverseSquare,
+       TexelSampling::kPixelCentres,
+       {.anisotropy = {2, 60}}},
+      {DiffuseWeight::kOneMinusSpecular,
+       LightFalloff::kInverseSquare,
+       TexelSampling::kPixelCentres,
+       {0.3, 0.4, 0.05, 4, {1.5, 150}}}};
   return conventions;
 }
 

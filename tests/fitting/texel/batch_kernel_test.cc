@@ -91,9 +91,10 @@ TEST(BatchKernel, ResidualsAgreeWithAutodiffOfTheReflectanceModelAtAThousandPoin
     BatchGram gram;
     for (int i = 0; i < 64; ++i) {
       Lanes lanes(&random);
-      if (i % 4 == 1) lanes.SetLobes({0.6, 0.3});
-      if (i % 4 == 2) lanes.SetLobes({0.4, 0.3, 0.05, 8});
-      if (i % 4 == 3) lanes.SetLobes({.tail_exponent = 4});
+      if (i % 5 == 1) lanes.SetLobes({0.6, 0.3});
+      if (i % 5 == 2) lanes.SetLobes({0.4, 0.3, 0.05, 8});
+      if (i % 5 == 3) lanes.SetLobes({.tail_exponent = 4});
+      if (i % 5 == 4) lanes.SetLobes({0.4, 0.3, 0.05, 2, {1.8, 100}});
       lanes.Observe();
       kernel::BatchKernelFor(set).gram(lanes.options, lanes.Views(), lanes.values, &gram,
                                        residuals.rows());
@@ -233,9 +234,10 @@ TEST(BatchKernel, SolutionsAreMinimaOfThePosterior) {
     const BatchKernel& kernel = kernel::BatchKernelFor(set);
     for (int i = 0; i < 8; ++i) {
       Lanes lanes(&random);
-      if (i % 4 == 1) lanes.SetLobes({0.5, 0.6});
-      if (i % 4 == 2) lanes.SetLobes({0.5, 0.6, 0.05});
-      if (i % 4 == 3) lanes.SetLobes({.tail_exponent = 4});
+      if (i % 5 == 1) lanes.SetLobes({0.5, 0.6});
+      if (i % 5 == 2) lanes.SetLobes({0.5, 0.6, 0.05});
+      if (i % 5 == 3) lanes.SetLobes({.tail_exponent = 4});
+      if (i % 5 == 4) lanes.SetLobes({.anisotropy = {1.8, 100}});
       lanes.ShadeWith(lanes.texels);
       for (size_t lane = 0; lane < kBatch; ++lane) {
         for (auto& rgb : lanes.radiance[lane]) {
