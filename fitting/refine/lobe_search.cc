@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -25,6 +27,19 @@ SpecularLobes LobesAt(const LobePlace& place, double coat_f0) {
 bool InLattice(const LobePlace& place) {
   return place.first >= 0 && place.first < static_cast<int>(constants::kNarrowLobeShares.size()) &&
          place.second >= 0 && place.second < static_cast<int>(constants::kNarrowLobeRatios.size());
+}
+
+// ln(ratio)·(cos 2φ, sin 2φ) in steps.
+using StretchPlace = std::pair<int, int>;
+
+double LogRatio(const StretchPlace& place) {
+  return constants::kAnisotropyStep * std::hypot(place.first, place.second);
+}
+
+Anisotropy AnisotropyAt(const StretchPlace& place) {
+  if (place == StretchPlace{0, 0}) return {};
+  const double half_turn_deg = std::atan2(place.second, place.first) * (90 / std::numbers::pi);
+  return {std::exp(LogRatio(place)), half_turn_deg < 0 ? half_turn_deg + 180 : half_turn_deg};
 }
 
 struct LobeChoice {
@@ -61,6 +76,32 @@ std::optional<LobeChoice> SearchKind(double coat_f0, const HeldOutErrors& one,
 
 bool AskForShortTails(const HeldOutErrors& short_tails, const HeldOutErrors& ggx) {
   return short_tails.EnergyAgainst(ggx) < -constants::kShortTailLogOdds;
+}
+
+bool AskForAnisotropy(const HeldOutErrors& anisotropic, const HeldOutErrors& isotropic) {
+  return anisotropic.EnergyAgainst(isotropic) < -constants::kAnisotropyLogOdds;
+}
+
+Anisotropy SearchAnisotropy(const std::function<HeldOutErrors(const Anisotropy&)>& predict) {
+  std::map<StretchPlace, double> known;
+  const auto at = [&](const StretchPlace& place) {
+    auto found = known.find(place);
+    if (found == known.end()) {
+      found = known.emplace(place, predict(AnisotropyAt(place)).sum()).first;
+    }
+    return found->second;
+  };
+  StretchPlace best = {0, 0};
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const LobePlace& direction : kSteps) {
+      const StretchPlace next = {best.first + direction.first, best.second + direction.second};
+      if (LogRatio(next) > std::log(kMostAnisotropy) || !(at(next) < at(best))) continue;
+      best = next;
+      moved = true;
+    }
+  }
+  return AnisotropyAt(best);
 }
 
 bool AskForTwoLobes(const HeldOutErrors& two, const HeldOutErrors& one) {

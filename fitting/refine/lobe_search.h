@@ -1,5 +1,5 @@
-// Whether a sample has a second, narrow specular lobe (base/reflectance/convention.h): as
-// photographs held out are predicted.
+// What specular lobes a sample has (base/reflectance/convention.h): as photographs held out are
+// predicted.
 #pragma once
 
 #include <functional>
@@ -18,6 +18,15 @@ bool AskForTwoLobes(const HeldOutErrors& two, const HeldOutErrors& one);
 // The same of lobes whose tails are shorter than GGX's: about every second sample has them, and
 // other programs know GGX alone (log odds 1).
 bool AskForShortTails(const HeldOutErrors& short_tails, const HeldOutErrors& ggx);
+
+// The same of lobes that are wider in one direction of the sample: about every fifth sample is of
+// wood, cloth or brushed metal, and they are the best of some dozen (log odds 5).
+bool AskForAnisotropy(const HeldOutErrors& anisotropic, const HeldOutErrors& isotropic);
+
+// From isotropic lobes on over ln(ratio)·(cos 2φ, sin 2φ), in steps of kAnisotropyStep, to the next
+// that predicts better until none does.
+Anisotropy SearchAnisotropy(
+    const std::function<HeldOutErrors(const Anisotropy& anisotropy)>& predict);
 
 // From one lobe on over a lattice of shares and ratios of roughness, to the next that predicts
 // better until none does: once for a narrow lobe that has the specular map's F0, once for a coat's

@@ -105,6 +105,10 @@ std::string RefineSummary::BriefReport() const {
   if (lobes.tail_exponent > 2) {
     text << "lobes with tails shorter than GGX's (exponent " << lobes.tail_exponent << "), ";
   }
+  if (lobes.anisotropy.any()) {
+    text << "lobes " << lobes.anisotropy.ratio << " times as wide at "
+         << lobes.anisotropy.direction_deg << " deg as across, ";
+  }
   if (exposure_spread > 0) text << "exposures scatter " << 100 * exposure_spread << " %, ";
   text << 100.0 * converged << " % converged";
   return text.str();

@@ -96,6 +96,7 @@ struct RefineOptions {
   // Standard deviations expected of all views' light (shared_light.h). 0: as said.
   double flash_beam = 0, distance_power = 0;
   bool second_lobe = true;  // of the whole sample, where held-out photographs ask for it
+  bool anisotropy = true;   // of its lobes, likewise
   bool lobe_tails = false;  // look for shorter ones than GGX's too, likewise
   double prior = constants::kPriorWeight;  // factor on the priors' weight; 0: none
   // Standard deviation by which lens, pixel, demosaicking and resampling spread a point of the

@@ -32,6 +32,10 @@ const ManifestField<Summary> kSampleMetrics[] = {
     {"narrow_lobe",
      "second specular lobe: `share`, `roughness_ratio`, and `coat_f0` of a coat; null: none",
      [](const Summary& s) -> Json { return JsonOf(s.lobes); }},
+    {"anisotropy",
+     "of the specular lobes: `ratio` of α along the direction in which they are wider to α across "
+     "it, and that `direction_deg`, from the sample's x axis toward its y axis; null: none",
+     [](const Summary& s) -> Json { return JsonOf(s.lobes.anisotropy); }},
     {"tail_exponent", "γ of the specular lobes' tails; 2: GGX",
      [](const Summary& s) -> Json { return s.lobes.tail_exponent; }},
     {"roughness_spread",
@@ -67,6 +71,11 @@ Json JsonOf(const SpecularLobes& lobes) {
   Json json = {{"share", lobes.narrow_share}, {"roughness_ratio", lobes.narrow_ratio}};
   if (lobes.coat_f0 > 0) json["coat_f0"] = lobes.coat_f0;
   return json;
+}
+
+Json JsonOf(const Anisotropy& anisotropy) {
+  if (!anisotropy.any()) return nullptr;
+  return Json{{"ratio", anisotropy.ratio}, {"direction_deg", anisotropy.direction_deg}};
 }
 
 }  // namespace glint

@@ -15,5 +15,7 @@ std::span<const ManifestField<RefineSummary>> SampleMetrics();
 
 // null: one lobe.
 Json JsonOf(const SpecularLobes& lobes);
+// `ratio` and `direction_deg`; null where isotropic.
+Json JsonOf(const Anisotropy& anisotropy);
 
 }  // namespace glint

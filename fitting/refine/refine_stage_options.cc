@@ -27,6 +27,10 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
            "look for a second, narrow specular lobe of the whole sample (varnish, polish); it is "
            "accepted only if it predicts held-out photographs clearly better, which requires at "
            "least five photographs");
+  set->Add("anisotropy", &refine->anisotropy,
+           "look for specular lobes of the whole sample that are wider in one direction (wood, "
+           "cloth, brushed metal); they are accepted only if they predict held-out photographs "
+           "clearly better, which requires at least five photographs");
   set->Add("lobe-tails", &refine->lobe_tails,
            "look for specular lobes of the whole sample whose tails are shorter than GGX's "
            "(plastics, print, varnish); they are accepted only if they predict held-out "

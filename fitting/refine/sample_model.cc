@@ -503,7 +503,7 @@ void SampleModel::Estimate(const SamplePart* other, const SampleSolver& solver, 
   FitNormalsToo(&sampling);
   if (all_views_.size() < constants::kLeastValidatedViews) return;
   const Sampling blocks = SampleBlocks(constants::kSampledTexels, solver, threads);
-  ChooseTails(pristine, other, blocks, &sampling);
+  ChooseShape(pristine, other, blocks, &sampling);
   FitAsChosen(&sampling);
   MeasureFacets(blocks);
 }

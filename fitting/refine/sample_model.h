@@ -162,14 +162,22 @@ class SampleModel {
   // From factors of these powers on; returns those that predict best, and takes their mean.
   SpreadPowers ChooseSpreads(const Sampling& sampling, const SpreadPowers& from);
   std::vector<SpecularLobes> LobesToTry(const Sampling& sampling) const;
-  void SetLobes(SpecularLobes lobes);  // with the tails as they are
-  // With one exponent of tails, from the spreads that others had; returns those of one lobe.
+  void SetLobes(SpecularLobes lobes);  // with their shape as it is
+  // With one shape of lobes, from the spreads that others had; returns those of one lobe.
   SpreadPowers ChooseLobesAndSpreads(const Sampling& sampling, const SpreadPowers& from);
-  // What is chosen by cross-validation over `blocks` with one exponent of tails.
+  // What is chosen by cross-validation over `blocks` with one shape of lobes.
   SpreadPowers Choose(const SamplePart* other, const Sampling& sampling, const Sampling& blocks,
                       const SpreadPowers& from);
-  // The same with the exponent chosen too; `pristine`: before anything was fitted.
-  void ChooseTails(const SampleModel& pristine, const SamplePart* other, const Sampling& blocks,
+  // Whether photographs are enough to tell one shape or number of lobes from another.
+  bool TellsLobesApart() const;
+  Anisotropy AnisotropyToTry(const Sampling& sampling) const;
+  // Becomes the estimate with lobes of that shape where it `asks` for them.
+  using Asks = std::function<bool(const HeldOutErrors& with, const HeldOutErrors& without)>;
+  void TryShape(const SpecularLobes& shape, const Asks& asks, const SampleModel& pristine,
+                const SamplePart* other, const SpreadPowers& powers, const Sampling& blocks,
+                Sampling* sampling);
+  // What Choose() does with the lobes' shape chosen too; `pristine`: before anything was fitted.
+  void ChooseShape(const SampleModel& pristine, const SamplePart* other, const Sampling& blocks,
                    Sampling* sampling);
 
   // What is known of a texel by itself; what its substance and a level surface say; both.

@@ -160,10 +160,7 @@ SpreadPowers SampleModel::ChooseSpreads(const Sampling& sampling, const SpreadPo
 }
 
 std::vector<SpecularLobes> SampleModel::LobesToTry(const Sampling& sampling) const {
-  if (!options_.second_lobe || lobes_.two() ||
-      all_views_.size() < constants::kLeastViewsForOtherLobes) {
-    return {};
-  }
+  if (!options_.second_lobe || lobes_.two() || !TellsLobesApart()) return {};
   SampleModel model(*this);
   return SearchLobes(kDielectric.f0 * means_.LightPower(), [&](const SpecularLobes& lobes) {
     model.SetLobes(lobes);
@@ -173,6 +170,7 @@ std::vector<SpecularLobes> SampleModel::LobesToTry(const Sampling& sampling) con
 
 void SampleModel::SetLobes(SpecularLobes lobes) {
   lobes.tail_exponent = lobes_.tail_exponent;
+  lobes.anisotropy = lobes_.anisotropy;
   lobes_ = lobes;
 }
 
@@ -203,22 +201,45 @@ SpreadPowers SampleModel::Choose(const SamplePart* other, const Sampling& sampli
   return ChooseLobesAndSpreads(blocks, from);
 }
 
-// Each exponent from the beginning and with all that it asks for: lobes with shorter tails are
-// rougher, what their tails leave over is another lobe's, and an estimate stays in the valley that
-// it is in.
-void SampleModel::ChooseTails(const SampleModel& pristine, const SamplePart* other,
+bool SampleModel::TellsLobesApart() const {
+  return all_views_.size() >= constants::kLeastViewsForOtherLobes;
+}
+
+Anisotropy SampleModel::AnisotropyToTry(const Sampling& sampling) const {
+  SampleModel model(*this);
+  model.SetLobes({});
+  return SearchAnisotropy([&](const Anisotropy& anisotropy) {
+    model.lobes_.anisotropy = anisotropy;
+    return model.CrossValidate(sampling);
+  });
+}
+
+// From the beginning and with all that it asks for: lobes of another shape are rougher or smoother,
+// what their tails leave over is another lobe's, and an estimate stays in the valley that it is in.
+void SampleModel::TryShape(const SpecularLobes& shape, const Asks& asks,
+                           const SampleModel& pristine, const SamplePart* other,
+                           const SpreadPowers& powers, const Sampling& blocks, Sampling* sampling) {
+  SampleModel model(pristine);
+  model.lobes_ = shape;
+  Sampling own = model.SamplingOf(sampling->texels, *sampling->solver, sampling->threads);
+  model.FitNormalsToo(&own);
+  model.Choose(other, own, blocks, powers);
+  if (!asks(model.CrossValidate(blocks), CrossValidate(blocks))) return;
+  *this = model;
+  *sampling = std::move(own);
+}
+
+void SampleModel::ChooseShape(const SampleModel& pristine, const SamplePart* other,
                               const Sampling& blocks, Sampling* sampling) {
   const SpreadPowers powers = Choose(other, *sampling, blocks, {});
-  if (options_.lobe_tails && all_views_.size() >= constants::kLeastViewsForOtherLobes) {
-    SampleModel model(pristine);
-    model.lobes_.tail_exponent = constants::kShortTail;
-    Sampling own = model.SamplingOf(sampling->texels, *sampling->solver, sampling->threads);
-    model.FitNormalsToo(&own);
-    model.Choose(other, own, blocks, powers);
-    if (AskForShortTails(model.CrossValidate(blocks), CrossValidate(blocks))) {
-      *this = model;
-      *sampling = std::move(own);
-    }
+  SpecularLobes shape;
+  if (TellsLobesApart() && options_.anisotropy) shape.anisotropy = AnisotropyToTry(blocks);
+  if (shape.anisotropy.any()) {
+    TryShape(shape, AskForAnisotropy, pristine, other, powers, blocks, sampling);
+  }
+  if (TellsLobesApart() && options_.lobe_tails) {
+    shape = {.tail_exponent = constants::kShortTail, .anisotropy = lobes_.anisotropy};
+    TryShape(shape, AskForShortTails, pristine, other, powers, blocks, sampling);
   }
   sampling->solver->reflect(lobes_);
   sampling->solver->deviate(deviations_);

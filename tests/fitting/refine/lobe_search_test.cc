@@ -1,10 +1,11 @@
-// Whether a sample has a second specular lobe, by how well photographs held out are predicted.
+// What specular lobes a sample has, by how well photographs held out are predicted.
 #include "fitting/refine/lobe_search.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "fitting/refine/refine.h"
@@ -119,6 +120,44 @@ TEST(Refine, ASampleWhoseLobeFallsOffFasterThanGgxHasShorterTails) {
   const RefineResult as_ggx = Refined(truth, {});
   EXPECT_EQ(as_ggx.summary.lobes.tail_exponent, 2);
   EXPECT_LT(found.summary.residual_sigma, as_ggx.summary.residual_sigma);
+}
+
+TEST(AnisotropySearch, WalksToTheDirectionAndRatioThatPredictBest) {
+  const double ratio = 2.2, direction_rad = 100 * std::numbers::pi / 180;
+  const Anisotropy found = SearchAnisotropy([&](const Anisotropy& anisotropy) {
+    // Opposite directions are the same.
+    const double here_rad = anisotropy.direction_deg * std::numbers::pi / 180;
+    const double log_here = std::log(anisotropy.ratio), log_there = std::log(ratio);
+    return Errors(
+        1 +
+        std::hypot(log_here * std::cos(2 * here_rad) - log_there * std::cos(2 * direction_rad),
+                   log_here * std::sin(2 * here_rad) - log_there * std::sin(2 * direction_rad)));
+  });
+  EXPECT_NEAR(std::log(found.ratio), std::log(ratio), 0.15);
+  EXPECT_NEAR(found.direction_deg, 100, 6);
+}
+
+TEST(AnisotropySearch, RoundLobesStayRoundAfterFourTrials) {
+  int tried = 0;
+  const Anisotropy found = SearchAnisotropy([&](const Anisotropy& anisotropy) {
+    ++tried;
+    return Errors(anisotropy.any() ? 1.01 : 1);
+  });
+  EXPECT_FALSE(found.any());
+  EXPECT_EQ(tried, 5);
+}
+
+TEST(Refine, ABrushedSampleHasAnisotropicLobes) {
+  const SpecularLobes truth = {.anisotropy = {2.25, 30}};
+  const RefineResult found = Refined(truth, {});
+  EXPECT_NEAR(std::log(found.summary.lobes.anisotropy.ratio), std::log(2.25), 0.3);
+  EXPECT_NEAR(found.summary.lobes.anisotropy.direction_deg, 30, 10);
+  EXPECT_FALSE(found.summary.lobes.two());
+  RefineOptions isotropic;
+  isotropic.anisotropy = false;
+  const RefineResult as_round = Refined(truth, isotropic);
+  EXPECT_FALSE(as_round.summary.lobes.anisotropy.any());
+  EXPECT_LT(found.summary.residual_sigma, 0.8 * as_round.summary.residual_sigma);
 }
 
 }  // namespace
