@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/files/json.h"
 #include "base/reflectance/brdf.h"
 
@@ -33,9 +35,26 @@ def _fresnel(tree, schlick, y):
     return fresnel
 
 
+def _glossy_node(tree, y):
+    """Before Blender 4 there were two, and one of them had no anisotropy."""
+    kinds = ["ShaderNodeBsdfGlossy", "ShaderNodeBsdfAnisotropic"]
+    if ANISOTROPY:
+        kinds.reverse()
+    node = _node(tree, next(kind for kind in kinds if hasattr(bpy.types, kind)), 0, y)
+    if ANISOTROPY:
+        node.inputs["Anisotropy"].default_value = ANISOTROPY
+        node.inputs["Rotation"].default_value = ANISOTROPY_TURN
+        # Without a tangent of the UV map Blender takes one around the object's centre.
+        tangent = _node(tree, "ShaderNodeTangent", -200, y - 150)
+        tangent.direction_type = "UV_MAP"
+        tangent.uv_map = "UVMap"
+        tree.links.new(tangent.outputs["Tangent"], node.inputs["Tangent"])
+    return node
+
+
 def _glossy(tree, fresnel, roughness, bend, scale, y):
     """A GGX lobe of the roughness map times scale, at most 1."""
-    glossy = _node(tree, "ShaderNodeBsdfGlossy", 0, y)
+    glossy = _glossy_node(tree, y)
     glossy.distribution = "GGX"
     tree.links.new(fresnel.outputs["Color"], glossy.inputs["Color"])
     if scale != 1:
@@ -144,6 +163,13 @@ std::string LobeScales(const SpecularLobes& lobes) {
   return fmt::format("({:.6g}, {:.6g})", mix.scale[0], mix.scale[1]);
 }
 
+std::string Digits(double x) { return fmt::format("{:.6g}", x); }
+
+// α is α/(1 + anisotropy) along the tangent and α·(1 + anisotropy) across.
+std::string BlenderAnisotropy(const SpecularLobes& lobes) {
+  return Digits(1 / std::sqrt(lobes.anisotropy.ratio) - 1);
+}
+
 }  // namespace
 
 std::string BlenderScriptOf(const ExportedMaterial& material,
@@ -169,6 +195,7 @@ HEIGHT_LOW_M, HEIGHT_RANGE_M = {9}, {10}
 DIFFUSE_WHOLE = {11}  # False: the diffuse lobe has weight 1 - F0
 LOBE_SCALES, NARROW_SHARE = {12}, {13}  # of roughness, of each specular lobe
 COAT_F0 = {14}  # of a narrow lobe that is a coat's; 0: it has the specular map's
+ANISOTROPY, ANISOTROPY_TURN = {15}, {16}  # below 0: lobes are wider along the turned x axis; 0: round
 USE_DISPLACEMENT = False  # True: moves the surface too; subdivide the plane first
 )",
              material.name, Quoted(material.name), material.width_mm / 1000,
@@ -176,7 +203,8 @@ USE_DISPLACEMENT = False  # True: moves the surface too; subdivide the plane fir
              Quoted(file_of("roughness")), Quoted(file_of("normal_gl")), Quoted(file_of("height")),
              low_mm / 1000, (high_mm - low_mm) / 1000,
              material.convention.diffuse_weight == DiffuseWeight::kOne ? "True" : "False",
-             LobeScales(lobes), lobes.narrow_share, lobes.coat_f0) +
+             LobeScales(lobes), lobes.narrow_share, lobes.coat_f0, BlenderAnisotropy(lobes),
+             Digits(lobes.anisotropy.direction_deg / 360)) +
          kBody;
 }
 

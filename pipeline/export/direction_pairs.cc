@@ -1,6 +1,7 @@
 #include "pipeline/export/direction_pairs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -78,21 +79,41 @@ DirectionPair MakePair(const Direction& light, const Direction& camera) {
   return pair;
 }
 
-double SmithSpecular(const DirectionPair& pair, double roughness) {
-  const double square = std::pow(std::max(roughness, 0.03), 4);  // α²
-  const double h = pair.geometry.half[2], l = pair.light[2], v = pair.camera[2];
-  const double denominator = h * h * (square - 1) + 1;
-  const double distribution = square / (std::numbers::pi * denominator * denominator);
+double SmithSpecular(const DirectionPair& pair, const LobeWidths& widths) {
+  const double direction_rad = widths.direction_deg * (std::numbers::pi / 180);
+  const double cosine = std::cos(direction_rad), sine = std::sin(direction_rad);
+  // A direction in the lobe's axes, the first two times α.
+  const auto stretched = [&](const double* d) {
+    return std::array<double, 3>{widths.along * (cosine * d[0] + sine * d[1]),
+                                 widths.across * (cosine * d[1] - sine * d[0]), d[2]};
+  };
+  const auto length = [](const std::array<double, 3>& d) { return std::hypot(d[0], d[1], d[2]); };
+  const double* h = pair.geometry.half;
+  const double along = (cosine * h[0] + sine * h[1]) / widths.along;
+  const double across = (cosine * h[1] - sine * h[0]) / widths.across;
+  const double denominator = along * along + across * across + h[2] * h[2];
+  const double distribution =
+      1 / (std::numbers::pi * widths.along * widths.across * denominator * denominator);
+  const double l = pair.light[2], v = pair.camera[2];
   const double masking =
-      l * std::sqrt(v * v * (1 - square) + square) + v * std::sqrt(l * l * (1 - square) + square);
+      l * length(stretched(pair.camera.data())) + v * length(stretched(pair.light.data()));
   return distribution * 0.5 / std::max(masking, 1e-9);
+}
+
+double SmithSpecular(const DirectionPair& pair, double roughness, const Anisotropy& anisotropy) {
+  return SmithSpecular(pair, WidthsOf(roughness, anisotropy));
+}
+
+LobeWidths WidthsOf(double roughness, const Anisotropy& anisotropy) {
+  const double alpha = std::pow(std::max(roughness, 0.03), 2), root = std::sqrt(anisotropy.ratio);
+  return {std::min(1.0, alpha * root), alpha / root, anisotropy.direction_deg};
 }
 
 double SmithSpecular(const DirectionPair& pair, double roughness, const SpecularLobes& lobes) {
   const LobeMix<double> mix = LobeMixOf<double>(lobes);
   double sum = 0;
   for (int i = 0; i < (mix.two && !mix.coat() ? 2 : 1); ++i) {
-    sum += mix.share[i] * SmithSpecular(pair, LobeRoughness(roughness, mix, i));
+    sum += mix.share[i] * SmithSpecular(pair, LobeRoughness(roughness, mix, i), lobes.anisotropy);
   }
   return sum;
 }
@@ -101,7 +122,7 @@ double SmithCoat(const DirectionPair& pair, double roughness, const SpecularLobe
                  double schlick_weight) {
   const LobeMix<double> mix = LobeMixOf<double>(lobes);
   if (!mix.coat()) return 0;
-  return mix.share[1] * SmithSpecular(pair, LobeRoughness(roughness, mix, 1)) *
+  return mix.share[1] * SmithSpecular(pair, LobeRoughness(roughness, mix, 1), lobes.anisotropy) *
          Fresnel(mix.coat_f0, schlick_weight);
 }
 

@@ -22,7 +22,15 @@ DirectionPair MakePair(const std::array<double, 3>& light, const std::array<doub
 
 // What other programs' GGX lobes have in common: D·G/(4·NoL·NoV) with Smith's height-correlated
 // masking (Heitz, JCGT 2014) of α = roughness², and Schlick's (1 − VoH)⁵.
-double SmithSpecular(const DirectionPair& pair, double roughness);
+double SmithSpecular(const DirectionPair& pair, double roughness,
+                     const Anisotropy& anisotropy = {});
+
+// α of an anisotropic lobe, up to 1, along a direction of the surface and across it.
+struct LobeWidths {
+  double along, across, direction_deg;
+};
+LobeWidths WidthsOf(double roughness, const Anisotropy& anisotropy);
+double SmithSpecular(const DirectionPair& pair, const LobeWidths& widths);
 double SchlickWeight(double cosine);
 // The first of a mix of lobes (base/reflectance/convention.h), each with its own roughness: of
 // those that have the specular map's F0; and what a coat reflects, with its Fresnel term.

@@ -29,7 +29,7 @@
 
 namespace glint {
 
-inline constexpr int kExportVersion = 12;
+inline constexpr int kExportVersion = 13;
 
 struct ExportOptions {
   std::string name = "material";  // of the files; letters, digits, - _ .

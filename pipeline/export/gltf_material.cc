@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <numbers>
+#include <optional>
 #include <vector>
 
 #include "base/colour/srgb.h"
@@ -14,6 +16,7 @@
 #include "base/images/image.h"
 #include "base/parallel/parallel.h"
 #include "base/reflectance/brdf.h"
+#include "pipeline/export/direction_pairs.h"
 #include "pipeline/export/export_maps.h"
 
 namespace glint {
@@ -104,11 +107,25 @@ Image SpecularColor(const ExportedMaterial& material, float largest) {
   return image;
 }
 
-constexpr int kNormalTexture = 2, kClearcoatTexture = 4;
+// The tangent in red and green, strength in blue.
+Image AnisotropyStrength(const ExportedMaterial& material) {
+  const SvbrdfMaps& maps = material.maps;
+  Image image(maps.width, maps.height, kRgbChannels);
+  std::fill(image.channel(0).begin(), image.channel(0).end(), 1.0f);
+  std::fill(image.channel(1).begin(), image.channel(1).end(), 0.5f);
+  for (size_t i = 0; i < maps.texels(); ++i) {
+    image.channel(2)[i] = static_cast<float>(GltfLobesOf(material, i).anisotropy);
+  }
+  return image;
+}
 
-Json MaterialJson(const std::string& name, float largest_f0, bool clearcoat) {
+constexpr int kNormalTexture = 2;
+
+// By the indices of the textures that not every material has.
+Json MaterialJson(const ExportedMaterial& exported, float largest_f0,
+                  std::optional<int> clearcoat_texture, std::optional<int> anisotropy_texture) {
   const double factor = largest_f0 / kGltfF0;
-  Json material = {{"name", name},
+  Json material = {{"name", exported.name},
                    {"doubleSided", true},
                    {"pbrMetallicRoughness",
                     {{"baseColorTexture", {{"index", 0}}},
@@ -119,13 +136,20 @@ Json MaterialJson(const std::string& name, float largest_f0, bool clearcoat) {
                     {{"KHR_materials_specular",
                       {{"specularColorFactor", {factor, factor, factor}},
                        {"specularColorTexture", {{"index", 3}}}}}}}};
-  if (clearcoat) {
+  if (clearcoat_texture) {
     material["extensions"]["KHR_materials_clearcoat"] = {
         {"clearcoatFactor", 1.0},
-        {"clearcoatTexture", {{"index", kClearcoatTexture}}},
+        {"clearcoatTexture", {{"index", *clearcoat_texture}}},
         {"clearcoatRoughnessFactor", 1.0},
-        {"clearcoatRoughnessTexture", {{"index", kClearcoatTexture}}},
+        {"clearcoatRoughnessTexture", {{"index", *clearcoat_texture}}},
         {"clearcoatNormalTexture", {{"index", kNormalTexture}}}};
+  }
+  if (anisotropy_texture) {
+    const double direction_deg = exported.convention.lobes.anisotropy.direction_deg;
+    material["extensions"]["KHR_materials_anisotropy"] = {
+        {"anisotropyStrength", 1.0},
+        {"anisotropyRotation", direction_deg * (std::numbers::pi / 180)},
+        {"anisotropyTexture", {{"index", *anisotropy_texture}}}};
   }
   return material;
 }
@@ -185,10 +209,15 @@ GltfLobes GltfLobesOf(const ExportedMaterial& material, size_t texel) {
   }
   lobes.roughness = maps.plane(kRoughness)[texel];
   const SpecularLobes& ours = material.convention.lobes;
-  if (!ours.two()) return lobes;
   const LobeMix<double> mix = LobeMixOf<double>(ours);
   lobes.clearcoat_roughness = LobeRoughness(lobes.roughness, mix, 1);
   lobes.roughness = LobeRoughness(lobes.roughness, mix, 0);
+  if (ours.anisotropy.any()) {
+    const LobeWidths widths = WidthsOf(lobes.roughness, ours.anisotropy);
+    lobes.roughness = std::sqrt(widths.across);
+    lobes.anisotropy = std::sqrt((widths.along - widths.across) / (1 - widths.across));
+  }
+  if (!ours.two()) return lobes;
   if (mix.coat()) {
     lobes.clearcoat = std::min(1.0, mix.share[1] * mix.coat_f0 / kGltfF0);
     for (double& f0 : lobes.f0) f0 *= mix.share[0];
@@ -203,7 +232,6 @@ GltfLobes GltfLobesOf(const ExportedMaterial& material, size_t texel) {
 
 std::string GlbOf(const ExportedMaterial& material, int threads) {
   const SvbrdfMaps& maps = material.maps;
-  const bool clearcoat = material.convention.lobes.two();
   float largest = static_cast<float>(kGltfF0);
   for (int c = 0; c < 3; ++c) {
     for (const float f0 : maps.plane(kSpecularR + c)) largest = std::max(largest, f0);
@@ -221,7 +249,15 @@ std::string GlbOf(const ExportedMaterial& material, int threads) {
       {"occlusion_roughness_metallic", [&] { return OcclusionRoughnessMetallic(material); }, {}},
       {"normal", [&] { return Normal(maps); }, {}},
       {"specularcolor", [&] { return SpecularColor(material, largest); }, {}}};
-  if (clearcoat) of_material.push_back({"clearcoat", [&] { return Clearcoat(material); }, {}});
+  const auto add = [&](bool has, const char* name, const std::function<Image()>& image) {
+    if (!has) return std::optional<int>();
+    of_material.push_back({name, image, {}});
+    return std::optional(static_cast<int>(of_material.size()) - 1);
+  };
+  const SpecularLobes& lobes = material.convention.lobes;
+  const auto clearcoat = add(lobes.two(), "clearcoat", [&] { return Clearcoat(material); });
+  const auto anisotropy =
+      add(lobes.anisotropy.any(), "anisotropy", [&] { return AnisotropyStrength(material); });
   ForEachPiece(static_cast<int>(of_material.size()), threads, [&](int i) {
     Texture& texture = of_material[static_cast<size_t>(i)];
     texture.png = EncodePng(texture.image());
@@ -236,6 +272,7 @@ std::string GlbOf(const ExportedMaterial& material, int threads) {
   constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kRepeat = 10497;
   Json extensions = {"KHR_materials_specular"};
   if (clearcoat) extensions.push_back("KHR_materials_clearcoat");
+  if (anisotropy) extensions.push_back("KHR_materials_anisotropy");
   const Json json = {
       {"asset", {{"version", "2.0"}, {"generator", "Glint"}}},
       {"extensionsUsed", extensions},
@@ -248,7 +285,7 @@ std::string GlbOf(const ExportedMaterial& material, int threads) {
           {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}, {"TANGENT", 2}, {"TEXCOORD_0", 3}}},
             {"indices", 4},
             {"material", 0}}}}}}},
-      {"materials", {MaterialJson(material.name, largest, clearcoat)}},
+      {"materials", {MaterialJson(material, largest, clearcoat, anisotropy)}},
       {"samplers",
        {{{"magFilter", kLinear},
          {"minFilter", kLinearMipmapLinear},

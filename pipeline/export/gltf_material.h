@@ -27,7 +27,8 @@ std::string GlbOf(const ExportedMaterial& material, int threads);
 // The texel's specular lobes there.
 struct GltfLobes {
   std::array<double, 3> f0{};
-  double roughness = 0;
+  double roughness = 0;   // α = its square, across the direction in which the lobe is wider
+  double anisotropy = 0;  // strength s: along that direction α + (1 − α)s²
   double clearcoat = 0, clearcoat_roughness = 0;  // strength 0: none
 };
 GltfLobes GltfLobesOf(const ExportedMaterial& material, size_t texel);

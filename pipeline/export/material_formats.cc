@@ -49,10 +49,9 @@ Rgb Added(const ExportedMaterial& material, size_t texel, const DirectionPair& p
   return brdf;
 }
 
-// Diffuse under a Fresnel layer: base·(1 − F)/π + specular, F of each channel or the largest.
-Rgb Layered(const Rgb& base, const Rgb& f0, double roughness, const DirectionPair& pair,
-            bool largest) {
-  const double lobe = SmithSpecular(pair, roughness), weight = SchlickWeight(pair.v_dot_h);
+// Diffuse under a Fresnel layer: base·(1 − F)/π + lobe·F, F of each channel or the largest.
+Rgb Layered(const Rgb& base, const Rgb& f0, double lobe, const DirectionPair& pair, bool largest) {
+  const double weight = SchlickWeight(pair.v_dot_h);
   Rgb fresnel, brdf;
   for (size_t c = 0; c < 3; ++c) fresnel[c] = f0[c] + (1 - f0[c]) * weight;
   const double most = *std::max_element(fresnel.begin(), fresnel.end());
@@ -64,7 +63,11 @@ Rgb Layered(const Rgb& base, const Rgb& f0, double roughness, const DirectionPai
 
 Rgb GltfBrdf(const ExportedMaterial& material, size_t texel, const DirectionPair& pair) {
   const GltfLobes lobes = GltfLobesOf(material, texel);
-  Rgb brdf = Layered(GltfBaseColor(material, texel), lobes.f0, lobes.roughness, pair, true);
+  const double across = lobes.roughness * lobes.roughness;
+  const LobeWidths widths = {across + (1 - across) * lobes.anisotropy * lobes.anisotropy, across,
+                             material.convention.lobes.anisotropy.direction_deg};
+  Rgb brdf =
+      Layered(GltfBaseColor(material, texel), lobes.f0, SmithSpecular(pair, widths), pair, true);
   if (lobes.clearcoat == 0) return brdf;
   const double coat = lobes.clearcoat * (kGltfF0 + (1 - kGltfF0) * SchlickWeight(pair.camera[2]));
   const double lobe = SmithSpecular(pair, lobes.clearcoat_roughness);
@@ -74,7 +77,7 @@ Rgb GltfBrdf(const ExportedMaterial& material, size_t texel, const DirectionPair
 
 Rgb UsdBrdf(const ExportedMaterial& material, size_t texel, const DirectionPair& pair) {
   return Layered(LayeredDiffuse(material, texel), Specular(material, texel),
-                 material.maps.plane(kRoughness)[texel], pair, false);
+                 SmithSpecular(pair, material.maps.plane(kRoughness)[texel]), pair, false);
 }
 
 // A file that only refers to maps takes no time.

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "base/reflectance/brdf.h"
 
 namespace glint {
@@ -26,9 +29,26 @@ std::string Picture(const std::string& name, const std::string& type, const std:
   return Node("image", name, type, Input("file", "filename", Value(file) + space));
 }
 
+// The node "along": the direction in which lobes are wider.
+std::string TurnedTangent(double direction_deg) {
+  const double direction_rad = direction_deg * (std::numbers::pi / 180);
+  const auto times = [](const std::string& of, double factor) {
+    return Node("multiply", of + "_part", "vector3",
+                Input("in1", "vector3", From(of)) +
+                    Input("in2", "float", Value(fmt::format("{:.6g}", factor))));
+  };
+  return Node("tangent", "tangent", "vector3", Input("space", "string", Value("world"))) +
+         Node("bitangent", "bitangent", "vector3", Input("space", "string", Value("world"))) +
+         times("tangent", std::cos(direction_rad)) + times("bitangent", std::sin(direction_rad)) +
+         Node("add", "along", "vector3",
+              Input("in1", "vector3", From("tangent_part")) +
+                  Input("in2", "vector3", From("bitangent_part")));
+}
+
 // The specular lobe `name` of the roughness map times `scale`, at most 1, with the F0 `f0`: a
 // picture or a value; α is the roughness's square.
-std::string Glossy(const std::string& name, double scale, const std::string& f0) {
+std::string Glossy(const std::string& name, double scale, const std::string& f0,
+                   const Anisotropy& anisotropy) {
   std::string nodes;
   std::string roughness = "roughness", of = name == "glossy" ? "" : "_" + name;
   if (scale != 1) {
@@ -41,14 +61,24 @@ std::string Glossy(const std::string& name, double scale, const std::string& f0)
   }
   nodes += Node("multiply", "alpha" + of, "float",
                 Input("in1", "float", From(roughness)) + Input("in2", "float", From(roughness)));
+  const std::string both = "alpha_both" + of;
   nodes +=
-      Node("combine2", "alpha_both" + of, "vector2",
+      Node("combine2", anisotropy.any() ? "alpha_mean" + of : both, "vector2",
            Input("in1", "float", From("alpha" + of)) + Input("in2", "float", From("alpha" + of)));
+  std::string tangent;
+  if (anisotropy.any()) {  // along the tangent and across
+    const double root = std::sqrt(anisotropy.ratio);
+    nodes +=
+        Node("multiply", both, "vector2",
+             Input("in1", "vector2", From("alpha_mean" + of)) +
+                 Input("in2", "vector2", Value(fmt::format("{:.6g}, {:.6g}", root, 1 / root))));
+    tangent = Input("tangent", "vector3", From("along"));
+  }
   return nodes + Node("generalized_schlick_bsdf", name, "BSDF",
                       Input("color0", "color3", f0) + Input("color90", "color3", Value("1, 1, 1")) +
                           Input("exponent", "float", Value("5")) +
-                          Input("roughness", "vector2", From("alpha_both" + of)) +
-                          Input("normal", "vector3", From("bent")) +
+                          Input("roughness", "vector2", From(both)) +
+                          Input("normal", "vector3", From("bent")) + tangent +
                           Input("scatter_mode", "string", Value("R")));
 }
 
@@ -73,16 +103,18 @@ std::string MaterialXOf(const ExportedMaterial& material,
            Input("color", "color3", From(whole ? "diffuse" : "albedo")) +
                Input("roughness", "float", Value("0")) + Input("normal", "vector3", From("bent")));
   const SpecularLobes& lobes = material.convention.lobes;
+  if (lobes.anisotropy.any()) graph += TurnedTangent(lobes.anisotropy.direction_deg);
   if (lobes.two()) {
     const LobeMix<double> mix = LobeMixOf<double>(lobes);
     const std::string f0 = fmt::format("{0:.6g}, {0:.6g}, {0:.6g}", mix.coat_f0);
-    graph += Glossy("wide", mix.scale[0], From("specular"));
-    graph += Glossy("narrow", mix.scale[1], mix.coat() ? Value(f0) : From("specular"));
+    graph += Glossy("wide", mix.scale[0], From("specular"), lobes.anisotropy);
+    graph +=
+        Glossy("narrow", mix.scale[1], mix.coat() ? Value(f0) : From("specular"), lobes.anisotropy);
     graph += Node("mix", "glossy", "BSDF",
                   Input("fg", "BSDF", From("narrow")) + Input("bg", "BSDF", From("wide")) +
                       Input("mix", "float", Value(fmt::format("{}", lobes.narrow_share))));
   } else {
-    graph += Glossy("glossy", 1, From("specular"));
+    graph += Glossy("glossy", 1, From("specular"), lobes.anisotropy);
   }
   graph += Node("add", "both", "BSDF",
                 Input("in1", "BSDF", From("matte")) + Input("in2", "BSDF", From("glossy")));

@@ -18,6 +18,13 @@ const kPage = `<script type="importmap">{"imports": {"three": "/three/build/thre
   import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
   Object.assign(window, { THREE, GLTFLoader });</script>`;
 
+// How much wider the lobes are along a direction of the sample than across: their ratio of alpha.
+function anisotropyOf(convention) {
+  const found = /anisotropy=([\d.e-]+)@([\d.e-]+)/.exec(convention);
+  const azimuth = (found ? Number(found[2]) : 0) * Math.PI / 180;
+  return { ratio: found ? Number(found[1]) : 1, along: [Math.cos(azimuth), Math.sin(azimuth), 0] };
+}
+
 // The sample's specular lobes by its convention's text: share, factor on roughness, F0 (null: the map's).
 function lobesOf(convention) {
   const tail = Number(/tail=(\d+)/.exec(convention)?.[1] ?? 2);
@@ -29,7 +36,7 @@ function lobesOf(convention) {
 }
 
 // In the page. Returns the mean log-L1.
-async function compare({ glb, maps, size, whole, lobes, unchanged }) {
+async function compare({ glb, maps, size, whole, lobes, anisotropy, unchanged }) {
   const { THREE, GLTFLoader } = window;
   const [width, height] = size, distance = 3 * width;
   const light = [0.8 * width, 0.4 * width, distance];
@@ -79,10 +86,14 @@ async function compare({ glb, maps, size, whole, lobes, unchanged }) {
       const to = [light[0] - x, light[1] - y, light[2]], squared = to[0] ** 2 + to[1] ** 2 + to[2] ** 2;
       const l = unit(to), v = [0, 0, 1], h = unit([l[0], l[1], l[2] + 1]);
       const nl = dot(n, l), nv = dot(n, v), nh = dot(n, h), vh = dot(v, h);
+      const ng = n[0] * anisotropy.along[0] + n[1] * anisotropy.along[1];
+      const tangent = unit([0, 1, 2].map((c) => anisotropy.along[c] - ng * n[c]));
+      const along = (h[0] * tangent[0] + h[1] * tangent[1] + h[2] * tangent[2]) ** 2;
+      const stretched = along / anisotropy.ratio + (1 - nh * nh - along) * anisotropy.ratio;
       const mirrored = lobes.map(({ share, scale, tail }) => {
         const alpha = Math.min(Math.max(roughness.data[i] / 255, 0.03) * scale, 1) ** 2;
         const lobe = (tail - 1) ** tail * alpha ** (2 * tail - 2)
-          / (Math.PI * nh ** 4 * ((tail - 1) * alpha * alpha + 1 / (nh * nh) - 1) ** tail);
+          / (Math.PI * nh ** 4 * ((tail - 1) * alpha * alpha + stretched / (nh * nh)) ** tail);
         const masking = (nl * (1 - alpha / 2) + alpha / 2) * (nv * (1 - alpha / 2) + alpha / 2);
         return share * lobe / (4 * masking);
       });
@@ -124,7 +135,7 @@ for (const folder of process.argv.slice(2)) {
   const error = (unchanged) => page.evaluate(compare, {
     glb: `/export/${glb}`, maps: ['diffuse', 'specular', 'roughness', 'normal_gl'].map(file),
     size: data.size_mm.map((mm) => mm / 1000), whole: data.convention.includes('diffuse=one '),
-    lobes: lobesOf(data.convention), unchanged,
+    lobes: lobesOf(data.convention), anisotropy: anisotropyOf(data.convention), unchanged,
   });
   const [byFormulas, shown] = [await error(false), await error(true)];
   const fine = byFormulas <= stated + kQuantisation;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "base/files/json.h"
 #include "base/photos/photo.h"
@@ -157,6 +158,27 @@ TEST_F(GltfTest, ACoatIsTheClearCoatAndTheMapTheBases) {
                         LinearFromSrgb(Texel(specular["specularColorTexture"], c, texel));
       EXPECT_NEAR(f0, 0.4 * coated.maps.plane(kSpecularR + c)[texel], 0.004);
     }
+  }
+}
+
+TEST_F(GltfTest, AnisotropicLobesHaveTheirWidthsAlongAndAcross) {
+  ExportedMaterial wood = test::MaterialOf(Maps());
+  wood.convention.lobes.anisotropy = {2.25, 90};
+  Read(GlbOf(wood, 1));
+  EXPECT_EQ(json_["extensionsUsed"].size(), 2u);
+  const Json& material = json_["materials"][0];
+  const Json& anisotropy = material["extensions"]["KHR_materials_anisotropy"];
+  EXPECT_NEAR(anisotropy["anisotropyRotation"], std::numbers::pi / 2, 1e-6);
+  for (const size_t texel : {size_t{3}, size_t{7}}) {
+    const Json& texture = anisotropy["anisotropyTexture"];
+    EXPECT_NEAR(Texel(texture, 0, texel), 1, 0.003);  // the tangent itself, which is then turned
+    EXPECT_NEAR(Texel(texture, 1, texel), 0.5, 0.003);
+    const double roughness =
+        Texel(material["pbrMetallicRoughness"]["metallicRoughnessTexture"], 1, texel);
+    const double across = roughness * roughness, strength = Texel(texture, 2, texel);
+    const double along = across + (1 - across) * strength * strength;
+    EXPECT_NEAR(along / across, 2.25, 0.06);
+    EXPECT_NEAR(std::sqrt(along * across), 0.35 * 0.35, 0.003);
   }
 }
 

@@ -153,6 +153,49 @@ TEST(MaterialFormatsTest, MaterialXAndBlenderMixTwoLobes) {
   EXPECT_EQ(run.code, 0) << run.err;
 }
 
+ExportedMaterial Anisotropic(double narrow_share = 0) {
+  ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));
+  material.convention.lobes.anisotropy = {2.25, 30};
+  material.convention.lobes.narrow_share = narrow_share;
+  material.convention.lobes.narrow_ratio = 0.4;
+  material.metal = ToMetalRoughness(material.maps, material.convention, {}, 1);
+  return material;
+}
+
+// USD's preview surface has round lobes alone, and its figure says what that costs.
+TEST(MaterialFormatsTest, AnisotropyIsKeptWhereTheFormatHasIt) {
+  const ExportedMaterial material = Anisotropic();
+  for (const MaterialFormat& format : MaterialFormats()) {
+    const Shading shading = [&](size_t texel, const DirectionPair& pair) {
+      return format.brdf(material, texel, pair);
+    };
+    const double error = ShadingErrors(material.maps, material.convention, {shading}, 1)[0];
+    if (format.name != "usd") {
+      EXPECT_LT(error, 0.06) << format.name;
+    } else {
+      EXPECT_GT(error, 0.06);
+    }
+  }
+}
+
+TEST(MaterialFormatsTest, MaterialXAndBlenderTurnTheTangent) {
+  for (const double narrow_share : {0.0, 0.5}) {
+    const std::string materialx =
+        Format("materialx").write(Anisotropic(narrow_share), FileOfMap, 1);
+    EXPECT_THAT(materialx, HasSubstr("value=\"1.5, 0.666667\""));
+    EXPECT_THAT(materialx, HasSubstr("name=\"tangent\" type=\"vector3\" nodename=\"along\""));
+    EXPECT_THAT(materialx, HasSubstr("value=\"0.866025\""));  // the tangent's part: cos 30°
+    const test::TemporaryFolder folder;
+    const std::filesystem::path script = folder / "material.py";
+    test::WriteAll(script, Format("blender").write(Anisotropic(narrow_share), FileOfMap, 1));
+    EXPECT_THAT(test::ReadAll(script),
+                HasSubstr("ANISOTROPY, ANISOTROPY_TURN = -0.333333, 0.0833333"));
+    const test::Outcome run =
+        test::RunProgram({"python3", GLINT_STAND_IN_BPY, script.string(), "material"});
+    EXPECT_EQ(run.code, 0) << run.err;
+  }
+}
+
 // Together and by several threads as each by itself.
 TEST(MaterialFormatsTest, ShadingErrorsAreEachShadingsOwn) {
   const ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));

@@ -56,6 +56,7 @@ bpy = types.ModuleType("bpy")
 bpy.context = Anything()
 bpy.context.space_data = None
 bpy.data = Anything()
+bpy.types = Anything()
 bpy.data.materials.new = lambda name: made
 sys.modules["bpy"] = bpy
 text = open(script).read().replace("USE_DISPLACEMENT = False", "USE_DISPLACEMENT = True")
