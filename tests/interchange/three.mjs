@@ -1,8 +1,9 @@
 // node three.mjs FOLDER…: three.js loads each .glb in headless Chromium and renders its plane from
 // straight above under a point light; compared with Glint's reflectance of the exact maps beside it.
-// three.js departs from glTF's formulas in two places: light scattered between facets brightens the
-// specular lobe, and coloured F0 takes light off the diffuse lobe channel by channel instead of by its
-// largest. What the file says is checked with both undone; what three.js shows is printed beside it.
+// three.js departs from glTF's formulas in three places: light scattered between facets brightens the
+// specular lobe; coloured F0 takes light off the diffuse lobe channel by channel instead of by its
+// largest; and tangents of anisotropic lobes lie in the plane instead of in the texel's own. What the
+// file says is checked with all undone; what three.js shows is printed beside it.
 // Exit code 1 where the file differs by more than the manifest states (and 0.02 for 8-bit maps).
 import fs from 'node:fs';
 import { createRequire } from 'node:module';
@@ -56,11 +57,17 @@ async function compare({ glb, maps, size, whole, lobes, anisotropy, unchanged })
   const plane = (await new GLTFLoader().loadAsync(glb)).scene;
   plane.traverse((node) => {
     if (!node.material || unchanged) return;
-    const chunk = 'lights_physical_pars_fragment';
+    const changed = {
+      lights_physical_pars_fragment: (text) => text.replaceAll('* material.multiScatteringCompensation', '')
+        .replaceAll('diffuseBRDF * ( 1.0 - F )', 'diffuseBRDF * ( 1.0 - max( F.r, max( F.g, F.b ) ) )'),
+      lights_physical_fragment: (text) => text.replace(/material\.anisotropyB = [^;]*;/, `
+        material.anisotropyT = normalize( material.anisotropyT - dot( material.anisotropyT, normal ) * normal );
+        material.anisotropyB = cross( normal, material.anisotropyT );`),
+    };
     node.material.onBeforeCompile = (shader) => {
-      shader.fragmentShader = shader.fragmentShader.replace(`#include <${chunk}>`,
-        THREE.ShaderChunk[chunk].replaceAll('* material.multiScatteringCompensation', '')
-          .replaceAll('diffuseBRDF * ( 1.0 - F )', 'diffuseBRDF * ( 1.0 - max( F.r, max( F.g, F.b ) ) )'));
+      for (const [chunk, change] of Object.entries(changed)) {
+        shader.fragmentShader = shader.fragmentShader.replace(`#include <${chunk}>`, change(THREE.ShaderChunk[chunk]));
+      }
     };
   });
   scene.add(plane);
