@@ -43,7 +43,7 @@ class ReprojectionCost : public ceres::CostFunction {
   }
 
  private:
-  static constexpr int kMostCamera = 12, kPose = 6, kBend = 2;
+  static constexpr int kMostCamera = kMostCameraParameters, kPose = 6, kBend = 2;
   using Jet = ceres::Jet<double, kMostCamera + kPose + kBend>;
 
   static void Fill(const double* values, int count, int first, Jet* jets) {
