@@ -7,16 +7,24 @@
 namespace glint {
 namespace {
 
-TEST(Orientation, ATurnedCameraSeesTheTurnedPicture) {
+// Every parameter differs from every other and from 0.
+Camera CameraWithAllTerms(CameraModel model) {
+  Camera camera{model, 4000, 3000, {}};
+  const size_t focal_lengths = FocalLengthCount(model);
+  for (size_t i = 0; i < CameraParameterNames(model).size(); ++i) {
+    const auto k = static_cast<double>(i);
+    const double term = (i % 2 == 0 ? 4e-3 : -6e-3) * k;
+    camera.parameters.push_back(i < focal_lengths    ? 3100 + 105 * k
+                                : IsLength(model, i) ? (i == focal_lengths ? 2011 : 1489)
+                                                     : term);
+  }
+  return camera;
+}
+
+TEST(Orientation, ATurnedCameraOfEveryModelSeesTheTurnedPicture) {
   testing::Random random(3);
-  const Camera cameras[] = {
-      {CameraModel::kSimpleRadial, 4000, 3000, {3100, 2011, 1489, 0.04}},
-      {CameraModel::kOpenCv, 4000, 3000, {3100, 3205, 2011, 1489, 0.06, -0.09, 4e-3, -6e-3}},
-      {CameraModel::kFullOpenCv,
-       4000,
-       3000,
-       {3100, 3205, 2011, 1489, 0.06, -0.09, 4e-3, -6e-3, 0.01, 0.02, -0.03, 0.004}}};
-  for (const Camera& camera : cameras) {
+  for (const CameraModelInfo& info : kCameraModels) {
+    const Camera camera = CameraWithAllTerms(info.model);
     for (int turns = -1; turns <= 4; ++turns) {
       for (int i = 0; i < 20; ++i) {
         const Eigen::Vector3d p(random.Uniform(-0.6, 0.6), random.Uniform(-0.4, 0.4), 1);
@@ -24,7 +32,7 @@ TEST(Orientation, ATurnedCameraSeesTheTurnedPicture) {
             TurnedImagePoint(ImageFromCamera(camera, p), 4000, 3000, turns);
         const Eigen::Vector2d seen =
             ImageFromCamera(TurnedCamera(camera, turns), TurnedCameraPoint(p, turns));
-        EXPECT_LT((seen - expected).norm(), 1e-9) << turns;
+        EXPECT_LT((seen - expected).norm(), 1e-9) << info.name << " " << turns;
       }
     }
   }
