@@ -140,7 +140,8 @@ struct NamedMaterial {
   bool wood_or_paint = false;
 };
 
-bool IsWoodOrPaint(const std::string& name) {
+// By the names that packs give their materials; families tell it themselves.
+bool IsPackedWoodOrPaint(const std::string& name) {
   static const std::array<const char*, 9> kNames{"wood",    "Wood",          "planks",
                                                  "Planks",  "chipboard",     "impasto",
                                                  "stripes", "peeling_paint", "Paint"};
@@ -202,7 +203,7 @@ NamedMaterial PlainMaterial(const TrainingMaterialOptions& options, const Materi
   if (!packed) return Procedural(seed, options.size);
   const PackedMaterial& material =
       (*pack)[static_cast<size_t>(random->Below(static_cast<int>(pack->size())))];
-  const bool wood_or_paint = IsWoodOrPaint(material.name);
+  const bool wood_or_paint = IsPackedWoodOrPaint(material.name);
   const SvbrdfMaps maps = PackedWindow(material, options.size, random);
   if (random->Uniform() >= options.mixture_share) return {maps, wood_or_paint};
   const SvbrdfMaps other = MakeMaterial(seed, options.size, options.size);

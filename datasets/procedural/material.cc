@@ -78,6 +78,8 @@ std::vector<std::string> MaterialFamilies() {
   return names;
 }
 
+bool IsWoodOrPaint(const std::string& family) { return FindFamily(family).wood_or_paint; }
+
 MaterialRecipe DrawRecipe(uint64_t seed) {
   Rng rng(seed ^ kRecipeStream);
   MaterialRecipe recipe;

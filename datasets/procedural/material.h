@@ -28,6 +28,10 @@ struct MaterialRecipe {
 // Names of the families, in a fixed order.
 std::vector<std::string> MaterialFamilies();
 
+// Whether a family is wood or painted, which people varnish. Throws std::invalid_argument for an
+// unknown family.
+bool IsWoodOrPaint(const std::string& family);
+
 // Family and blend that MakeMaterial(seed, …) draws.
 MaterialRecipe DrawRecipe(uint64_t seed);
 

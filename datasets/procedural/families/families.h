@@ -14,8 +14,9 @@ struct Family {
   RowFunction (*draw)(Rng& rng);
   float slope_low;  // root mean square of the relief's slope (tangent), drawn log-uniformly
   float slope_high;
-  float weight;      // share of draws
-  bool directional;  // keeps its axes in half of the draws; otherwise any angle always
+  float weight;                // share of draws
+  bool directional;            // keeps its axes in half of the draws; otherwise any angle always
+  bool wood_or_paint = false;  // which people varnish
 };
 
 std::span<const Family> AllFamilies();

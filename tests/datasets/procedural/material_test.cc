@@ -14,6 +14,7 @@
 namespace glint {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 // The first thing that is out of range, or nothing.
@@ -186,6 +187,17 @@ TEST(MaterialTest, SeedsCoverAllFamiliesAndTheWholeRangeOfReflectance) {
     rough += maps.plane(kRoughness)[27] > 0.75f ? 1 : 0;
   }
   for (const int count : {dark, light, glossy, rough}) EXPECT_GT(count, 10);
+}
+
+// Training varnishes them more often than others, so another mark changes its materials.
+TEST(MaterialTest, WoodAndPaintAreMarked) {
+  std::vector<std::string> marked;
+  for (const std::string& family : MaterialFamilies()) {
+    if (IsWoodOrPaint(family)) marked.push_back(family);
+  }
+  EXPECT_THAT(marked,
+              ElementsAre("wood", "planks", "stripes", "peeling_paint", "chipboard", "impasto"));
+  EXPECT_THROW(IsWoodOrPaint("granit"), std::invalid_argument);
 }
 
 TEST(MaterialTest, RecipeNamesWhatTheSeedMakes) {
