@@ -99,6 +99,36 @@ GrayImage PictureOf(const BoardFile& file, int dpi) {
   return picture;
 }
 
+// ScaleBoard scales every length: at twice the size, corners and ink lie twice as far from the
+// board's centre.
+void ExpectScalesAsAWhole(const Board& board) {
+  Board twice = board;
+  ScaleBoard(2, &twice);
+  const Eigen::Vector2d& centre = board.board_centre_in_sample_mm;
+  const auto scaled = [&](const Eigen::Vector2d& p) -> Eigen::Vector2d {
+    return centre + 2 * (p - centre);
+  };
+  const std::vector<BoardCorner> corners = BoardCorners(board), moved = BoardCorners(twice);
+  ASSERT_EQ(moved.size(), corners.size());
+  for (size_t i = 0; i < corners.size(); ++i) {
+    EXPECT_EQ(moved[i].id, corners[i].id);
+    EXPECT_LT((moved[i].position_in_sample_mm - scaled(corners[i].position_in_sample_mm)).norm(),
+              1e-9);
+  }
+  const BoardRectangle outline = OutlineInSample(board);
+  const BoardPainter painter(board, 0), painter_of_twice(twice, 0);
+  constexpr int kPoints = 400;  // a side
+  int differ = 0;
+  for (int i = 0; i < kPoints * kPoints; ++i) {
+    const double across = (i % kPoints + 0.5) / kPoints, up = (i / kPoints + 0.5) / kPoints;
+    const Eigen::Vector2d p(std::lerp(outline.left_mm, outline.right_mm, across),
+                            std::lerp(outline.bottom_mm, outline.top_mm, up));
+    const Eigen::Vector2d q = scaled(p);
+    differ += painter.ReflectanceAt(p.x(), p.y()) != painter_of_twice.ReflectanceAt(q.x(), q.y());
+  }
+  EXPECT_LE(differ, kPoints * kPoints / 10000) << "at edges";
+}
+
 // A kind that is added to the list fails here until its description, its sheet and its detector
 // exist and agree.
 TEST(BoardKinds, EachIsPlannedDescribedReadBackAndFound) {
@@ -115,6 +145,7 @@ TEST(BoardKinds, EachIsPlannedDescribedReadBackAndFound) {
     EXPECT_EQ(BoardInWords(read.board), BoardInWords(planned.board));
     EXPECT_EQ(KindOf(kind).InOneLine(read.board), KindOf(kind).InOneLine(planned.board));
     EXPECT_FALSE(PaperSpots(read.board).empty()) << options.kind;
+    ExpectScalesAsAWhole(read.board);
     constexpr int kDpi = 110;
     const BoardDetection found = DetectBoard(PictureOf(read, kDpi), read.board);
     EXPECT_EQ(found.corners.size(), BoardCorners(read.board).size()) << found.problem;
