@@ -1,6 +1,7 @@
 // glint-init: writes a capture.toml.
 #include "base/board/board_kind.h"
 #include "base/programs/program.h"
+#include "calib/moving_light/lights_file.h"
 #include "calib/triage/list_photos.h"
 #include "pipeline/driver/init.h"
 
@@ -37,7 +38,9 @@ void AddOptions(glint::OptionSet* options, glint::InitOptions* o) {
                     "with --single: distance from the lens to the sample");
   options->Add("lights", &o->lights,
                "fixed camera and moving light (RTI): file with the lights' directions or positions "
-               "(.lp, .relight or .dome), inside DIR; requires --width-mm or --sample-mm");
+               "(" +
+                   glint::LightsFileEndings() +
+                   "), inside DIR; requires --width-mm or --sample-mm");
   options->Add(
       "balls-px", &o->balls_px,
       "the same, without such a file: X,Y of three points on the rim of a reflective ball in "

@@ -15,4 +15,14 @@ inline std::string NameList(const std::vector<std::string>& names, size_t most =
   return text;
 }
 
+// "a, b and c": all of them, `conjunction` ("and", "or") before the last.
+inline std::string NameList(const std::vector<std::string>& names, const std::string& conjunction) {
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) {
+    const bool last = i + 1 == names.size();
+    text += (i == 0 ? "" : last ? " " + conjunction + " " : ", ") + names[i];
+  }
+  return text;
+}
+
 }  // namespace glint

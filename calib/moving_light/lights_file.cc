@@ -85,7 +85,7 @@ std::vector<int> InOrder(size_t photos) {
 std::string LightsFileEndings() {
   std::vector<std::string> endings;
   for (const LightsFormat& format : kLightsFormats) endings.emplace_back(format.ending);
-  return NameList(endings, endings.size());
+  return NameList(endings, "or");
 }
 
 LightsFile ReadLightsFile(const fs::path& file, const std::string& unit, double picture_width_mm) {

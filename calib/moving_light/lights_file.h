@@ -37,7 +37,7 @@ struct LightsFile {
 LightsFile ReadLightsFile(const std::filesystem::path& file, const std::string& unit,
                           double picture_width_mm);
 
-// The endings as messages list them: ".lp, .relight, .dome".
+// The endings as messages list them: ".lp, .relight or .dome".
 std::string LightsFileEndings();
 
 // Which of the file's lights each photograph has; −1: none. By name, without regard to case, then

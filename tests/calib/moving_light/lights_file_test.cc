@@ -128,7 +128,7 @@ TEST_F(LightsFileTest, LongVectorsAskForTheirUnit) {
 
 TEST_F(LightsFileTest, UnknownEndingIsToldThoseThatAreKnown) {
   EXPECT_THAT(Complaint("1\na.jpg 0 0 1\n", "lights.txt"),
-              AllOf(HasSubstr("'.txt'"), HasSubstr(".lp, .relight, .dome")));
+              AllOf(HasSubstr("'.txt'"), HasSubstr(".lp, .relight or .dome")));
   EXPECT_EQ(Read("1\na.jpg 0 0 1\n", "", "DIRS.LP").lights.size(), 1u);
 }
 
