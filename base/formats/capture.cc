@@ -15,6 +15,7 @@
 #include "base/formats/capture_files.h"
 #include "base/photos/photo_name.h"
 #include "base/stages/stages.h"
+#include "base/text/name_list.h"
 
 namespace glint {
 namespace {
@@ -267,10 +268,11 @@ void ReadChart(const fs::path& file, const toml::table& document, Capture* captu
   RequireUtf8(file, "chart.photo", photos[0]);
   chart.photo = photos[0];
   chart.kind = table.Text("kind", chart.kind);
+  const std::vector<std::string> found(kFoundCharts.begin(), kFoundCharts.end());
   if (chart.kind_is_file()) {
     MatchFiles(capture->folder, chart.kind, file, "chart.kind");
   } else {
-    std::vector<std::string> kinds(kFoundCharts.begin(), kFoundCharts.end());
+    std::vector<std::string> kinds = found;
     kinds.insert(kinds.end(), {"grey", "a table of patches (.csv)"});
     table.Text("kind", chart.kind, kinds);
   }
@@ -288,8 +290,8 @@ void ReadChart(const fs::path& file, const toml::table& document, Capture* captu
   RequireKind(table, document, "model", !grey, "a chart of many colours");
   if (chart.corners_px.empty() && (grey || chart.kind_is_file())) {
     table.Missing("corners_px",
-                  "only the kinds classic24, sg140 and vinyl18 are found in a photograph: give the "
-                  "four corners of the chart, in pixels");
+                  "only the kinds " + NameList(found, "and") +
+                      " are found in a photograph: give the four corners of the chart, in pixels");
   }
 }
 

@@ -197,7 +197,9 @@ TEST_F(CaptureTest, SaysWhatIsWrongWithAChart) {
   EXPECT_THAT(complaint("photo = \"chart/d.jpg\""), HasSubstr("no file 'chart/d.jpg'"));
   EXPECT_THAT(complaint(photo + "kind = \"classic\""), HasSubstr("classic24, sg140, vinyl18"));
   EXPECT_THAT(complaint(photo + "kind = \"p.csv\""), HasSubstr("no file 'p.csv'"));
-  EXPECT_THAT(complaint(photo + "kind = \"grey\""), HasSubstr("chart.corners_px"));
+  EXPECT_THAT(complaint(photo + "kind = \"grey\""),
+              AllOf(HasSubstr("chart.corners_px"),
+                    HasSubstr("only the kinds classic24, sg140 and vinyl18 are found")));
   EXPECT_THAT(complaint(photo + "illuminant = \"D65\""), HasSubstr("PATCHES.csv"));
   EXPECT_THAT(complaint(photo + "reflectance = 0.18"), HasSubstr("grey"));
   EXPECT_THAT(complaint(photo + "corners_px = [1, 2]"), HasSubstr("four points"));
