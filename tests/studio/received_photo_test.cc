@@ -55,6 +55,7 @@ TEST(ReceivedPhoto, TheContentSaysWhatItIs) {
                         "x.jpg"),
             "");
   EXPECT_EQ(PhotoEnding(std::string("II*\0aaaa", 8), "x.DNG"), ".dng");
+  EXPECT_EQ(PhotoEnding(std::string("MM\0*aaaa", 8), "x.MEF"), ".mef");
   EXPECT_EQ(PhotoEnding(std::string("II*\0aaaa", 8), "x.exe"), ".tif");
   for (const char* text : {"", "R", "RIFF", "<html>", "#!/bin/sh", "%PDF-1.4", "PK\x03\x04"}) {
     EXPECT_EQ(PhotoEnding(text, "x.jpg"), "") << text;

@@ -13,6 +13,7 @@
 #include "base/errors/errors.h"
 #include "base/files/files.h"
 #include "base/files/hash.h"
+#include "base/images/image_format.h"
 #include "base/photos/jpeg_end.h"
 #include "base/photos/photo_header.h"
 #include "pipeline/studio/access/token.h"
@@ -75,10 +76,7 @@ std::string PhotoEnding(Bytes first, const std::string& name) {
   if (first.starts_with("IIU\0"sv)) return ".rw2";
   if (first.starts_with("IIRO"sv) || first.starts_with("IIRS"sv)) return ".orf";
   if (first.starts_with("II*\0"sv) || first.starts_with("MM\0*"sv)) {
-    const std::string given = LowerEnding(name);
-    const bool raw = IsOneOf(given, {".dng", ".nef", ".nrw", ".cr2", ".arw", ".sr2", ".pef", ".3fr",
-                                     ".iiq", ".erf", ".srw"});
-    return raw ? given : ".tif";
+    return IsRawFileName(name) ? LowerEnding(name) : ".tif";
   }
   return "";
 }
