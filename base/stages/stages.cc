@@ -24,7 +24,8 @@ constexpr StageKind kStages[] = {
               .most_MB = 70},
      .runs = Runs::kFromPhotographs,
      .reads = {.photographs = true, .calibration = true},
-     .gives = Gives::kViews},
+     .gives = Gives::kViews,
+     .imported = true},
     {.name = "fit",
      .summary = "material maps by latent or classic fitting",
      .cost = {.start_s = 1,
@@ -76,6 +77,7 @@ constexpr StageKind kStages[] = {
      .reads = {.maps = ReadsMaps::kWhole, .every_stage = true},
      .is_told = {.maps_from = true}},
 };
+static_assert(std::ranges::count(kStages, true, &StageKind::imported) == 1);
 
 }  // namespace
 
@@ -94,6 +96,11 @@ const StageKind* LastGiving(Gives what, std::string_view reader) {
     if (stage.gives == what) last = &stage;
   }
   return last;
+}
+
+const StageKind& ImportedStage() {
+  return *std::find_if(std::begin(kStages), std::end(kStages),
+                       [](const StageKind& stage) { return stage.imported; });
 }
 
 bool GivesMaps(const StageKind& stage, ReadsMaps which) {

@@ -72,6 +72,8 @@ struct StageKind {
   StageIsTold is_told = {};
   Gives gives = Gives::kFiles;
   bool by_parts = false;  // whether several jobs can share it: --part K/N, then --join N
+  // The one whose result glint-import and glint-synth write: imported captures begin after it.
+  bool imported = false;
 };
 
 // In the order in which they run, whether or not a capture needs them.
@@ -83,6 +85,9 @@ const StageKind* FindStage(std::string_view name);
 // The last of the stages that give views, say: what later stages read; `reader` reads what stages
 // before it give. Null: none does.
 const StageKind* LastGiving(Gives what, std::string_view reader = {});
+
+// The one that is marked so.
+const StageKind& ImportedStage();
 
 // Whether it gives maps of that kind: whole ones are not those that a tiling stage gives.
 bool GivesMaps(const StageKind& stage, ReadsMaps which);

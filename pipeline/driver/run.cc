@@ -140,7 +140,7 @@ void RequireEarlierResults(const Capture& capture, const std::vector<StageStep>&
       for (const StageStep& other : steps) among_steps |= other.stage == earlier;
       const fs::path file = capture.folder / ManifestPath(earlier);
       if (among_steps || fs::exists(file)) continue;
-      const bool imported = capture.imported() && FindStage(earlier)->gives == Gives::kViews;
+      const bool imported = capture.imported() && FindStage(earlier)->imported;
       throw UserError(
           file, "", "no such file",
           imported

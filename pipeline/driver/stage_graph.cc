@@ -4,7 +4,6 @@
 
 #include "base/errors/errors.h"
 #include "base/photos/photo_name.h"
-#include "base/stages/stages.h"
 #include "fitting/latent/fit.h"
 
 namespace glint {
@@ -179,7 +178,8 @@ const std::vector<std::string>& StageNames() {
   return names;
 }
 
-std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choices) {
+std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choices,
+                                  std::span<const StageKind> stages) {
   const bool imported = capture.imported();
   if (!imported && capture.photos.empty()) {
     throw UserError(capture.file, "photos.files", "no such key",
@@ -187,10 +187,10 @@ std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choi
   }
   std::vector<StageStep> steps;
   EarlierStages earlier;
-  for (const StageKind& stage : Stages()) {
+  for (const StageKind& stage : stages) {
     if (RunsHere(stage, capture, choices)) {
       steps.push_back(StepOf(stage, capture, choices, earlier));
-    } else if (!imported || stage.gives != Gives::kViews) {
+    } else if (!imported || !stage.imported) {
       continue;
     }
     earlier.push_back(&stage);

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/files/json.h"
 #include "base/formats/capture.h"
+#include "base/stages/stages.h"
 
 namespace glint {
 
@@ -40,10 +42,11 @@ struct StageStep {
 // "calib", "rectify", … in order, whether or not a capture needs them.
 const std::vector<std::string>& StageNames();
 
-// The stages of `capture` in an order in which they can run. A capture without a board was
-// imported: it starts at fit, from the rectified set that is already there. Throws UserError when
-// the capture has a board and no photographs.
-std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choices);
+// Those of `stages` that `capture` goes through, in an order in which they can run. A capture
+// without a board was imported: it starts after ImportedStage(), from the rectified set that is
+// already there. Throws UserError when the capture has a board and no photographs.
+std::vector<StageStep> StageSteps(const Capture& capture, const RunChoices& choices,
+                                  std::span<const StageKind> stages = Stages());
 
 // The steps from `from` to `until` ("": first, last). Throws UserError for a stage that is unknown
 // or not among the steps, and for an empty range.

@@ -69,6 +69,31 @@ TEST(StageGraph, AnImportedCaptureBeginsWithTheViewsThatAreThere) {
                           "report <- rectify fit export: --from fit"));
 }
 
+TEST(StageGraph, AStageBetweenRectifyAndFitIsWaitedForWhereItRuns) {
+  for (const Runs runs : {Runs::kAlways, Runs::kFromPhotographs}) {
+    std::vector<StageKind> stages(Stages().begin(), Stages().end());
+    stages.insert(stages.begin() + 2, {.name = "clean",
+                                       .summary = "",
+                                       .cost = {},
+                                       .runs = runs,
+                                       .reads = {.views = true},
+                                       .gives = Gives::kViews});
+    const auto first_steps = [&](const Capture& capture, size_t count) {
+      std::vector<std::string> steps = InWords(StageSteps(capture, {}, stages));
+      steps.resize(count);
+      return steps;
+    };
+    EXPECT_THAT(first_steps(OfPhotographs(), 5),
+                ElementsAre("calib <-", "rectify <- calib", "clean <- rectify", "fit <- clean",
+                            "refine <- clean fit"));
+    if (runs == Runs::kAlways) {
+      EXPECT_THAT(first_steps({}, 2), ElementsAre("clean <- rectify", "fit <- clean"));
+    } else {
+      EXPECT_THAT(first_steps({}, 2), ElementsAre("fit <- rectify", "refine <- rectify fit"));
+    }
+  }
+}
+
 TEST(StageGraph, FilesAreInputsOfTheStagesThatReadThem) {
   const std::vector<StageStep> steps = StageSteps(OfPhotographs(), {});
   EXPECT_THAT(steps[0].inputs, ElementsAre("capture.toml", "photos/a.jpg", "photos/b.jpg",
