@@ -120,7 +120,18 @@ Json ToJson(const RectifiedSet& set) {
 }
 
 std::filesystem::path ViewsManifest(const std::filesystem::path& work, std::string_view reader) {
-  return work / LastGiving(Gives::kViews, reader)->name / "manifest.json";
+  const StageKind* const last = LastGiving(Gives::kViews, reader);
+  for (const StageKind* stage = last; stage != nullptr;
+       stage = LastGiving(Gives::kViews, stage->name)) {
+    const std::filesystem::path file = work / stage->name / "manifest.json";
+    std::error_code unreadable;  // whoever reads it will say so
+    if (std::filesystem::exists(file, unreadable)) return file;
+  }
+  return work / last->name / "manifest.json";
+}
+
+std::filesystem::path ImportedViewsManifest(const std::filesystem::path& work) {
+  return work / ImportedStage().name / "manifest.json";
 }
 
 RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file) {

@@ -49,10 +49,13 @@ struct RectifiedImage {
 // The "data" object of the rectify manifest.
 Json ToJson(const RectifiedSet& set);
 
-// The manifest of the views that fitting reads, or the stage `reader` (stages.h); `work`:
-// CAPTURE/glint.
+// The manifest of the views that fitting reads, or the stage `reader` (stages.h): that of the last
+// stage before it that gives views and has a result in `work`, CAPTURE/glint. Where none has, that
+// of the last one.
 std::filesystem::path ViewsManifest(const std::filesystem::path& work,
                                     std::string_view reader = {});
+// The manifest of the views with which imported and synthetic sets begin.
+std::filesystem::path ImportedViewsManifest(const std::filesystem::path& work);
 
 // Reads and checks the manifest of a stage that gives views, without its images. Throws UserError.
 RectifiedSet ReadRectifiedSet(const std::filesystem::path& manifest_file);

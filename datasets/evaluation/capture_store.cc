@@ -12,7 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // What a set of views consists of; the last makes it complete.
-const fs::path kParts[] = {"photos", "truth", "capture.toml", ViewsManifest("glint").parent_path()};
+const fs::path kParts[] = {"photos", "truth", "capture.toml",
+                           ImportedViewsManifest("glint").parent_path()};
 
 // Files that other captures may share must not be written over in place.
 void RemoveViews(const fs::path& capture) {

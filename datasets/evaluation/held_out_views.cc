@@ -183,8 +183,7 @@ class SetRuns {
 
   // Folder of the rectified views: the capture's own, or those of an import.
   fs::path Rectified() const {
-    const fs::path part = ViewsManifest("glint").parent_path();
-    if (HasRectifiedViews(source_)) return source_ / part;
+    if (HasRectifiedViews(source_)) return ViewsManifest(source_ / "glint").parent_path();
     const fs::path capture = folder_ / "capture";
     std::vector<std::string> arguments{source_.string(), capture.string()};
     if (experiment_.size > 0) {
@@ -192,7 +191,7 @@ class SetRuns {
     }
     Program(SiblingProgram("glint-import"), arguments, experiment_.import_arguments,
             folder_ / "capture.log");
-    return capture / part;
+    return ImportedViewsManifest(capture / "glint").parent_path();
   }
 
   NamedRun Run(const HoldoutSplit& split, const SplitViews& views, const std::string& method_name,
@@ -202,9 +201,9 @@ class SetRuns {
     const std::string prefix = programs.name.empty() ? "" : programs.name + "_";
     const fs::path capture = folder_ / split.folder / (prefix + method.capture);
     const fs::path log = folder_ / split.folder / (prefix + method.name + ".log");
-    const fs::path views_manifest = ViewsManifest(capture / "glint");
-    if (!fs::exists(views_manifest)) {
-      LinkFolder(rectified_, views_manifest.parent_path());
+    const fs::path views_folder = capture / "glint" / rectified_.filename();
+    if (!fs::exists(views_folder / "manifest.json")) {
+      LinkFolder(rectified_, views_folder);
       // Neither photographs nor board: its work begins at fit, with the programs' own options.
       WriteFileAtomically(
           capture / "capture.toml",

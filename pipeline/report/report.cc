@@ -75,7 +75,7 @@ ReportInput ReadReportInput(const fs::path& work, const std::string& from, int m
   input.work = work;
   for (const std::string& stage : StagesRead(from)) {
     const fs::path file = work / stage / "manifest.json";
-    const bool needed = stage == LastGiving(Gives::kViews)->name || stage == from;
+    const bool needed = file == ViewsManifest(work) || stage == from;
     if (!needed && !fs::exists(file)) continue;
     const Manifest manifest = ReadManifest(file, stage);
     VerifyOutputs(file, manifest);

@@ -9,7 +9,6 @@
 #include "base/images/exr_rows.h"
 #include "base/photos/photo.h"
 #include "base/resampling/resampling.h"
-#include "base/stages/stages.h"
 #include "datasets/looks/looks_figures.h"
 #include "pipeline/report/downloads_section.h"
 #include "pipeline/report/figure.h"
@@ -29,7 +28,9 @@ constexpr int kStagePicture_px = 1200;
 
 std::string ManifestLink(const std::string& stage) { return "../" + stage + "/manifest.json"; }
 
-std::string ViewsLink() { return ManifestLink(std::string(LastGiving(Gives::kViews)->name)); }
+std::string ViewsLink(const ReportInput& input) {
+  return ManifestLink(input.set.manifest_file.parent_path().filename().string());
+}
 
 std::string Section(const std::string& title, const std::string& source, const std::string& body) {
   return "<section>\n" + (source.empty() ? "" : SourceLink(source)) + "<h2>" + HtmlText(title) +
@@ -96,7 +97,7 @@ Image RoughnessConfidence(const ReportInput& input, const fs::path& confidence_e
 
 std::string OverviewSection(const ReportInput& input, const Json& own_metrics) {
   const Trace own{kOwnManifest, "metrics"};
-  const Trace views{ViewsLink(), "data"};
+  const Trace views{ViewsLink(input), "data"};
   std::string figures = "<div class=\"figures\">\n";
   figures += HeadFigure("photographs fitted", input.used_views.size(), own.Field("views[].fitted"));
   figures += HeadFigure("width of the maps", input.set.plane.width, views.Field("width"), "texels");
@@ -144,7 +145,7 @@ std::string FirstLookNote(const ReportInput& input) {
 }
 
 std::string TitleSection(const ReportInput& input) {
-  const Trace views{ViewsLink(), "data"};
+  const Trace views{ViewsLink(input), "data"};
   return "<h1>" + HtmlText(MaterialName(input)) + "</h1>\n<p>" +
          FigureHtml(input.set.plane.width_mm, views.Field("width_mm")) + " × " +
          FigureHtml(input.set.plane.height_mm, views.Field("height_mm")) + " mm, " +
@@ -266,7 +267,7 @@ std::string ViewsSection(const ReportInput& input, const std::vector<ShownView>&
 }
 
 std::string GeometrySection(const ReportInput& input) {
-  const Trace trace{ViewsLink(), "data.views"};
+  const Trace trace{ViewsLink(input), "data.views"};
   std::string rows;
   for (size_t i = 0; i < input.set.views.size(); ++i) {
     const View& view = input.set.views[i].view;
@@ -302,7 +303,7 @@ std::string GeometrySection(const ReportInput& input) {
           FigureHtml(scale, {ManifestLink(from), "data.light_scale_rgb"}) +
           ". Reflectance convention: <code>" + HtmlText(ToString(input.fit.convention)) +
           "</code>.</p>\n";
-  return Section("Cameras and lights", ViewsLink(), body);
+  return Section("Cameras and lights", ViewsLink(input), body);
 }
 
 std::string StageSection(const ReportInput& input, const std::string& stage) {
