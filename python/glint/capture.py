@@ -184,8 +184,8 @@ class Capture:
             if name in (view.name, view.photo, photo.name, photo.stem):
                 return view
         known = ", ".join(f"{view.name} ({view.photo})" for view in views)
-        raise UserError(f"{self._manifest_file('rectify')}: views: found no view named '{name}'; "
-                        f"use a view's or photograph's name: {known}")
+        raise UserError(f"{self._manifest_file(_VIEWS_STAGE)}: views: found no view named "
+                        f"'{name}'; use a view's or photograph's name: {known}")
 
     def maps(self, stage: str = "refine") -> Maps:
         """The `Maps` that a stage wrote: "fit", "refine" or "tile".
