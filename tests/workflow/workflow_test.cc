@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "base/files/json.h"
+#include "base/stages/stages.h"
 #include "tests/support/process.h"
 
 namespace glint {
@@ -34,8 +35,9 @@ class WorkflowTest : public testing::Test {
          {"glint", "glint-run", "glint-status", "glint-estimate", "glint-overview"}) {
       fs::copy_file(fs::path(GLINT_BIN_DIR) / name, bin / name);
     }
-    for (const char* stage : {"calib", "rectify", "fit", "refine", "tile", "export", "report"}) {
-      fs::copy_file(fs::path(GLINT_BIN_DIR) / "fake_stage", bin / ("glint-" + std::string(stage)));
+    for (const StageKind& stage : Stages()) {
+      fs::copy_file(fs::path(GLINT_BIN_DIR) / "fake_stage",
+                    bin / ("glint-" + std::string(stage.name)));
     }
     for (const char* name : {"a sound one", "failing"}) {
       WriteAll(capture(name) / "capture.toml", kCaptureToml);

@@ -17,6 +17,7 @@
 #include "base/files/hash.h"
 #include "base/formats/manifest.h"
 #include "base/programs/options.h"
+#include "base/stages/stages.h"
 
 namespace fs = std::filesystem;
 
@@ -52,20 +53,25 @@ void JoinParts(const FakeOptions& o, const std::string& stage) {
 }
 
 std::vector<fs::path> Inputs(const FakeOptions& o, const std::string& stage) {
+  const glint::StageKind& kind = *glint::FindStage(stage);
   std::vector<fs::path> files;
-  if (stage == "calib" || stage == "rectify") {
+  if (kind.reads.photographs) {
     for (const auto& entry : fs::directory_iterator(o.folder / "photos")) {
       files.push_back(entry.path());
     }
     std::sort(files.begin(), files.end());
   }
-  const auto add_stage = [&](const std::string& name) {
-    files.push_back(o.folder / "glint" / name / "manifest.json");
+  const auto add_stage = [&](std::string_view name) {
+    files.push_back(o.folder / glint::ManifestPath(name));
   };
-  if (stage == "rectify") add_stage("calib");
-  if (stage == "fit" || stage == "refine") add_stage("rectify");
-  if (stage == "refine") add_stage("fit");
-  if (stage == "tile" || stage == "export" || stage == "report") add_stage(o.from);
+  const auto add_last = [&](glint::Gives what) { add_stage(glint::LastGiving(what, stage)->name); };
+  if (kind.reads.calibration) add_last(glint::Gives::kCalibration);
+  if (kind.reads.views) add_last(glint::Gives::kViews);
+  if (kind.is_told.maps_from) {
+    add_stage(o.from);
+  } else if (kind.reads.maps != glint::ReadsMaps::kNone) {
+    add_last(glint::Gives::kMaps);
+  }
   if (stage == "fit" && fs::exists(o.folder / "weights")) files.push_back(o.folder / "weights");
   return files;
 }

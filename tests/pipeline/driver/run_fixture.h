@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/files/json.h"
+#include "base/stages/stages.h"
 #include "tests/support/process.h"
 
 namespace glint {
@@ -26,9 +27,9 @@ class RunTest : public testing::Test {
                              "glint-view", "glint-estimate"}) {
       std::filesystem::copy_file(std::filesystem::path(GLINT_BIN_DIR) / name, bin / name);
     }
-    for (const char* stage : {"calib", "rectify", "fit", "refine", "tile", "export", "report"}) {
+    for (const StageKind& stage : Stages()) {
       std::filesystem::copy_file(std::filesystem::path(GLINT_BIN_DIR) / "fake_stage",
-                                 bin / ("glint-" + std::string(stage)));
+                                 bin / ("glint-" + std::string(stage.name)));
     }
     SetToml("");
     for (const char* photo : {"a.jpg", "b.jpg"})
