@@ -28,10 +28,13 @@ enum class CameraModel {
 };
 
 struct CameraParameter {
-  enum Kind { kNone, kFocalLength, kPrincipalPoint, kRadial, kTangential };
+  // Along x, along y: two that follow each other are a vector in the picture's plane.
+  enum Kind { kNone, kFocalLength, kPrincipalPoint, kRadial, kAlongX, kAlongY };
   std::string_view name;
   Kind kind = kNone;
   int power = 0;  // of a radial term: the power of r² (fisheye: of θ²) that it multiplies
+
+  constexpr bool of_a_vector() const { return kind == kAlongX || kind == kAlongY; }
 };
 
 inline constexpr size_t kMostCameraParameters = 12;
@@ -56,7 +59,7 @@ namespace camera_parameter {
 inline constexpr CameraParameter f{"f", CameraParameter::kFocalLength},
     fx{"fx", CameraParameter::kFocalLength}, fy{"fy", CameraParameter::kFocalLength},
     cx{"cx", CameraParameter::kPrincipalPoint}, cy{"cy", CameraParameter::kPrincipalPoint},
-    p1{"p1", CameraParameter::kTangential}, p2{"p2", CameraParameter::kTangential};
+    p1{"p1", CameraParameter::kAlongY}, p2{"p2", CameraParameter::kAlongX};
 constexpr CameraParameter Radial(std::string_view name, int power) {
   return {name, CameraParameter::kRadial, power};
 }

@@ -1,9 +1,6 @@
 #include "base/camera/orientation.h"
 
-#include <algorithm>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace glint {
 namespace {
@@ -18,14 +15,14 @@ Camera OnceTurned(const Camera& camera) {
   if (centre == 2) std::swap(turned.parameters[0], turned.parameters[1]);
   turned.parameters[centre] = camera.height_px - camera.parameters[centre + 1];
   turned.parameters[centre + 1] = camera.parameters[centre];
-  const auto& parameters = InfoOf(camera.model).parameters;
-  const auto tangential = std::find_if(parameters.begin(), parameters.end(), [](const auto& p) {
-    return p.kind == CameraParameter::kTangential;
-  });
-  if (tangential != parameters.end()) {
-    const auto p1 = static_cast<size_t>(tangential - parameters.begin());
-    turned.parameters[p1] = camera.parameters[p1 + 1];
-    turned.parameters[p1 + 1] = -camera.parameters[p1];
+  const auto& infos = InfoOf(camera.model).parameters;
+  for (size_t i = centre + 2; i + 1 < camera.parameters.size(); ++i) {
+    if (!infos[i].of_a_vector()) continue;
+    const bool x_first = infos[i].kind == CameraParameter::kAlongX;
+    const size_t x = x_first ? i : i + 1, y = x_first ? i + 1 : i;
+    turned.parameters[x] = -camera.parameters[y];
+    turned.parameters[y] = camera.parameters[x];
+    ++i;
   }
   return turned;
 }

@@ -11,9 +11,7 @@ double MonotoneRadius2(Camera camera) {
   constexpr double kWidest = 4;  // tan of 76° off the axis, wider than any lens these models fit
   constexpr double kStep = 1e-3;
   for (size_t i = 0; i < camera.parameters.size(); ++i) {
-    if (InfoOf(camera.model).parameters[i].kind == CameraParameter::kTangential) {
-      camera.parameters[i] = 0;
-    }
+    if (InfoOf(camera.model).parameters[i].of_a_vector()) camera.parameters[i] = 0;
   }
   double previous_px = -std::numeric_limits<double>::infinity();
   for (double r = 0; r < kWidest; r += kStep) {
