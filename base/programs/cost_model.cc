@@ -22,6 +22,9 @@ constexpr double kMega = 1e6;
 // fitting/view_correction).
 constexpr int kMostPaired = 40;
 
+// The estimator sees photographs at 256² at most (StageCost::network_texel_bytes).
+constexpr double kNetworkTexels = 256 * 256;
+
 // Stage fit with the method "initial": no fitting.
 constexpr StageCost kInitialMaps = {0.6, 0, 0.3, 0, 2, 0.2, 330, 0, 146, 17, 0};
 
@@ -75,7 +78,8 @@ double PredictedMemory_bytes(const std::string& stage, const CaptureSize& size, 
                         cost->photograph_texel_bytes * size.photographs * size.texels;
   return kMega * cost->start_MB +
          cost->decoded_px_bytes * std::min(threads, size.photographs) * size.photograph_px +
-         (cost->most_MB > 0 ? std::min(texels, kMega * cost->most_MB) : texels);
+         (cost->most_MB > 0 ? std::min(texels, kMega * cost->most_MB) : texels) +
+         cost->network_texel_bytes * size.photographs * std::min(size.texels, kNetworkTexels);
 }
 
 void RequireMemoryForStage(const std::string& stage, const Capture& capture, int threads) {

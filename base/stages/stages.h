@@ -26,6 +26,8 @@ struct StageCost {
   double texel_bytes = 0;             // per texel
   double photograph_texel_bytes = 0;  // per texel of every photograph …
   double most_MB = 0;                 // … of both at most, where texels pass by rows; 0: no bound
+  // Per texel of every photograph, of 256² texels at most, as the networks see them.
+  double network_texel_bytes = 0;
 };
 
 // What a stage's result is for those that read it.
