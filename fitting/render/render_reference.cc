@@ -15,21 +15,20 @@ using torch::Tensor;
 
 Tensor Dot(const Tensor& a, const Tensor& b) { return (a * b).sum(2, /*keepdim=*/true); }
 
-// |h − (n·h)n|², of anisotropic lobes with what h has along the tangent 1/ratio and across it ratio
-// times.
+// sin² between n and h, of anisotropic lobes with what h has along the tangent 1/ratio and across
+// it ratio times. The tangent is what n leaves of the direction g in the sample's plane.
 Tensor StretchedSine(const Tensor& normal, const Tensor& half, const Tensor& n_dot_h,
                      const Anisotropy& anisotropy) {
-  if (!anisotropy.any()) return Dot(normal, normal) - n_dot_h * n_dot_h;
+  const Tensor sine_squared = Dot(normal, normal) - n_dot_h * n_dot_h;
+  if (!anisotropy.any()) return sine_squared;
   const double direction_rad = anisotropy.direction_deg * (M_PI / 180);
-  const Tensor direction =
+  const Tensor g =
       torch::tensor({std::cos(direction_rad), std::sin(direction_rad), 0.0}, normal.options())
           .view({1, 1, 3, 1, 1});
-  const Tensor n_dot_g = Dot(normal, direction);
-  const Tensor tangent = (direction - n_dot_g * normal) /
-                         (Dot(normal, normal) - n_dot_g * n_dot_g).clamp_min(1e-3).sqrt();
-  const Tensor sideways = half - n_dot_h * normal;
-  const Tensor along = Dot(sideways, tangent).square();
-  return along / anisotropy.ratio + (Dot(sideways, sideways) - along) * anisotropy.ratio;
+  const Tensor n_dot_g = Dot(normal, g);
+  const Tensor along =
+      (Dot(half, g) - n_dot_h * n_dot_g).square() / (1 - n_dot_g * n_dot_g).clamp_min(1e-3);
+  return along / anisotropy.ratio + (sine_squared - along) * anisotropy.ratio;
 }
 
 // D·G / (4·NoL·NoV) of one lobe, from clamped cosines. D is Student's t (convention.h) with
