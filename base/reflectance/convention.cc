@@ -27,23 +27,41 @@ std::string Shortest(double x) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr};
 }
 
-// "0.5x0.4", "0.5x0.4@0.04"
-SpecularLobes ParseLobes(std::string_view text) {
-  SpecularLobes lobes;
-  const char* const end = text.data() + text.size();
-  const auto share = std::from_chars(text.data(), end, lobes.narrow_share);
-  if (share.ec != std::errc() || share.ptr == end || *share.ptr != 'x') Reject(text);
-  const auto ratio = std::from_chars(share.ptr + 1, end, lobes.narrow_ratio);
-  if (ratio.ec != std::errc()) Reject(text);
-  if (ratio.ptr != end) {
-    if (*ratio.ptr != '@') Reject(text);
-    const auto f0 = std::from_chars(ratio.ptr + 1, end, lobes.coat_f0);
-    if (f0.ec != std::errc() || f0.ptr != end || !(lobes.coat_f0 > 0)) Reject(text);
-  }
-  const bool in_range = lobes.narrow_share >= 0 && lobes.narrow_share < 1 &&
-                        lobes.narrow_ratio > 0 && lobes.narrow_ratio <= 1 && lobes.coat_f0 <= 1;
-  if (!in_range) Reject(text);
-  return lobes;
+// Takes `before` and the number after it off the beginning of `text`; false, and nothing is taken:
+// they are not there.
+bool TakeNumber(std::string_view before, std::string_view* text, double* number) {
+  if (!text->starts_with(before)) return false;
+  const char* const end = text->data() + text->size();
+  const auto read = std::from_chars(text->data() + before.size(), end, *number);
+  if (read.ec != std::errc()) return false;
+  text->remove_prefix(static_cast<size_t>(read.ptr - text->data()));
+  return true;
+}
+
+// "0.5x0.4", "0.5x0.4@0.04": into `lobes`, the rest of which stays.
+void ParseNarrowLobe(std::string_view text, SpecularLobes* lobes) {
+  std::string_view left = text;
+  double share = 0, ratio = 1, coat_f0 = 0;
+  const bool both = TakeNumber("", &left, &share) && TakeNumber("x", &left, &ratio);
+  const bool coat = both && TakeNumber("@", &left, &coat_f0);
+  const bool in_range =
+      share >= 0 && share < 1 && ratio > 0 && ratio <= 1 && (!coat || coat_f0 > 0) && coat_f0 <= 1;
+  if (!both || !left.empty() || !in_range) Reject(text);
+  lobes->narrow_share = share;
+  lobes->narrow_ratio = ratio;
+  lobes->coat_f0 = coat_f0;
+}
+
+// "1.5@90"
+Anisotropy ParseAnisotropy(std::string_view text) {
+  std::string_view left = text;
+  Anisotropy found;
+  const bool both =
+      TakeNumber("", &left, &found.ratio) && TakeNumber("@", &left, &found.direction_deg);
+  const bool in_range = found.ratio >= 1 && found.ratio <= kMostAnisotropy &&
+                        found.direction_deg >= 0 && found.direction_deg < 180;
+  if (!both || !left.empty() || !in_range) Reject(text);
+  return found;
 }
 
 int ParseTail(std::string_view text) {
@@ -53,25 +71,6 @@ int ParseTail(std::string_view text) {
   const bool in_range = tail >= kLeastTail && tail <= kMostTail;
   if (read.ec != std::errc() || read.ptr != end || !in_range) Reject(text);
   return tail;
-}
-
-// "1.5@90"
-Anisotropy ParseAnisotropy(std::string_view text) {
-  Anisotropy found;
-  const char* const end = text.data() + text.size();
-  const auto ratio = std::from_chars(text.data(), end, found.ratio);
-  if (ratio.ec != std::errc() || ratio.ptr == end || *ratio.ptr != '@') Reject(text);
-  const auto direction = std::from_chars(ratio.ptr + 1, end, found.direction_deg);
-  const bool in_range = found.ratio >= 1 && found.ratio <= kMostAnisotropy &&
-                        found.direction_deg >= 0 && found.direction_deg < 180;
-  if (direction.ec != std::errc() || direction.ptr != end || !in_range) Reject(text);
-  return found;
-}
-
-void SetNarrowLobe(const SpecularLobes& narrow, SpecularLobes* lobes) {
-  lobes->narrow_share = narrow.narrow_share;
-  lobes->narrow_ratio = narrow.narrow_ratio;
-  lobes->coat_f0 = narrow.coat_f0;
 }
 
 void SetWord(const std::string& word, ReflectanceConvention* convention) {
@@ -88,8 +87,7 @@ void SetWord(const std::string& word, ReflectanceConvention* convention) {
   } else if (word == "sampling=corner_to_corner") {
     convention->sampling = TexelSampling::kCornerToCorner;
   } else if (word.starts_with(kNarrowLobe)) {
-    SetNarrowLobe(ParseLobes(std::string_view(word).substr(kNarrowLobe.size())),
-                  &convention->lobes);
+    ParseNarrowLobe(std::string_view(word).substr(kNarrowLobe.size()), &convention->lobes);
   } else if (word.starts_with(kTail)) {
     convention->lobes.tail_exponent = ParseTail(std::string_view(word).substr(kTail.size()));
   } else if (word.starts_with(kAnisotropy)) {

@@ -47,6 +47,15 @@ TEST(ConventionTest, RefusesTailsThatAreNone) {
   }
 }
 
+TEST(ConventionTest, RefusesAnisotropyThatIsNone) {
+  for (const char* text : {"", "1.5", "@90", "1.5@", "1.5@90x", "0.9@90", "101@0", "1.5@180",
+                           "1.5@-1", "nan@0", "1.5@nan"}) {
+    EXPECT_THROW(ParseReflectanceConvention(std::string("anisotropy=") + text),
+                 std::invalid_argument)
+        << text;
+  }
+}
+
 TEST(ConventionTest, UnknownWordIsNamedInTheError) {
   try {
     ParseReflectanceConvention("diffuse=one light=laser");
