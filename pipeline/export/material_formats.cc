@@ -63,7 +63,7 @@ Rgb Layered(const Rgb& base, const Rgb& f0, double lobe, const DirectionPair& pa
 
 Rgb GltfBrdf(const ExportedMaterial& material, size_t texel, const DirectionPair& pair) {
   const GltfLobes lobes = GltfLobesOf(material, texel);
-  const double across = lobes.roughness * lobes.roughness;
+  const double across = WidthsOf(lobes.roughness, {}).across;
   const LobeWidths widths = {across + (1 - across) * lobes.anisotropy * lobes.anisotropy, across,
                              material.convention.lobes.anisotropy.direction_deg};
   Rgb brdf =

@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <regex>
 
 #include "base/errors/errors.h"
+#include "pipeline/export/direction_pairs.h"
 #include "tests/pipeline/export/exported_material.h"
 #include "tests/support/process.h"
 
@@ -151,6 +153,15 @@ TEST(MaterialFormatsTest, MaterialXAndBlenderMixTwoLobes) {
   const test::Outcome run =
       test::RunProgram({"python3", GLINT_STAND_IN_BPY, script.string(), "material"});
   EXPECT_EQ(run.code, 0) << run.err;
+}
+
+TEST(MaterialFormatsTest, AMirrorsFidelityIsFinite) {
+  ExportedMaterial material = test::MaterialOf(test::UniformMaps(kValues));
+  for (float& roughness : material.maps.plane(kRoughness)) roughness = 0;
+  for (const MaterialFormat& format : MaterialFormats()) {
+    const auto brdf = format.brdf(material, 0, MakePair({0, 0, 1}, {0, 0, 1}));
+    for (const double value : brdf) EXPECT_TRUE(std::isfinite(value)) << format.name;
+  }
 }
 
 ExportedMaterial Anisotropic(double narrow_share = 0) {
