@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "base/linearize/encoding.h"
@@ -20,7 +21,7 @@ struct SaturationRule {
 };
 
 // 8 and 16 bit samples stay codes that a table linearises on reading (36 MB for 12 MP of 8 bit);
-// floats are linearised in place. Interleaved R, G, B codes, or three float planes.
+// floats are linearised in place.
 class LinearPhoto {
  public:
   // One pixel: linear Rec.709, in colours beyond it with channels below 0, and whether any of the
@@ -50,34 +51,39 @@ class LinearPhoto {
     }
   };
   struct Floats {
-    const float* plane;
-    size_t pixels;
+    const float* data;
     float saturated_from;
     const ColourProfile::Matrix* rec709_from_rgb;
     Pixel At(size_t i) const {
-      const float r = plane[i], g = plane[pixels + i], b = plane[2 * pixels + i];
+      const float r = data[3 * i], g = data[3 * i + 1], b = data[3 * i + 2];
       return {InRec709({r, g, b}, rec709_from_rgb), std::max({r, g, b}) >= saturated_from};
     }
   };
 
-  // Takes the photo's samples (the float copy of an 8 or 16 bit photo is freed).
+  // Takes the photo's samples.
   LinearPhoto(Photo photo, const Encoding& encoding, const SaturationRule& saturation = {});
 
-  int width() const { return width_; }
-  int height() const { return height_; }
-  bool is_float() const { return bits_ == 32; }
+  int width() const { return image_.width; }
+  int height() const { return image_.height; }
+  bool is_float() const { return table_.empty(); }
 
   // Calls `f` with the storage's reader (Codes<uint8_t>, Codes<uint16_t> or Floats).
   template <class F>
   auto Visit(F&& f) const {
     const ColourProfile::Matrix* matrix = colour_.converts() ? &colour_.rec709_from_rgb : nullptr;
-    if (bits_ == 8) return f(Codes<uint8_t>{codes8_.data(), Tables(), saturated_code_, matrix});
-    if (bits_ == 16) return f(Codes<uint16_t>{codes16_.data(), Tables(), saturated_code_, matrix});
-    const size_t pixels = static_cast<size_t>(width_) * height_;
-    return f(Floats{planes_.data(), pixels, saturated_value_, matrix});
+    return image_.Visit([&]<class T>(const std::vector<T>& samples) {
+      if constexpr (std::is_floating_point_v<T>) {
+        return f(Floats{samples.data(), saturated_value_, matrix});
+      } else {
+        return f(Codes<T>{samples.data(), Tables(), saturated_code_, matrix});
+      }
+    });
   }
 
  private:
+  void MakeTables(const Encoding& encoding, const SaturationRule& saturation);
+  void LineariseFloats(const Encoding& encoding, const SaturationRule& saturation,
+                       std::vector<float>* samples);
   // One for all channels, or three.
   std::array<const float*, 3> Tables() const {
     const float* table = table_.data();
@@ -85,15 +91,12 @@ class LinearPhoto {
     return {table, table + step, table + 2 * step};
   }
 
-  int width_, height_, bits_;
+  StoredImage image_;
   ColourProfile colour_;
   size_t codes_ = 0;
-  std::vector<float> table_;
+  std::vector<float> table_;  // of codes
   int saturated_code_ = 0;
   float saturated_value_ = 0;
-  std::vector<uint8_t> codes8_;
-  std::vector<uint16_t> codes16_;
-  std::vector<float> planes_;
 };
 
 }  // namespace glint

@@ -2,6 +2,7 @@
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/tiffutils.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <tuple>
@@ -48,23 +49,27 @@ void RequireWholeJpeg(const std::filesystem::path& file, std::string_view jpeg) 
                   "copy the photograph again, or remove it");
 }
 
-void RequireFinite(const std::filesystem::path& file, const Image& image) {
-  for (size_t i = 0; i < image.samples.size(); ++i) {
-    if (std::isfinite(image.samples[i])) continue;
-    const size_t at = i % image.pixels();
-    throw UserError(file,
-                    "pixel (" + std::to_string(at % image.width) + ", " +
-                        std::to_string(at / image.width) + ")",
-                    "a value that is not a number", "export the photograph again, or remove it");
-  }
+void RequireFinite(const std::filesystem::path& file, const StoredImage& image) {
+  const size_t at = image.Visit([](const auto& samples) {
+    const auto found = std::find_if_not(samples.begin(), samples.end(), [](auto sample) {
+      return std::isfinite(static_cast<float>(sample));
+    });
+    return static_cast<size_t>(found - samples.begin()) / 3;
+  });
+  if (at >= image.pixels()) return;
+  const size_t width = static_cast<size_t>(image.width);
+  throw UserError(file,
+                  "pixel (" + std::to_string(at % width) + ", " + std::to_string(at / width) + ")",
+                  "a value that is not a number", "export the photograph again, or remove it");
 }
 
 // LibRaw leaves what it could not read black, and reports it to nobody.
 void RequireWholeRaw(const std::filesystem::path& file, const Photo& photo) {
   if (photo.format != "raw") return;
-  for (const float value : photo.image.samples) {
-    if (value > 0) return;
-  }
+  const bool black = photo.image.Visit([](const auto& samples) {
+    return std::none_of(samples.begin(), samples.end(), [](auto sample) { return sample > 0; });
+  });
+  if (!black) return;
   throw UserError(file, "", "a RAW file without an image: truncated or damaged",
                   "copy the photograph again, or remove it");
 }
@@ -123,11 +128,11 @@ int TurnToApply(const Orientation& orientation) {
 }
 
 template <class T>
-Image ReadUpright(const std::filesystem::path& file, OIIO::ImageInput* input, OIIO::TypeDesc type,
-                  double scale, int turn) {
-  const std::vector<T> samples = ReadSamples<T>(file, input, type);
+StoredImage ReadUpright(const std::filesystem::path& file, OIIO::ImageInput* input,
+                        OIIO::TypeDesc type, int turn) {
   const OIIO::ImageSpec& spec = input->spec();
-  return UprightImage(samples, {spec.width, spec.height, spec.nchannels}, turn, scale);
+  return UprightImage(ReadSamples<T>(file, input, type), {spec.width, spec.height, spec.nchannels},
+                      turn);
 }
 
 void ReadPixels(const std::filesystem::path& file, OIIO::ImageInput* input, int turn,
@@ -135,14 +140,14 @@ void ReadPixels(const std::filesystem::path& file, OIIO::ImageInput* input, int 
   const OIIO::TypeDesc format = input->spec().format;
   if (format.is_floating_point()) {
     photo->bits = 32;
-    photo->image = ReadUpright<float>(file, input, OIIO::TypeFloat, 1.0, turn);
+    photo->image = ReadUpright<float>(file, input, OIIO::TypeFloat, turn);
     RequireFinite(file, photo->image);
   } else if (format.basesize() > 1) {
     photo->bits = 16;
-    photo->image = ReadUpright<std::uint16_t>(file, input, OIIO::TypeUInt16, 1.0 / 65535, turn);
+    photo->image = ReadUpright<std::uint16_t>(file, input, OIIO::TypeUInt16, turn);
   } else {
     photo->bits = 8;
-    photo->image = ReadUpright<std::uint8_t>(file, input, OIIO::TypeUInt8, 1.0 / 255, turn);
+    photo->image = ReadUpright<std::uint8_t>(file, input, OIIO::TypeUInt8, turn);
   }
 }
 
@@ -196,7 +201,7 @@ Photo ReadPhoto(const std::filesystem::path& file) {
   return photo;
 }
 
-Image ReadPicture(const std::filesystem::path& file) { return DecodeFile(file).image; }
+Image ReadPicture(const std::filesystem::path& file) { return DecodeFile(file).image.Planes(); }
 
 PhotoHeader ReadPhotoHeader(const std::filesystem::path& file) {
   PhotoHeader header;

@@ -8,6 +8,7 @@
 
 #include "base/images/image.h"
 #include "base/photos/colour_profile.h"
+#include "base/photos/stored_image.h"
 
 namespace glint {
 
@@ -26,11 +27,10 @@ struct ExifFacts {
   std::array<double, 3> white_balance{0, 0, 0};  // RAW: multipliers of R, G, B; G is 1
 };
 
-// What a camera wrote: samples as stored (8/16 bit divided by 255/65535; float as is), orientation
-// applied, alpha dropped, grey widened to RGB. RAW: demosaiced, camera's white balance, linear
-// Rec.709 primaries, no tone curve, clipped at 1.
+// What a camera wrote: samples as stored, orientation applied, alpha dropped, grey widened to RGB.
+// RAW: demosaiced, camera's white balance, linear Rec.709 primaries, no tone curve, clipped at 1.
 struct Photo {
-  Image image;         // R, G, B; not linearised
+  StoredImage image;   // not linearised
   int bits = 8;        // 8, 16, or 32 for float
   std::string format;  // OpenImageIO's name: "jpeg", "heif", "raw", "tiff"…; "video" for a frame
   bool is_float() const { return bits == 32; }

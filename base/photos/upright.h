@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/images/image.h"
+#include "base/photos/stored_image.h"
 
 namespace glint {
 
@@ -38,28 +38,28 @@ inline std::pair<int, int> StoredPixel(int orientation, int x, int y, const Stor
   }
 }
 
-// Interleaved samples, times `scale`, to planes R, G, B; of fewer than three channels the first is
-// taken for all.
+// Interleaved samples; of fewer than three channels the first is taken for all, of more the first
+// three.
 template <class T>
-Image UprightImage(const std::vector<T>& samples, const StoredSize& stored, int orientation,
-                   double scale) {
+StoredImage UprightImage(std::vector<T> samples, const StoredSize& stored, int orientation) {
+  if (orientation <= 1 && stored.channels == 3) {
+    return {stored.width, stored.height, std::move(samples)};
+  }
   const bool turned = TurnExchangesAxes(orientation);
-  Image image(turned ? stored.height : stored.width, turned ? stored.width : stored.height,
-              {"R", "G", "B"});
+  const int width = turned ? stored.height : stored.width;
+  const int height = turned ? stored.width : stored.height;
   const bool grey = stored.channels < 3;
-  const float factor = static_cast<float>(scale);
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
+  std::vector<T> upright;
+  upright.reserve(3 * static_cast<size_t>(width) * static_cast<size_t>(height));
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
       const auto [sx, sy] = StoredPixel(orientation, x, y, stored);
       const T* pixel =
           samples.data() + (static_cast<size_t>(sy) * stored.width + sx) * stored.channels;
-      const size_t at = static_cast<size_t>(y) * image.width + x;
-      for (int c = 0; c < 3; ++c) {
-        image.samples[c * image.pixels() + at] = static_cast<float>(pixel[grey ? 0 : c]) * factor;
-      }
+      for (int c = 0; c < 3; ++c) upright.push_back(pixel[grey ? 0 : c]);
     }
   }
-  return image;
+  return {width, height, std::move(upright)};
 }
 
 }  // namespace glint

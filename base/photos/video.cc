@@ -309,8 +309,8 @@ Photo ReadVideoFrame(const std::filesystem::path& file, int frame) {
   photo.format = "video";
   photo.camera_model = CameraModel(video);
   photo.orientation = video.Orientation();
-  photo.image = UprightImage(RgbOf(video, *picture), {picture->width, picture->height, 3},
-                             photo.orientation, 1.0 / 255);
+  photo.image =
+      UprightImage(RgbOf(video, *picture), {picture->width, picture->height, 3}, photo.orientation);
   return photo;
 }
 

@@ -76,7 +76,7 @@ double PredictedMemory_bytes(const std::string& stage, const CaptureSize& size, 
   if (cost == nullptr) return 0;
   const double texels = cost->texel_bytes * size.texels +
                         cost->photograph_texel_bytes * size.photographs * size.texels;
-  return kMega * cost->start_MB +
+  return kMega * (cost->start_MB + cost->photograph_MB * size.photographs) +
          cost->decoded_px_bytes * std::min(threads, size.photographs) * size.photograph_px +
          (cost->most_MB > 0 ? std::min(texels, kMega * cost->most_MB) : texels) +
          cost->network_texel_bytes * size.photographs * std::min(size.texels, kNetworkTexels);

@@ -22,6 +22,7 @@ struct StageCost {
   double texel_us = 0;             // per texel
   double photograph_texel_us = 0;  // per texel of every photograph
   double start_MB = 0;
+  double photograph_MB = 0;           // per photograph, whatever its size and the maps'
   double decoded_px_bytes = 0;        // per pixel of the photographs that are decoded at once
   double texel_bytes = 0;             // per texel
   double photograph_texel_bytes = 0;  // per texel of every photograph …

@@ -1,8 +1,11 @@
 #include "calib/capture/reduced_photo.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "base/errors/errors.h"
 #include "base/files/files.h"
@@ -69,14 +72,10 @@ Photo ReadReducedPhoto(const std::filesystem::path& file, int longest_px, int* r
   }
   const cv::Mat picture = Upright(Decode(file, *reduction), header.photo.orientation);
   Photo photo = header.photo;
-  photo.image = Image(picture.cols, picture.rows, {"R", "G", "B"});
-  for (int y = 0; y < picture.rows; ++y) {
-    const unsigned char* row = picture.ptr<unsigned char>(y);
-    for (int c = 0; c < 3; ++c) {
-      float* to = photo.image.channel(c).data() + static_cast<size_t>(y) * picture.cols;
-      for (int x = 0; x < picture.cols; ++x) to[x] = static_cast<float>(row[3 * x + 2 - c]) / 255;
-    }
-  }
+  cv::Mat rgb;
+  cv::cvtColor(picture, rgb, cv::COLOR_BGR2RGB);
+  photo.image =
+      StoredImage(rgb.cols, rgb.rows, std::vector<std::uint8_t>(rgb.datastart, rgb.dataend));
   return photo;
 }
 

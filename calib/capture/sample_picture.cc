@@ -43,6 +43,21 @@ cv::Rect PartOf(const Photo& photo, const std::vector<CornerObservation>& corner
   return {from, to};
 }
 
+// One channel's stored values there.
+cv::Mat PlaneOf(const StoredImage& image, const cv::Rect& part, int channel) {
+  cv::Mat plane(part.height, part.width, CV_32F);
+  image.Visit([&](const auto& samples) {
+    for (int y = 0; y < part.height; ++y) {
+      const size_t first = static_cast<size_t>(part.y + y) * image.width + part.x;
+      float* row = plane.ptr<float>(y);
+      for (int x = 0; x < part.width; ++x) {
+        row[x] = StoredImage::ValueOf(samples[3 * (first + x) + static_cast<size_t>(channel)]);
+      }
+    }
+  });
+  return plane;
+}
+
 }  // namespace
 
 SamplePicture SamplePictureOf(const Photo& photo, const Encoding& encoding,
@@ -60,10 +75,8 @@ SamplePicture SamplePictureOf(const Photo& photo, const Encoding& encoding,
   picture.top_px = part.y;
   cv::Mat sum = cv::Mat::zeros(picture.height, picture.width, CV_32F);
   for (int c = 0; c < 3; ++c) {
-    const cv::Mat plane(photo.image.height, photo.image.width, CV_32F,
-                        const_cast<float*>(photo.image.channel(c).data()));
     cv::Mat small;
-    cv::resize(plane(part), small, sum.size(), 0, 0, cv::INTER_AREA);
+    cv::resize(PlaneOf(photo.image, part, c), small, sum.size(), 0, 0, cv::INTER_AREA);
     sum += small / 3;
   }
   picture.values.resize(sum.total());

@@ -22,7 +22,7 @@ float WhiteLevel(const Image& image) {
 
 // As a screen would show it: mcc wants eight bits.
 cv::Mat Shown(const Photo& photo, bool linear) {
-  const Image& image = photo.image;
+  const Image image = photo.image.Planes();
   const float white = linear ? WhiteLevel(image) : 1;
   cv::Mat shown(image.height, image.width, CV_8UC3);
   for (size_t i = 0; i < image.pixels(); ++i) {

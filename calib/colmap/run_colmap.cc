@@ -51,13 +51,14 @@ std::string WorkName(const std::vector<ColmapPhoto>& photos, size_t index) {
 }
 
 void WriteCopy(const fs::path& from, const fs::path& to, const std::string& encoding) {
-  Photo photo = ReadPhoto(from);
+  const Photo photo = ReadPhoto(from);
+  Image image = photo.image.Planes();
   if (ResolveEncoding(encoding, from, photo) == Encoding::kLinear) {
-    for (float& value : photo.image.samples) {
+    for (float& value : image.samples) {
       value = std::pow(std::clamp(value, 0.0f, 1.0f), 1 / 2.2f);
     }
   }
-  WritePng(to, photo.image);
+  WritePng(to, image);
 }
 
 std::string Bytes(const fs::path& file) {

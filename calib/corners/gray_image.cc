@@ -6,8 +6,14 @@
 namespace glint {
 namespace {
 
-float Luma(const Image& image, size_t i) {
-  return 0.299f * image.channel(0)[i] + 0.587f * image.channel(1)[i] + 0.114f * image.channel(2)[i];
+float Luma(float red, float green, float blue) {
+  return 0.299f * red + 0.587f * green + 0.114f * blue;
+}
+
+// As std::lround(255·value) of a value in [0, 1]: a float and a half fit into a double.
+unsigned char CodeOf(float value) {
+  return static_cast<unsigned char>(
+      static_cast<int>(static_cast<double>(255.0f * std::clamp(value, 0.0f, 1.0f)) + 0.5));
 }
 
 // The value below which 99 % of a regular subset of the pixels lie.
@@ -20,25 +26,39 @@ float Percentile99(const std::vector<float>& luma) {
   return *nth;
 }
 
+// Linear photographs as edges in dark parts ask for.
+void Brighten(std::vector<float>* luma) {
+  const float white = std::max(Percentile99(*luma), 1e-12f);
+  for (float& value : *luma) {
+    value = std::pow(std::clamp(value / white, 0.0f, 1.0f), 1.0f / 2.2f);
+  }
+}
+
+template <class T>
+GrayImage GrayFrom(const StoredImage& image, const std::vector<T>& samples, bool linear) {
+  GrayImage gray{image.width, image.height, std::vector<unsigned char>(image.pixels())};
+  const auto luma_at = [&](size_t i) {
+    return Luma(StoredImage::ValueOf(samples[3 * i]), StoredImage::ValueOf(samples[3 * i + 1]),
+                StoredImage::ValueOf(samples[3 * i + 2]));
+  };
+  if (!linear) {
+    for (size_t i = 0; i < gray.samples.size(); ++i) gray.samples[i] = CodeOf(luma_at(i));
+    return gray;
+  }
+  std::vector<float> luma(image.pixels());
+  for (size_t i = 0; i < luma.size(); ++i) luma[i] = luma_at(i);
+  Brighten(&luma);
+  for (size_t i = 0; i < luma.size(); ++i) gray.samples[i] = CodeOf(luma[i]);
+  return gray;
+}
+
 }  // namespace
 
 GrayImage GrayFromPhoto(const Photo& photo) {
-  const Image& image = photo.image;
-  GrayImage gray{image.width, image.height, std::vector<unsigned char>(image.pixels())};
-  if (image.pixels() == 0) return gray;
-  std::vector<float> luma(image.pixels());
-  for (size_t i = 0; i < luma.size(); ++i) luma[i] = Luma(image, i);
-  if (photo.is_float() || photo.format == "raw") {
-    const float white = std::max(Percentile99(luma), 1e-12f);
-    for (float& value : luma) {
-      value = std::pow(std::clamp(value / white, 0.0f, 1.0f), 1.0f / 2.2f);
-    }
-  }
-  for (size_t i = 0; i < luma.size(); ++i) {
-    gray.samples[i] =
-        static_cast<unsigned char>(std::lround(255.0f * std::clamp(luma[i], 0.0f, 1.0f)));
-  }
-  return gray;
+  if (photo.image.pixels() == 0) return {};
+  const bool linear = photo.is_float() || photo.format == "raw";
+  return photo.image.Visit(
+      [&](const auto& samples) { return GrayFrom(photo.image, samples, linear); });
 }
 
 GrayImage Reduced(const GrayImage& image, int longest_px, int* factor) {

@@ -22,7 +22,7 @@ double ClippedShareOfSample(const Photo& photo, const std::vector<CornerObservat
   }
   const auto h = FitHomography(points);
   if (!h) return 0;
-  const Image& image = photo.image;
+  const StoredImage& image = photo.image;
   const CoverageGrid grid = MakeCoverageGrid(sample_size_mm, kPointsAcross);
   int inside = 0, clipped = 0;
   for (size_t cell = 0; cell < grid.cells(); ++cell) {
@@ -33,7 +33,7 @@ double ClippedShareOfSample(const Photo& photo, const std::vector<CornerObservat
     const size_t pixel = static_cast<size_t>(at->y()) * image.width + static_cast<size_t>(at->x());
     ++inside;
     bool full = false;
-    for (int c = 0; c < 3; ++c) full = full || image.channel(c)[pixel] >= kClipped;
+    for (int c = 0; c < 3; ++c) full = full || image.at(pixel, c) >= kClipped;
     if (full) ++clipped;
   }
   return inside == 0 ? 0 : static_cast<double>(clipped) / inside;

@@ -20,7 +20,7 @@ struct Mean {
 // Mean linear radiance over a disc; nullopt: not wholly in the picture, or clipped.
 std::optional<Mean> DiscMean(const Photo& photo, Encoding encoding,
                              const Eigen::Vector2d& centre_px, double radius_px) {
-  const Image& image = photo.image;
+  const StoredImage& image = photo.image;
   const int x0 = static_cast<int>(std::floor(centre_px.x() - radius_px));
   const int x1 = static_cast<int>(std::floor(centre_px.x() + radius_px));
   const int y0 = static_cast<int>(std::floor(centre_px.y() - radius_px));
@@ -32,7 +32,7 @@ std::optional<Mean> DiscMean(const Photo& photo, Encoding encoding,
     for (int x = x0; x <= x1; ++x) {
       if ((Eigen::Vector2d(x + 0.5, y + 0.5) - centre_px).norm() > radius_px) continue;
       for (int c = 0; c < 3; ++c) {
-        const float stored = image.channel(c)[static_cast<size_t>(y) * image.width + x];
+        const float stored = image.at(static_cast<size_t>(y) * image.width + x, c);
         if (!photo.is_float() && stored >= kClipped) return std::nullopt;
         sum[c] += LinearFromEncoded(encoding, stored, c);
       }

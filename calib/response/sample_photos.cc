@@ -34,14 +34,13 @@ struct Spread {
   bool clipped = false;
 };
 
-Spread SpreadIn(const Image& image, const Rectangle& r, int channel) {
+Spread SpreadIn(const StoredImage& image, const Rectangle& r, int channel) {
   double sum = 0, squares = 0;
   int count = 0;
   Spread spread;
-  const auto plane = image.channel(channel);
   for (int y = r.y0; y < r.y1; ++y) {
     for (int x = r.x0; x < r.x1; ++x) {
-      const float value = plane[static_cast<size_t>(y) * image.width + x];
+      const float value = image.at(static_cast<size_t>(y) * image.width + x, channel);
       spread.clipped = spread.clipped || value >= kClipped;
       sum += value;
       squares += static_cast<double>(value) * value;
@@ -54,7 +53,7 @@ Spread SpreadIn(const Image& image, const Rectangle& r, int channel) {
   return spread;
 }
 
-std::vector<Rectangle> Cells(const Image& image) {
+std::vector<Rectangle> Cells(const StoredImage& image) {
   const double side = static_cast<double>(std::max(image.width, image.height)) / kCells;
   std::vector<Rectangle> cells;
   for (double y = 0; y + side <= image.height; y += side) {
@@ -74,7 +73,7 @@ Photo ReadDeveloped(const fs::path& file) {
                   "give the camera's JPEGs; RAW needs no response curve");
 }
 
-void RequireSize(const fs::path& file, const Image& image, const fs::path& first_file,
+void RequireSize(const fs::path& file, const StoredImage& image, const fs::path& first_file,
                  const std::pair<int, int>& size) {
   if (std::pair{image.width, image.height} == size) return;
   throw UserError(file, "size", fmt::format("{}x{} pixels", image.width, image.height),
@@ -101,7 +100,7 @@ void RequireSeries(const std::vector<double>& exposures, const fs::path& file) {
 
 // A spot with any channel clipped says nothing of the others either, and a colourful one little:
 // cameras mix their channels before the tone curve and stretch colours after it.
-void AddSpots(const Image& image, const std::vector<Rectangle>& cells, int exposure,
+void AddSpots(const StoredImage& image, const std::vector<Rectangle>& cells, int exposure,
               ResponseProblems* problems) {
   for (size_t i = 0; i < cells.size(); ++i) {
     const std::array<Spread, 3> spreads = {
@@ -118,7 +117,7 @@ void AddSpots(const Image& image, const std::vector<Rectangle>& cells, int expos
   }
 }
 
-Rectangle Bounded(const GreyPatch& patch, const Image& image, const fs::path& file) {
+Rectangle Bounded(const GreyPatch& patch, const StoredImage& image, const fs::path& file) {
   const Rectangle r{static_cast<int>(std::lround(patch.x)), static_cast<int>(std::lround(patch.y)),
                     static_cast<int>(std::lround(patch.x + patch.width)),
                     static_cast<int>(std::lround(patch.y + patch.height))};

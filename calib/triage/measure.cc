@@ -17,7 +17,7 @@ struct Region {
 };
 
 // Of the corners, or the whole picture.
-Region BoardRegion(const Image& image, const BoardDetection& detection) {
+Region BoardRegion(const StoredImage& image, const BoardDetection& detection) {
   if (detection.corners.empty()) return {0, 0, image.width, image.height};
   double left = image.width, right = 0, top = image.height, bottom = 0;
   for (const CornerObservation& corner : detection.corners) {
@@ -36,17 +36,17 @@ void MeasureExposure(const Photo& photo, const GrayImage& gray, const Region& re
                      PhotoMeasures* measures) {
   std::array<size_t, 256> histogram{};
   size_t count = 0, clipped = 0;
-  const Image& image = photo.image;
-  for (int y = region.y0; y < region.y1; y += 2) {
-    for (int x = region.x0; x < region.x1; x += 2) {
-      const size_t i = static_cast<size_t>(y) * image.width + x;
-      ++histogram[gray.samples[i]];
-      ++count;
-      const float brightest =
-          std::max({image.channel(0)[i], image.channel(1)[i], image.channel(2)[i]});
-      if (!photo.is_float() && brightest >= kClipped) ++clipped;
+  photo.image.Visit([&](const auto& samples) {
+    for (int y = region.y0; y < region.y1; y += 2) {
+      for (int x = region.x0; x < region.x1; x += 2) {
+        const size_t i = static_cast<size_t>(y) * gray.width + x;
+        ++histogram[gray.samples[i]];
+        ++count;
+        const auto brightest = std::max({samples[3 * i], samples[3 * i + 1], samples[3 * i + 2]});
+        if (!photo.is_float() && StoredImage::ValueOf(brightest) >= kClipped) ++clipped;
+      }
     }
-  }
+  });
   if (count == 0) return;
   measures->clipped = static_cast<double>(clipped) / static_cast<double>(count);
   size_t above = 0;
@@ -153,6 +153,14 @@ Photo WithoutSamples(const Photo& photo) {
   return facts;
 }
 
+double Brightest(const StoredImage& image) {
+  return image.Visit([]<class T>(const std::vector<T>& samples) {
+    T brightest = 0;
+    for (const T sample : samples) brightest = std::max(brightest, sample);
+    return static_cast<double>(StoredImage::ValueOf(brightest));
+  });
+}
+
 double MedianBlur(const BoardDetection& detection) {
   std::vector<double> blurs;
   for (const CornerObservation& corner : detection.corners) blurs.push_back(corner.blur_px);
@@ -171,9 +179,7 @@ PhotoMeasures MeasurePhoto(const std::string& name, const Photo& photo, const Gr
   measures.file = WithoutSamples(photo);
   measures.corners = static_cast<int>(detection.corners.size());
   measures.blur_px = MedianBlur(detection);
-  for (const float sample : photo.image.samples) {
-    measures.brightest = std::max(measures.brightest, static_cast<double>(sample));
-  }
+  measures.brightest = Brightest(photo.image);
   int factor = 1;
   const GrayImage small = Reduced(gray, kReduced_px, &factor);
   const Region region = BoardRegion(photo.image, detection);

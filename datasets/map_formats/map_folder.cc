@@ -26,7 +26,7 @@ Image ReadMap(const fs::path& folder, const std::map<std::string, fs::path>& fil
     throw UserError(folder, kind, "no file named *_" + kind,
                     "put NAME_" + kind + ".png or .jpg there");
   }
-  Image image = ReadPhoto(found->second).image;
+  Image image = ReadPhoto(found->second).image.Planes();
   if (color != nullptr && (image.width != color->width || image.height != color->height)) {
     throw UserError(found->second, "size",
                     std::to_string(image.width) + "x" + std::to_string(image.height),

@@ -39,7 +39,7 @@ SvbrdfMaps ReadMapStrip(const std::filesystem::path& file, MapLayout layout,
                         const MapEncodings& encodings) {
   const bool with_photo = layout == MapLayout::kPhotoStrip;
   const int tiles = with_photo ? 5 : 4;
-  const Image strip = ReadPhoto(file).image;
+  const Image strip = ReadPhoto(file).image.Planes();
   if (strip.width != tiles * strip.height) {
     throw UserError(file, "size", std::to_string(strip.width) + "x" + std::to_string(strip.height),
                     "this strip must be " + std::to_string(tiles) + " square maps wide");

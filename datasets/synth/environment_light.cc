@@ -125,7 +125,7 @@ EnvironmentLight ReadEnvironment(const std::filesystem::path& file, int rings) {
     throw UserError(file, "environment", "a picture of " + std::to_string(photo.bits) + " bits",
                     "give a linear equirectangular map, .hdr or .exr");
   }
-  EnvironmentLight environment = FromImage(photo.image, rings);
+  EnvironmentLight environment = FromImage(photo.image.Planes(), rings);
   if (environment.lights.empty()) {
     throw UserError(file, "environment", "no light above the horizon",
                     "give an equirectangular map whose upper half is not black");

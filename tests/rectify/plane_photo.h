@@ -54,7 +54,7 @@ inline Photo PhotographPlane(const Camera& camera, const Rigid3& pose,
                              int supersamples) {
   Photo photo;
   photo.bits = 32;
-  photo.image = Image(camera.width_px, camera.height_px, {"R", "G", "B"});
+  Image image(camera.width_px, camera.height_px, {"R", "G", "B"});
   for (int y = 0; y < camera.height_px; ++y) {
     for (int x = 0; x < camera.width_px; ++x) {
       double sum = 0;
@@ -67,20 +67,31 @@ inline Photo PhotographPlane(const Camera& camera, const Rigid3& pose,
       }
       const float mean = static_cast<float>(sum / (supersamples * supersamples));
       for (int c = 0; c < 3; ++c) {
-        photo.image.channel(c)[static_cast<size_t>(y) * camera.width_px + x] = mean;
+        image.channel(c)[static_cast<size_t>(y) * camera.width_px + x] = mean;
       }
     }
   }
+  photo.image = Stored(image, photo.bits);
   return photo;
 }
 
-// A photo of one level; `bits` as stored.
-inline Photo FlatPhoto(int width, int height, float stored, int bits) {
+// A photo of what such planes show; `bits` as stored.
+inline Photo PhotoOf(const Image& stored, int bits) {
   Photo photo;
   photo.bits = bits;
-  photo.image = Image(width, height, {"R", "G", "B"});
-  std::fill(photo.image.samples.begin(), photo.image.samples.end(), stored);
+  photo.image = Stored(stored, bits);
   return photo;
+}
+
+inline Image FlatImage(int width, int height, float stored) {
+  Image image(width, height, {"R", "G", "B"});
+  std::fill(image.samples.begin(), image.samples.end(), stored);
+  return image;
+}
+
+// A photo of one level.
+inline Photo FlatPhoto(int width, int height, float stored, int bits) {
+  return PhotoOf(FlatImage(width, height, stored), bits);
 }
 
 }  // namespace glint

@@ -16,16 +16,13 @@ constexpr int kThumbnailSide_px = 320;
 
 }  // namespace
 
-std::string SmallJpeg(const Image& image) {
+std::string SmallJpeg(const StoredImage& image) {
   cv::Mat picture(image.height, image.width, CV_8UC3);
-  for (int y = 0; y < image.height; ++y) {
-    unsigned char* row = picture.ptr<unsigned char>(y);
+  for (size_t i = 0; i < image.pixels(); ++i) {
     for (int c = 0; c < 3; ++c) {
-      const float* from = image.channel(c).data() + static_cast<size_t>(y) * image.width;
-      for (int x = 0; x < image.width; ++x) {
-        row[3 * x + 2 - c] =
-            static_cast<unsigned char>(std::lround(255 * std::clamp(from[x], 0.0f, 1.0f)));
-      }
+      const float value = std::clamp(image.at(i, c), 0.0f, 1.0f);
+      picture.data[3 * i + 2 - static_cast<size_t>(c)] =
+          static_cast<unsigned char>(std::lround(255 * value));
     }
   }
   const double scale =

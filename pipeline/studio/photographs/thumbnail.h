@@ -9,7 +9,7 @@
 namespace glint {
 
 // As a JPEG of 320 px.
-std::string SmallJpeg(const Image& image);
+std::string SmallJpeg(const StoredImage& image);
 
 // Of a photograph, of which no more is read than that takes. Throws Error for what is none.
 std::string SmallJpegOf(const std::filesystem::path& photo);

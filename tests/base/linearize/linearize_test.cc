@@ -45,8 +45,9 @@ TEST(Encoding, MeasuredCurvesAreReadPerChannelAndForDevelopedPhotosAlone) {
   for (const int bits : {8, 16}) {
     Photo photo;
     photo.bits = bits;
-    photo.image = Image(16, 16, {"R", "G", "B"});
-    std::fill(photo.image.samples.begin(), photo.image.samples.end(), 102 / 255.0f);
+    Image grey(16, 16, {"R", "G", "B"});
+    std::fill(grey.samples.begin(), grey.samples.end(), 102 / 255.0f);
+    photo.image = Stored(grey, bits);
     const auto pixel =
         LinearPhoto(photo, encoding).Visit([](const auto& reader) { return reader.At(5); });
     for (int c = 0; c < 3; ++c) {
@@ -96,8 +97,9 @@ TEST(LinearPhoto, IsInRec709WhateverTheProfile) {
   for (const int bits : {8, 16, 32}) {
     Photo photo;
     photo.bits = bits;
-    photo.image = Image(1, 1, {"R", "G", "B"});
-    photo.image.samples = {0.8f, 0.2f, 0.0f};
+    Image pixel(1, 1, {"R", "G", "B"});
+    pixel.samples = {0.8f, 0.2f, 0.0f};
+    photo.image = Stored(pixel, bits);
     photo.colour = ProfileOfCodePoints(12, 13);
     const LinearPhoto linear(photo, Encoding::kLinear);
     const auto rgb = linear.Visit([](const auto& reader) { return reader.At(0).rgb; });
@@ -111,8 +113,9 @@ TEST(LinearPhoto, ReadsStoredCodesThroughTheCurve) {
   for (const int bits : {8, 16, 32}) {
     Photo photo;
     photo.bits = bits;
-    photo.image = Image(2, 1, {"R", "G", "B"});
-    photo.image.samples = {10 / 255.0f, 254 / 255.0f, 20 / 255.0f, 30 / 255.0f, 40 / 255.0f, 0.0f};
+    Image pixels(2, 1, {"R", "G", "B"});
+    pixels.samples = {10 / 255.0f, 254 / 255.0f, 20 / 255.0f, 30 / 255.0f, 40 / 255.0f, 0.0f};
+    photo.image = Stored(pixels, bits);
     SaturationRule rule;
     rule.float_level = 0.995;
     const LinearPhoto linear(photo, Encoding::kSrgb, rule);

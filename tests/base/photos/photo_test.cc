@@ -67,17 +67,18 @@ TEST(PhotoName, ListsOfNamesMayHoldNamesWithCommas) {
 
 // The picture 1 2 3 / 4 5 6 as EXIF's eight orientations store it (EXIF 2.3, tag 0x0112).
 TEST(Upright, AllEightOrientationsGiveTheSamePicture) {
-  const std::vector<std::vector<int>> stored = {
+  const std::vector<std::vector<std::uint16_t>> stored = {
       {1, 2, 3, 4, 5, 6}, {3, 2, 1, 6, 5, 4}, {6, 5, 4, 3, 2, 1}, {4, 5, 6, 1, 2, 3},
       {1, 4, 2, 5, 3, 6}, {3, 6, 2, 5, 1, 4}, {6, 3, 5, 2, 4, 1}, {4, 1, 5, 2, 6, 3}};
   for (int orientation = 1; orientation <= 8; ++orientation) {
     const bool turned = TurnExchangesAxes(orientation);
-    const Image image = UprightImage(stored[orientation - 1], {turned ? 2 : 3, turned ? 3 : 2, 1},
-                                     orientation, 1.0);
+    const StoredImage image =
+        UprightImage(stored[orientation - 1], {turned ? 2 : 3, turned ? 3 : 2, 1}, orientation);
     ASSERT_EQ(image.width, 3) << orientation;
-    for (int i = 0; i < 6; ++i) {
-      EXPECT_EQ(image.samples[i], static_cast<float>(i + 1)) << orientation << " at " << i;
-    }
+    image.Visit([&](const auto& samples) {
+      ASSERT_EQ(samples.size(), 18u);
+      for (size_t i = 0; i < 18; ++i) EXPECT_EQ(samples[i], i / 3 + 1) << orientation << ", " << i;
+    });
   }
 }
 
@@ -93,9 +94,9 @@ TEST(Upright, APhonesEightOrientationsLookTheSame) {
     double same = 0, mirrored = 0;
     for (int y = 0; y < 450; ++y) {
       for (int x = 0; x < 600; ++x) {
-        const float wanted = first.image.samples[y * 600 + x];
-        same += std::abs(photo.image.samples[y * 600 + x] - wanted);
-        mirrored += std::abs(photo.image.samples[y * 600 + 599 - x] - wanted);
+        const float wanted = first.image.at(y * 600 + x, 0);
+        same += std::abs(photo.image.at(y * 600 + x, 0) - wanted);
+        mirrored += std::abs(photo.image.at(y * 600 + 599 - x, 0) - wanted);
       }
     }
     EXPECT_LT(same, 0.4 * mirrored) << orientation;

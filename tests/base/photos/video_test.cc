@@ -38,7 +38,7 @@ void WriteVideo(const std::filesystem::path& file, const char* codec) {
 }
 
 float At(const Photo& photo, int x, int y) {
-  return 255 * photo.image.channel(1)[static_cast<size_t>(y) * photo.image.width + x];
+  return 255 * photo.image.at(static_cast<size_t>(y) * photo.image.width + x, 1);
 }
 
 TEST(Video, AnyFrameIsReadExactlyInAnyOrder) {

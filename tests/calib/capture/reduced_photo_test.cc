@@ -38,10 +38,10 @@ void WriteJpeg(const fs::path& file, int orientation) {
   output->close();
 }
 
-float BlockMean(const Image& image, int c, int x0, int y0, int side) {
+float BlockMean(const StoredImage& image, int c, int x0, int y0, int side) {
   float sum = 0;
   for (int y = y0; y < y0 + side; ++y) {
-    for (int x = x0; x < x0 + side; ++x) sum += image.channel(c)[y * image.width + x];
+    for (int x = x0; x < x0 + side; ++x) sum += image.at(y * image.width + x, c);
   }
   return sum / static_cast<float>(side * side);
 }
@@ -62,7 +62,7 @@ TEST(ReducedPhoto, IsTheWholePhotographShrunkForEveryOrientation) {
     for (int y = 0; y < small.image.height; ++y) {
       for (int x = 0; x < small.image.width; ++x) {
         for (int c = 0; c < 3; ++c) {
-          ASSERT_NEAR(small.image.channel(c)[y * small.image.width + x],
+          ASSERT_NEAR(small.image.at(y * small.image.width + x, c),
                       BlockMean(whole.image, c, 4 * x, 4 * y, 4), 0.03)
               << orientation << " at " << x << ", " << y;
         }

@@ -128,7 +128,7 @@ class ChartCapture : public testing::SyntheticCapture {
           {{x - 120, y - 75}, {x + 120, y - 80}, {x + 118, y + 78}, {x - 122, y + 76}}};
       shot.bits = 32;
       shot.white = 0.7;
-      const Image chart = testing::PhotographOf(*ChartOfKind("classic24"), shot).image;
+      const Image chart = testing::PhotographOf(*ChartOfKind("classic24"), shot).image.Planes();
       for (int row = static_cast<int>(y) - 95; row < y + 95; ++row) {
         for (int column = static_cast<int>(x) - 140; column < x + 140; ++column) {
           const size_t at = static_cast<size_t>(row) * image->width + column;
@@ -143,7 +143,7 @@ class ChartCapture : public testing::SyntheticCapture {
     testing::ChartShot shot;
     shot.camera = camera;
     WritePng(capture_ / "chart/chart.png",
-             testing::PhotographOf(*ChartOfKind("classic24"), shot).image);
+             testing::PhotographOf(*ChartOfKind("classic24"), shot).image.Planes());
   }
 
   test::Outcome Calibrate(const std::vector<std::string>& options = {}) const {

@@ -74,7 +74,7 @@ Photo PhotographOf(const Chart& chart, const ChartShot& shot) {
   Photo photo;
   photo.bits = shot.bits;
   photo.format = shot.bits == 32 ? "openexr" : "png";
-  photo.image = Image(shot.width, shot.height, kRgbChannels);
+  Image image(shot.width, shot.height, kRgbChannels);
   for (int y = 0; y < shot.height; ++y) {
     for (int x = 0; x < shot.width; ++x) {
       const Eigen::Vector2d at = Mapped(chart_from_image, Eigen::Vector2d(x + 0.5, y + 0.5));
@@ -86,11 +86,11 @@ Photo PhotographOf(const Chart& chart, const ChartShot& shot) {
         const double stored =
             shot.bits == 32 ? linear
                             : std::round(255 * std::pow(std::min(linear, 1.0), 1 / 2.2)) / 255;
-        photo.image.channel(c)[static_cast<size_t>(y) * shot.width + x] =
-            static_cast<float>(stored);
+        image.channel(c)[static_cast<size_t>(y) * shot.width + x] = static_cast<float>(stored);
       }
     }
   }
+  photo.image = Stored(image, shot.bits);
   return photo;
 }
 

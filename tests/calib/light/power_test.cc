@@ -74,10 +74,7 @@ TEST(SamplePaper, FindsWhitePaperAndLeavesOutWhatClips) {
     const GrayImage gray =
         testing::Photograph(board, camera, testing::LookAt(240, 15, 40, 5), settings);
     Photo photo;
-    photo.image = Image(gray.width, gray.height, {"R", "G", "B"});
-    for (size_t i = 0; i < gray.samples.size(); ++i) {
-      for (int c = 0; c < 3; ++c) photo.image.channel(c)[i] = gray.samples[i] / 255.0f;
-    }
+    photo.image = Stored(testing::RgbOf(gray), 8);
     const auto detection = DetectBoard(gray, board);
     const auto samples =
         SamplePaper(photo, Encoding::kGamma22, board, PaperSpots(board), detection.corners);

@@ -17,7 +17,7 @@ using testing::LookAt;
 
 Photo PhotoOf(const GrayImage& gray) {
   Photo photo;
-  photo.image = testing::RgbOf(gray);
+  photo.image = Stored(testing::RgbOf(gray), 8);
   photo.format = "jpeg";
   photo.camera_model = "Maker Phone";
   photo.exposure_time_s = 0.01;

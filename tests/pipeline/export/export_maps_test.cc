@@ -113,7 +113,7 @@ TEST(ExportTest, WritesBothDepthsWithinHalfAStep) {
       EXPECT_EQ(entry["range_mm"], Json({-0.5, 0.75}));
     }
     if (entry["map"] != "roughness") continue;
-    EXPECT_NEAR(photo.image.samples[0], 0.3, 0.5 / (std::pow(2.0, photo.bits) - 1) + 1e-7);
+    EXPECT_NEAR(photo.image.at(0, 0), 0.3, 0.5 / (std::pow(2.0, photo.bits) - 1) + 1e-7);
   }
 }
 
@@ -123,7 +123,7 @@ TEST(ExportTest, ExrFilesAreLinear) {
   for (const Json& entry : written.files) {
     if (entry["map"] != "diffuse") continue;
     const Photo photo = written.Read(entry);
-    const float stored = photo.image.samples[0];
+    const float stored = photo.image.at(0, 0);
     const float albedo = Uniform().maps.plane(kDiffuseR)[0];
     const bool exr = entry["bits"] == 32;
     EXPECT_EQ(entry["encoding"], exr ? "linear" : "sRGB");

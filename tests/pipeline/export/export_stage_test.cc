@@ -90,7 +90,7 @@ TEST_F(ExportStageTest, LargeMapsKeepTheirSizeAndTheirRelief) {
   }
   for (const char* map : {"height", "ao"}) {
     const std::string file = "material_" + std::string(map) + ".png";
-    const Image exact = ReadPhoto(whole / file).image, averaged = ReadPhoto(small / file).image;
+    const Image exact = ReadPicture(whole / file), averaged = ReadPicture(small / file);
     ASSERT_EQ(averaged.width, kWidth);
     ASSERT_EQ(averaged.height, kHeight);
     double sum = 0, squares = 0, difference = 0;

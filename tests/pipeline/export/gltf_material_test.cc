@@ -62,7 +62,7 @@ class GltfTest : public testing::Test {
     const Json& source = json_["textures"][texture["index"].get<size_t>()]["source"];
     const auto file = folder_.path() / "texture.png";
     test::WriteAll(file, View(json_["images"][source.get<size_t>()]["bufferView"]));
-    return ReadPhoto(file).image.channel(channel)[texel];
+    return ReadPhoto(file).image.at(texel, channel);
   }
 
   test::TemporaryFolder folder_;

@@ -29,14 +29,12 @@ ResampledView OneToOne(const LinearPhoto& photo, FilterKind filter) {
                          options);
 }
 
-Photo NoisePhoto(int side, int bits, unsigned seed) {
+// Values of 8 bits.
+Image NoiseImage(int side, unsigned seed) {
   std::mt19937 random(seed);
-  Photo photo = FlatPhoto(side, side, 0, bits);
-  const unsigned max = bits == 8 ? 255 : 65535;
-  for (float& sample : photo.image.samples) {
-    sample = static_cast<float>(random() % (max - 10)) / static_cast<float>(max);
-  }
-  return photo;
+  Image image = FlatImage(side, side, 0);
+  for (float& sample : image.samples) sample = static_cast<float>(random() % 245) / 255.0f;
+  return image;
 }
 
 TEST(Resample, ConstantsStayConstants) {
@@ -67,15 +65,15 @@ TEST(Resample, DividesTheLensesFalloffOut) {
   ResampleOptions options;
   options.vignetting = camera;
   for (const float wall : {0.6f, 1.5f}) {
-    Photo photo = FlatPhoto(400, 400, 0, 32);
-    for (size_t i = 0; i < photo.image.samples.size(); ++i) {
-      const size_t pixel = i % photo.image.pixels(), column = pixel % 400, row = pixel / 400;
-      photo.image.samples[i] =
+    Image image = FlatImage(400, 400, 0);
+    for (size_t i = 0; i < image.samples.size(); ++i) {
+      const size_t pixel = i % image.pixels(), column = pixel % 400, row = pixel / 400;
+      image.samples[i] =
           static_cast<float>(wall * Vignetting(camera, {static_cast<double>(column) + 0.5,
                                                         static_cast<double>(row) + 0.5}));
     }
-    const ResampledView view =
-        ResampleToPlane(LinearPhoto(photo, Encoding::kLinear), projection, Plane(64, 50), options);
+    const ResampledView view = ResampleToPlane(LinearPhoto(PhotoOf(image, 32), Encoding::kLinear),
+                                               projection, Plane(64, 50), options);
     for (const float value : view.rgb) ASSERT_NEAR(value, wall, 2e-4);
   }
   const LinearPhoto dark(FlatPhoto(400, 400, 250 / 255.0f, 8), Encoding::kLinear);
@@ -172,14 +170,14 @@ TEST(Resample, BlobsLandWhereTheyWerePainted) {
 // Contrast that a sine wave keeps at 1:1, by its frequency in cycles per texel.
 double ContrastAtOneToOne(double frequency, FilterKind filter) {
   const int side = 128;
-  Photo photo = FlatPhoto(side, side, 0, 32);
+  Image image = FlatImage(side, side, 0);
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
-      photo.image.channel(0)[static_cast<size_t>(y) * side + x] =
+      image.channel(0)[static_cast<size_t>(y) * side + x] =
           static_cast<float>(0.5 + 0.4 * std::cos(2 * std::numbers::pi * frequency * x));
     }
   }
-  const ResampledView view = OneToOne(LinearPhoto(std::move(photo), Encoding::kLinear), filter);
+  const ResampledView view = OneToOne(LinearPhoto(PhotoOf(image, 32), Encoding::kLinear), filter);
   double re = 0, im = 0;
   const size_t row = 64 * side;
   for (int x = 14; x < 114; ++x) {
@@ -200,20 +198,20 @@ TEST(Resample, StaysSharpAtOneToOne) {
 
 // The mean of black and white pixels is half the light, not the light of the mean code.
 TEST(Resample, AveragesRadianceAndNotCodes) {
-  Photo photo = FlatPhoto(256, 256, 0, 8);
-  for (size_t i = 0; i < photo.image.samples.size(); ++i) {
+  Image image = FlatImage(256, 256, 0);
+  for (size_t i = 0; i < image.samples.size(); ++i) {
     const size_t x = i % 256, y = i / 256 % 256;
-    photo.image.samples[i] = (x + y) % 2 == 0 ? 0.0f : 250 / 255.0f;
+    image.samples[i] = (x + y) % 2 == 0 ? 0.0f : 250 / 255.0f;
   }
   const float white = LinearFromEncoded(Encoding::kGamma22, 250 / 255.0f);
-  const LinearPhoto linear(std::move(photo), Encoding::kGamma22);
+  const LinearPhoto linear(PhotoOf(image, 8), Encoding::kGamma22);
   const SamplePlane plane = Plane(64, 1);
   const ResampledView view = ResampleToPlane(linear, TopViewProjection(plane, 256, 256), plane, {});
   EXPECT_NEAR(view.rgb[32 * 64 + 32], white / 2, 0.005);
 }
 
 TEST(Resample, SameBytesForAnyNumberOfThreads) {
-  const LinearPhoto photo(NoisePhoto(500, 8, 7), Encoding::kSrgb);
+  const LinearPhoto photo(PhotoOf(NoiseImage(500, 7), 8), Encoding::kSrgb);
   const CameraProjection projection(TestCamera(500, 520, -0.1), LookAtSample(100, 35, 10));
   const SamplePlane plane = Plane(300, 70);
   ResampleOptions options;
@@ -227,13 +225,11 @@ TEST(Resample, SameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Resample, EightAndSixteenBitAndFloatStorageAgree) {
-  const Photo eight = NoisePhoto(200, 8, 3);
-  Photo sixteen = eight, floats = eight;
-  sixteen.bits = 16;
-  floats.bits = 32;
-  const ResampledView a = OneToOne(LinearPhoto(eight, Encoding::kGamma22), FilterKind::kSharp);
-  const ResampledView b = OneToOne(LinearPhoto(sixteen, Encoding::kGamma22), FilterKind::kSharp);
-  const ResampledView c = OneToOne(LinearPhoto(floats, Encoding::kGamma22), FilterKind::kSharp);
+  const Image noise = NoiseImage(200, 3);
+  const auto stored_with = [&](int bits) {
+    return OneToOne(LinearPhoto(PhotoOf(noise, bits), Encoding::kGamma22), FilterKind::kSharp);
+  };
+  const ResampledView a = stored_with(8), b = stored_with(16), c = stored_with(32);
   for (size_t i = 0; i < a.rgb.size(); ++i) {
     ASSERT_NEAR(a.rgb[i], b.rgb[i], 1e-4);
     ASSERT_NEAR(a.rgb[i], c.rgb[i], 1e-6);
@@ -244,10 +240,10 @@ TEST(Resample, EightAndSixteenBitAndFloatStorageAgree) {
 TEST(Resample, MasksWhatAClippedPixelTouches) {
   for (const int scale : {1, 4}) {
     const int side = 32 * scale;
-    Photo photo = FlatPhoto(side, side, 0.25f, 8);
+    Image image = FlatImage(side, side, 0.25f);
     const int at = 16 * scale + scale / 2;
-    photo.image.channel(1)[static_cast<size_t>(at) * side + at] = 1.0f;
-    const LinearPhoto linear(std::move(photo), Encoding::kGamma22);
+    image.channel(1)[static_cast<size_t>(at) * side + at] = 1.0f;
+    const LinearPhoto linear(PhotoOf(image, 8), Encoding::kGamma22);
     const SamplePlane plane = Plane(32, 1);
     const ResampledView view =
         ResampleToPlane(linear, TopViewProjection(plane, side, side), plane, {});
@@ -335,9 +331,9 @@ TEST(CameraProjection, AFisheyeSeesAsFarAsAllItsTermsGrow) {
 }
 
 TEST(Resample, NegativeLobesNeverMakeNegativeLight) {
-  Photo photo = FlatPhoto(64, 64, 0.0f, 32);
-  photo.image.channel(0)[32 * 64 + 32] = 1000.0f;
-  const LinearPhoto linear(std::move(photo), Encoding::kLinear);
+  Image image = FlatImage(64, 64, 0.0f);
+  image.channel(0)[32 * 64 + 32] = 1000.0f;
+  const LinearPhoto linear(PhotoOf(image, 32), Encoding::kLinear);
   for (const FilterKind filter : {FilterKind::kSharp, FilterKind::kLanczos}) {
     const ResampledView view = OneToOne(linear, filter);
     EXPECT_GE(*std::min_element(view.rgb.begin(), view.rgb.end()), 0.0f);

@@ -73,7 +73,7 @@ Errors Measure(double tilt_deg, double roll_deg, FilterKind filter) {
         const size_t pixel =
             static_cast<size_t>(at.y()) * camera.width_px + static_cast<size_t>(at.x());
         fine += std::pow(value - 0.5, 2);
-        point += std::pow(taken.image.channel(0)[pixel] - 0.5, 2);
+        point += std::pow(taken.image.at(pixel, 0) - 0.5, 2);
         ++fine_count;
       }
     }

@@ -65,11 +65,11 @@ TEST(RectifyPhoto, CountsWhereTexelsWent) {
 
 // A view that is written by rows is the view.
 TEST(RectifyPhoto, RowsAreThoseOfTheWhole) {
-  Photo photo = FlatPhoto(300, 300, 0.5f, 8);
-  for (size_t i = 0; i < photo.image.samples.size(); ++i) {
-    photo.image.samples[i] = 0.5f + 0.4f * std::sin(0.01f * static_cast<float>(i));
+  Image waves = FlatImage(300, 300, 0.5f);
+  for (size_t i = 0; i < waves.samples.size(); ++i) {
+    waves.samples[i] += 0.4f * std::sin(0.01f * static_cast<float>(i));
   }
-  const LinearPhoto linear(photo, Encoding::kGamma22);
+  const LinearPhoto linear(PhotoOf(waves, 8), Encoding::kGamma22);
   const CameraProjection projection(TestCamera(300, 300), LookAtSample(100, 20, 0));
   SamplePlane plane = SmallPlane();
   plane.height = kRowsAtOnce + 100;

@@ -51,9 +51,10 @@ class RectifyStage : public testing::Test {
   Camera camera() const { return TestCamera(kSide_px, 250, -0.1, 0.02); }
 
   void TakePhoto(int i) {
-    Photo photo = PhotographPlane(camera(), poses_[static_cast<size_t>(i)], Pattern, 1);
-    for (float& value : photo.image.samples) value = EncodedFromLinear(Encoding::kGamma22, value);
-    WritePng(PhotoFile(i), photo.image, 16);
+    Image image =
+        PhotographPlane(camera(), poses_[static_cast<size_t>(i)], Pattern, 1).image.Planes();
+    for (float& value : image.samples) value = EncodedFromLinear(Encoding::kGamma22, value);
+    WritePng(PhotoFile(i), image, 16);
   }
 
   // Writes what glint-calib would.
