@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/errors/errors.h"
 #include "base/formats/board_file.h"
@@ -28,6 +29,21 @@ std::array<double, 3> Triple(const std::vector<double>& numbers, const std::stri
         fmt::format("{}: found {} numbers; give three, as in 10,0,0", option, numbers.size()));
   }
   return {numbers[0], numbers[1], numbers[2]};
+}
+
+// "25@90": 25° from the normal, toward +y.
+std::vector<CameraDirection> Directions(const std::vector<std::string>& words) {
+  std::vector<CameraDirection> directions;
+  for (const std::string& word : words) {
+    CameraDirection& direction = directions.emplace_back();
+    int end = 0;
+    const int read =
+        std::sscanf(word.c_str(), "%lf@%lf%n", &direction.tilt_deg, &direction.azimuth_deg, &end);
+    if (read != 2 || static_cast<size_t>(end) != word.size()) {
+      throw UserError("directions: found " + word + "; give tilt and azimuth, as in 25@90");
+    }
+  }
+  return directions;
 }
 
 // Where maps come from, for all verbs: a file, or the generator at --family and --seed.
@@ -149,6 +165,7 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
   CapturePlanOptions& plan = capture.plan;
   int texels = 1024;
   std::vector<double> distance_mm;
+  std::vector<std::string> directions;
   std::vector<double> flash_mm(plan.flash_offset_mm.begin(), plan.flash_offset_mm.end());
   std::vector<double> tint(plan.flash_tint.begin(), plan.flash_tint.end());
   std::string board;
@@ -168,6 +185,10 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
               "camera's distance: nearest,farthest (default: 270,330 for a sample of 100 mm and "
               "for your own boards; in proportion to --sample-mm otherwise)");
   options.AddRange("tilt-deg", &plan.largest_tilt_deg, 0, 65, "largest tilt of the later views");
+  options.Add(
+      "directions", &directions,
+      "where the photographs are taken from, tilt and azimuth (from the right over the top) "
+      "in degrees: 0@0,25@90,… (default: drawn, --photos of them)");
   options.Add("flash-offset-mm", &flash_mm,
               "flash position in the camera frame: right,down,forward");
   options.Add("flash-tint", &tint, "colour of the flash: r,g,b in (0, 1]");
@@ -201,6 +222,8 @@ int RunCapture(int argc, char** argv, const ProgramInfo& info) {
     plan.has_board = board != "none";
     if (plan.has_board && !board.empty()) plan.board = ReadBoardFile(board).board;
     plan.seed = common.seed;
+    plan.directions = Directions(directions);
+    if (!plan.directions.empty()) plan.photos = static_cast<int>(plan.directions.size());
     capture.overwrite = common.force;
     if (!distance_mm.empty()) {
       plan.nearest_mm = distance_mm[0];

@@ -39,6 +39,12 @@ void CheckOptions(const CapturePlanOptions& o) {
       "distance-mm: the nearest must be positive, at least 1.2 times the sample's side, and not "
       "above the farthest");
   require(o.largest_tilt_deg >= 0 && o.largest_tilt_deg <= 65, "tilt-deg: use 0 to 65");
+  require(o.directions.empty() || o.directions.size() == static_cast<size_t>(o.photos),
+          "directions: give one a photograph");
+  for (const CameraDirection& direction : o.directions) {
+    require(direction.tilt_deg >= 0 && direction.tilt_deg <= 65,
+            "directions: use tilts of 0 to 65");
+  }
   require(o.paper_level > 0 && o.paper_level <= 4, "paper-level: use a number in (0, 4]");
   require(o.ambient >= 0 && o.ambient <= 10, "ambient: use 0 to 10");
   require(o.vignetting >= 0 && o.vignetting <= 0.8, "vignetting: use 0 to 0.8");
@@ -80,8 +86,13 @@ std::pair<double, double> TiltRange_deg(int index, double largest) {
 
 DrawnPose DrawPose(const CapturePlanOptions& options, int index, double first_azimuth, Rng& rng) {
   const auto [low, high] = TiltRange_deg(index, options.largest_tilt_deg);
-  const double azimuth = first_azimuth + index * kGoldenAngle + 0.3 * (2.0 * rng.Unit() - 1.0);
-  const double tilt = kDegree * (low + (high - low) * rng.Unit());
+  double azimuth = first_azimuth + index * kGoldenAngle + 0.3 * (2.0 * rng.Unit() - 1.0);
+  double tilt = kDegree * (low + (high - low) * rng.Unit());
+  if (!options.directions.empty()) {
+    const CameraDirection& told = options.directions[static_cast<size_t>(index)];
+    azimuth = kDegree * told.azimuth_deg;
+    tilt = kDegree * told.tilt_deg;
+  }
   const double jitter_mm = (index == 0 ? 0.03 : 0.08) * options.sample_mm;
   DrawnPose pose;
   pose.direction = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),

@@ -13,6 +13,12 @@
 
 namespace glint {
 
+// From the point that a camera looks at: tilt from the normal, azimuth from +x (right) over +y
+// (top).
+struct CameraDirection {
+  double tilt_deg = 0, azimuth_deg = 0;
+};
+
 struct CapturePlanOptions {
   std::uint64_t seed = 0;
   int photos = 12;
@@ -21,7 +27,9 @@ struct CapturePlanOptions {
   double nearest_mm = 270;       // distance of the camera from the point it looks at, uniform in
   double farthest_mm = 330;      // [nearest, farthest]
   double largest_tilt_deg = 40;  // of the views after the first
-  bool has_board = true;         // false: a patterned table round the sample instead, for COLMAP
+  // Where each photo is taken from; empty: drawn, from all sides.
+  std::vector<CameraDirection> directions;
+  bool has_board = true;  // false: a patterned table round the sample instead, for COLMAP
   std::array<double, 3> flash_offset_mm{10, 0,
                                         0};   // in the camera frame: x right, y down, z forward
   std::array<double, 3> flash_tint{1, 1, 1};  // colour of the flash, largest channel 1

@@ -49,6 +49,24 @@ TEST(PlanCapture, FirstPhotoIsATopViewAndTheOthersComeFromAllSides) {
   }
 }
 
+TEST(PlanCapture, PhotosAreTakenFromWhereTheyAreAsked) {
+  CapturePlanOptions options;
+  options.directions = {{0, 0}, {25, 90}, {35, 180}};
+  options.photos = 3;
+  const CapturePlan plan = PlanCapture(options);
+  // The point that the camera looks at is a little beside the sample's centre.
+  const auto is_near = [&](size_t photo, double x, double y) {
+    const Vector3d axis = plan.photos[photo].camera_from_sample.rotation.row(2);
+    EXPECT_NEAR(-axis.x(), x, 1e-9);
+    EXPECT_NEAR(-axis.y(), y, 1e-9);
+  };
+  is_near(0, 0, 0);
+  is_near(1, 0, std::sin(25 * std::numbers::pi / 180));
+  is_near(2, -std::sin(35 * std::numbers::pi / 180), 0);
+  options.photos = 4;
+  EXPECT_THROW(PlanCapture(options), UserError);
+}
+
 TEST(PlanCapture, SampleIsInEveryPictureAndUpright) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     CapturePlanOptions options;
