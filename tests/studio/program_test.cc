@@ -6,6 +6,7 @@
 
 #include "tests/studio/http_client.h"
 #include "tests/studio/picture.h"
+#include "tests/studio/studio_process.h"
 #include "tests/support/process.h"
 
 namespace glint {
@@ -13,33 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::JpegBytes;
-
-struct StudioProcess {
-  StudioProcess(const fs::path& folder, const fs::path& scratch)
-      : out(scratch / "out"), err(scratch / "err") {
-    fs::remove(out);
-    pid = test::Start({std::string(GLINT_BIN_DIR) + "/glint-studio", folder.string(),
-                       "--no-browser", "--port", "0"},
-                      out, err);
-    for (int i = 0; i < 500 && address.empty(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      const std::string text = test::ReadAll(out);
-      const size_t at = text.find("http://"), end = text.find('\n', at);
-      if (at != std::string::npos && end != std::string::npos) address = text.substr(at, end - at);
-    }
-  }
-  ~StudioProcess() { End(SIGKILL); }
-  int End(int signal) {
-    if (pid <= 0) return -1;
-    ::kill(pid, signal);
-    const int code = test::WaitFor(pid);
-    pid = 0;
-    return code;
-  }
-  fs::path out, err;
-  pid_t pid = 0;
-  std::string address;
-};
+using test::StudioProcess;
 
 // A capture by hand, so that no board need be printed.
 void WriteCaptureByHand(const test::TemporaryFolder& folder) {
