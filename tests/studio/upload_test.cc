@@ -81,6 +81,23 @@ TEST(Upload, APhotographOfAnotherKindIsListedInCaptureToml) {
             std::string::npos);
 }
 
+TEST(Upload, OneThatAKilledStudioHadKeptButNotListedIsListedWhenItIsSentAgain) {
+  const RunningStudio running;
+  const std::string id = running.MakeCapture();
+  cv::Mat picture(60, 80, CV_8UC3, cv::Scalar(80, 90, 100));
+  std::vector<unsigned char> png;
+  cv::imencode(".png", picture, png);
+  const std::string bytes(png.begin(), png.end());
+  running.folder.Write("wood/photos/a.png", bytes);
+  EXPECT_EQ(running.Capture(id)["photographs"].size(), 0u);
+  const Json sent = running.page->Upload(PhotographsOf(id), {{"a.png", bytes}}).json();
+  EXPECT_TRUE(sent["photographs"][0]["error"].is_null());
+  const Json photographs = running.Capture(id)["photographs"];
+  ASSERT_EQ(photographs.size(), 1u);
+  EXPECT_EQ(photographs[0]["id"], sent["photographs"][0]["id"]);
+  EXPECT_FALSE(fs::exists(running.folder / "wood/photos/a-2.png"));
+}
+
 TEST(Upload, ABadPhotographIsKeptButLeftOutUntilAPersonDecides) {
   const RunningStudio running;
   const std::string id = running.MakeCapture();

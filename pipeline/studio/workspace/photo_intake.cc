@@ -18,12 +18,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool HasBytes(const fs::path& file, const std::string& hash, std::uintmax_t bytes) {
+  std::error_code error;
+  return fs::file_size(file, error) == bytes && !error && HashFile(file) == hash;
+}
+
 std::optional<std::string> IdOfSameBytes(const std::vector<StudioPhoto>& photos,
                                          const std::string& hash, std::uintmax_t bytes) {
   for (const StudioPhoto& one : photos) {
-    std::error_code error;
-    if (fs::file_size(one.file, error) == bytes && !error && HashFile(one.file) == hash) {
-      return one.id;
+    if (HasBytes(one.file, hash, bytes)) return one.id;
+  }
+  return std::nullopt;
+}
+
+// Of a Studio that was killed after it had kept the photograph and before capture.toml listed it.
+std::optional<fs::path> UnlistedOfSameBytes(const fs::path& capture, const std::string& hash,
+                                            std::uintmax_t bytes) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(capture / "photos", error)) {
+    const bool hidden = entry.path().filename().string()[0] == '.';
+    if (!hidden && entry.is_regular_file(error) && HasBytes(entry.path(), hash, bytes)) {
+      return entry.path();
     }
   }
   return std::nullopt;
@@ -62,14 +77,19 @@ TakenPhoto TakeIn(const LibraryEntry& entry, const std::string& hash, ReceivedPh
   const auto photos = PhotosOf(state);
   if (const auto same = IdOfSameBytes(photos, hash, photo->size())) return {*same, true};
   RequireRoomFor(state, photos);
-  const fs::path file = photo->Keep();
+  const auto unlisted = UnlistedOfSameBytes(entry.folder, hash, photo->size());
+  const fs::path file = unlisted ? *unlisted : photo->Keep();
   const std::string place = file.lexically_relative(entry.folder).generic_string();
   std::set<std::string> undecided = UndecidedPhotos(entry.folder);
   undecided.insert(place);
   NoteUndecided(entry.folder, undecided);
-  ListOrRemove(entry.folder, file);
+  if (unlisted) {
+    ListPhoto(entry.folder, file);
+  } else {
+    ListOrRemove(entry.folder, file);
+  }
   checks->Look(entry.id, file, TaskOf(ReadState(entry.folder)), CheckFolderOf(entry.folder));
-  return {IdOf(place), false};
+  return {IdOf(place), unlisted.has_value()};
 }
 
 }  // namespace glint
