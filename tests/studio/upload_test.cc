@@ -149,6 +149,25 @@ TEST(Upload, ACaptureOfOnePhotographIsDescribedWhenItIsThere) {
   EXPECT_EQ(running.Capture(id)["photographs"].size(), 1u);
 }
 
+TEST(Upload, ACaptureWhoseOnePhotographArrivedBeforeAKillIsDescribedByTheNextStudio) {
+  const test::TemporaryFolder kept;
+  StudioOptions options;
+  options.folder = kept.path();
+  options.port = 0;
+  {
+    const Studio studio(options);
+    const test::PageClient page(studio.address());
+    page.Post("/api/captures", {{"name", "one"}, {"kind", "single"}, {"picture_width_mm", 120}});
+  }
+  kept.Write("one/photos/a.jpg", JpegBytes(1));
+  kept.Write("one/capture.toml.tmp123", "[sam");
+  kept.Write("one/capture.toml.tmp.mine", "[sample]");
+  const Studio studio(options);
+  EXPECT_TRUE(fs::exists(kept / "one/capture.toml"));
+  EXPECT_FALSE(fs::exists(kept / "one/capture.toml.tmp123"));
+  EXPECT_TRUE(fs::exists(kept / "one/capture.toml.tmp.mine"));
+}
+
 TEST(Upload, ChecksAreFoundAgainByContent) {
   test::TemporaryFolder kept;
   std::string state;

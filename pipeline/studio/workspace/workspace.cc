@@ -10,9 +10,9 @@
 #include "pipeline/studio/captures/capture_edit.h"
 #include "pipeline/studio/captures/notes.h"
 #include "pipeline/studio/captures/option_form.h"
-#include "pipeline/studio/photographs/received_photo.h"
 #include "pipeline/studio/runs/results.h"
 #include "pipeline/studio/workspace/capture_row.h"
+#include "pipeline/studio/workspace/killed_studio.h"
 #include "pipeline/studio/workspace/left_out.h"
 #include "pipeline/studio/workspace/photo_intake.h"
 #include "pipeline/studio/workspace/photo_json.h"
@@ -32,15 +32,6 @@ std::unique_ptr<FileLock> LockFolder(const fs::path& root) {
   if (error || ::access((root / kStudioFolder).c_str(), W_OK) != 0) return nullptr;  // read-only
   return std::make_unique<FileLock>(root / kStudioFolder / "lock",
                                     "another Glint Studio of this folder");
-}
-
-void RemoveHalfMade(const fs::path& root) {
-  std::error_code error;
-  std::vector<fs::path> leftovers;
-  for (const auto& entry : fs::directory_iterator(root / kStudioFolder, error)) {
-    if (entry.path().filename().string().starts_with("new-")) leftovers.push_back(entry.path());
-  }
-  for (const fs::path& folder : leftovers) fs::remove_all(folder, error);
 }
 
 Json LimitsJson() {
@@ -63,10 +54,7 @@ Workspace::Workspace(const fs::path& root, int check_threads)
       lock_(LockFolder(root_)),
       captures_(root_),
       boards_(root_ / kStudioFolder / "boards", [this] { return captures_.All(); }) {
-  RemoveHalfMade(root_);
-  for (const LibraryEntry& entry : captures_.All()) {
-    ReceivedPhoto::RemoveLeftovers(entry.folder / "photos");
-  }
+  if (lock_) TidyAfterKilledStudio(root_, captures_.All());
   runs_ = std::make_unique<RunManager>(
       [this](const std::string& capture) { events_.Publish("run", capture); });
   checks_ = std::make_unique<CheckQueue>(
