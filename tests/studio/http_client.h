@@ -6,7 +6,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -14,26 +17,58 @@
 
 namespace glint::test {
 
+// Whether a connection that a signal interrupted on its way is there now.
+inline bool IsConnected(int socket) {
+  pollfd wait{socket, POLLOUT, 0};
+  int ready = 0;
+  do {
+    ready = ::poll(&wait, 1, -1);
+  } while (ready < 0 && errno == EINTR);
+  int error = 0;
+  socklen_t size = sizeof error;
+  return ready > 0 && ::getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0;
+}
+
+// Waits where all ports of this machine are those of connections that have just ended. −1: nobody
+// listens.
 inline int Connect(int port) {
-  const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   ::inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
-  if (::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
+  constexpr int kAttempts = 100;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0)
+      return socket;
+    const int error = errno;
+    if (error == EINTR && IsConnected(socket)) return socket;
     ::close(socket);
-    return -1;
+    errno = error;
+    if (error != EADDRNOTAVAIL) return -1;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  return socket;
+  return -1;
 }
 
 inline bool SendAll(int socket, const std::string& bytes) {
   for (size_t at = 0; at < bytes.size();) {
     const ssize_t count = ::send(socket, bytes.data() + at, bytes.size() - at, MSG_NOSIGNAL);
+    if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return false;
     at += static_cast<size_t>(count);
   }
   return true;
+}
+
+// Whether there is something to read, or the other side has closed, within `patience_s`.
+inline bool IsReadable(int socket, double patience_s) {
+  pollfd wait{socket, POLLIN, 0};
+  int ready = 0;
+  do {
+    ready = ::poll(&wait, 1, static_cast<int>(1000 * patience_s));
+  } while (ready < 0 && errno == EINTR);
+  return ready > 0;
 }
 
 // Until the other side closes, or is silent for `patience_s`.
@@ -41,8 +76,7 @@ inline std::string ReceiveAll(int socket, double patience_s = 20) {
   std::string all;
   char bytes[65536];
   for (;;) {
-    pollfd wait{socket, POLLIN, 0};
-    if (::poll(&wait, 1, static_cast<int>(1000 * patience_s)) <= 0) return all;
+    if (!IsReadable(socket, patience_s)) return all;
     const ssize_t count = ::recv(socket, bytes, sizeof bytes, 0);
     if (count <= 0) return all;
     all.append(bytes, static_cast<size_t>(count));
@@ -70,7 +104,7 @@ using Headers = std::vector<std::pair<std::string, std::string>>;
 inline std::string RequestText(const std::string& method, const std::string& path,
                                const Headers& headers, const std::string& body = "") {
   std::string text = method + " " + path + " HTTP/1.1\r\n";
-  for (const auto& [name, value] : headers) text += name + ": " + value + "\r\n";
+  for (const auto& [name, value] : headers) text.append(name).append(": ").append(value + "\r\n");
   if (!body.empty() || method == "POST" || method == "PUT") {
     text += "Content-Length: " + std::to_string(body.size()) + "\r\n";
   }
@@ -130,8 +164,8 @@ class PageClient {
     std::string body;
     for (const auto& [name, bytes] : photographs) {
       body +=
-          "--between-parts\r\nContent-Disposition: form-data; name=\"photographs\"; filename=\"" +
-          name + "\"\r\nContent-Type: image/jpeg\r\n\r\n" + bytes + "\r\n";
+          "--between-parts\r\nContent-Disposition: form-data; name=\"photographs\"; filename=\"";
+      body.append(name).append("\"\r\nContent-Type: image/jpeg\r\n\r\n").append(bytes + "\r\n");
     }
     return body + "--between-parts--\r\n";
   }
