@@ -13,8 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kCuts = 100, kMutations = 100;
-
 class CorporaTest : public testing::TestWithParam<std::string> {
  protected:
   std::vector<fs::path> Files() const {
@@ -26,6 +24,7 @@ class CorporaTest : public testing::TestWithParam<std::string> {
     std::sort(files.begin(), files.end());
     return files;
   }
+  static int Replays() { return FindFuzzTarget(GetParam()).replays; }
   bool Reads(std::string_view bytes) const {
     return Accepts(FindFuzzTarget(GetParam()), folder_.path(), bytes);
   }
@@ -49,8 +48,8 @@ TEST_P(CorporaTest, SeedsAreReadAndNothingWorseThanAnErrorHappens) {
 TEST_P(CorporaTest, CutOffFilesAreNoWorseThanAnError) {
   for (const fs::path& file : Files()) {
     const std::string bytes = test::ReadAll(file);
-    for (int i = 0; i < kCuts; ++i)
-      Reads(std::string_view(bytes).substr(0, bytes.size() * i / kCuts));
+    for (int i = 0; i < Replays(); ++i)
+      Reads(std::string_view(bytes).substr(0, bytes.size() * i / Replays()));
   }
 }
 
@@ -58,7 +57,7 @@ TEST_P(CorporaTest, ChangedFilesAreNoWorseThanAnError) {
   std::mt19937 random(1);
   for (const fs::path& file : Files()) {
     const std::string original = test::ReadAll(file);
-    for (int i = 0; i < kMutations; ++i) {
+    for (int i = 0; i < Replays(); ++i) {
       std::string bytes = original;
       for (int changes = 1 + static_cast<int>(random() % 4); changes > 0 && !bytes.empty();
            --changes) {

@@ -17,6 +17,7 @@
 #include "calib/colmap/colmap_model.h"
 #include "datasets/import/foreign_set.h"
 #include "fitting/weights/safetensors.h"
+#include "tests/fuzz/studio_client.h"
 
 namespace glint::fuzz {
 namespace {
@@ -25,6 +26,9 @@ namespace fs = std::filesystem;
 
 // Of rectified images as a corpus holds them.
 constexpr int kRectifiedSize = 8;
+
+// A request takes some milliseconds.
+constexpr int kStudioReplays = 10;
 
 fs::path Put(const fs::path& folder, const std::string& name, std::string_view bytes) {
   fs::path file = folder / name;
@@ -98,6 +102,8 @@ const std::vector<FuzzTarget>& FuzzTargets() {
       OfFile("chart_csv", "chart.csv", [](const fs::path& file) { ReadChartCsv(file, "A", 1.5); }),
       OfFile("hash_cache", "hashes.json", [](const fs::path& file) { HashCache{file}; }),
       {"colmap", ReadColmap},
+      {"studio", [](const fs::path&, std::string_view bytes) { SendToStudio(bytes); },
+       kStudioReplays},
   };
   return targets;
 }

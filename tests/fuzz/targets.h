@@ -1,4 +1,5 @@
-// What Glint reads of files that anyone may have written: one target a format.
+// What Glint reads that anyone may have written: one target a format of files, and one for what
+// Glint Studio is sent.
 #pragma once
 
 #include <filesystem>
@@ -14,6 +15,8 @@ struct FuzzTarget {
   // Reads `bytes`, as a file in `folder`, which is the caller's to remove. Throws glint::Error for
   // what is no such file; anything else thrown, and any crash, is a finding.
   std::function<void(const std::filesystem::path& folder, std::string_view bytes)> read;
+  // How often ./dev test cuts off each file of the corpus, and how often it changes it.
+  int replays = 100;
 };
 
 const std::vector<FuzzTarget>& FuzzTargets();
