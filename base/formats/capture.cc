@@ -6,12 +6,10 @@
 #include <cmath>
 #include <set>
 
-#include "base/board/board_kind.h"
-#include "base/board/dictionary.h"
 #include "base/errors/errors.h"
 #include "base/files/toml_file.h"
 #include "base/files/toml_table.h"
-#include "base/formats/board_file.h"
+#include "base/formats/board_table.h"
 #include "base/formats/capture_files.h"
 #include "base/photos/photo_name.h"
 #include "base/stages/stages.h"
@@ -68,76 +66,14 @@ void ReadSample(const fs::path& file, const toml::table& document, Capture* capt
   table.RejectUnknown();
 }
 
-// file = "board.json", with the length of its ruler where somebody measured the print.
-void TakeBoardFile(const fs::path& file, TomlTable* table, Capture* capture) {
-  const auto names = MatchFiles(capture->folder, table->Text("file", ""), file, "board.file");
-  if (names.size() != 1) {
-    throw UserError(file, "board.file", std::to_string(names.size()) + " files that match",
-                    "name one board.json");
-  }
-  capture->board_file = names[0];
-  const fs::path description = capture->folder / names[0];
-  const Eigen::Vector2d centre = capture->board.board_centre_in_sample_mm;
-  capture->board = ReadBoardFile(description).board;
-  capture->board.board_centre_in_sample_mm = centre;
-  const double measured = table->Number("measured_ruler_mm", 0, 1, 1e5, " of millimetres");
-  if (measured > 0) {
-    ScaleBoard(RulerFactor(description, capture->board, measured), &capture->board);
-  }
-}
-
-void DescribeBoard(TomlTable* table, Capture* capture) {
-  Board& board = capture->board;
-  const std::optional<BoardKind> known = BoardKindNamed(table->Text("kind", "charuco"));
-  if (known && !KindOf(*known).fits_capture_toml()) {
-    table->Reject(*table->Find("kind"), "kind",
-                  "describe it in a board.json (docs/boards.md) and name that: file = "
-                  "\"board.json\"");
-  }
-  const std::string kind = table->Text("kind", "charuco", BoardKindNames(true));
-  board.kind = BoardKindNamed(kind).value();
-  const auto squares =
-      table->Integers("squares", 2, false, "give [columns, rows] of squares as whole numbers");
-  const auto corners =
-      table->Integers("inner_corners", 2, false, "give [columns, rows] of inner corners");
-  if (squares.empty() == corners.empty()) {
-    table->Missing("squares",
-                   "give either squares = [columns, rows] or inner_corners = [columns, rows]");
-  }
-  board.squares_x = squares.empty() ? corners[0] + 1 : squares[0];
-  board.squares_y = squares.empty() ? corners[1] + 1 : squares[1];
-  board.square_mm = table->Number("square_mm", 0, 1e-3, 1e4, " of millimetres, greater than 0");
-  board.marker_mm = table->Number("marker_mm", 0, 1e-3, 1e4, " of millimetres, greater than 0");
-  board.dictionary = DictionaryFromAnyName(table->Text("dictionary", board.dictionary));
-  board.legacy_layout = table->Flag("legacy_layout", false);
-  const auto window = table->Integers("window", 4, false,
-                                      "give [first column, first row, columns, rows] in squares");
-  if (!window.empty()) board.window = BoardWindow{window[0], window[1], window[2], window[3]};
-  if (table->Find("measured_ruler_mm") != nullptr) {
-    table->Reject(*table->Find("measured_ruler_mm"), "measured_ruler_mm",
-                  "it goes with file = \"board.json\"; without one, measure a square and give "
-                  "square_mm");
-  }
-}
-
-void ReadBoard(const fs::path& file, const toml::table& document, Capture* capture) {
-  TomlTable table(file, document, "board");
-  capture->has_board = table.present();
-  if (!capture->has_board) return;
-  const bool from_file = table.Find("file") != nullptr;
-  if (from_file) {
-    TakeBoardFile(file, &table, capture);
-  } else {
-    DescribeBoard(&table, capture);
-  }
-  capture->board_photos = ReadPhotos(capture->folder, "photos", &table, file);
-  table.RejectUnknown();
-  if (from_file) return;  // checked already
-  const Board& board = capture->board;
-  if (board.square_mm == 0) table.Missing("square_mm", "give the side of a square in millimetres");
-  if (const std::string wrong = CheckBoard(board); !wrong.empty()) {
-    throw UserError(file.string() + ": board: " + wrong);
-  }
+void TakeBoard(const fs::path& file, const toml::table& document, Capture* capture) {
+  auto table = ReadBoardTable(capture->folder, file, document);
+  capture->has_board = table.has_value();
+  if (!table) return;
+  table->board.board_centre_in_sample_mm = capture->board.board_centre_in_sample_mm;
+  capture->board = std::move(table->board);
+  capture->board_file = std::move(table->file);
+  capture->board_photos = std::move(table->photos);
 }
 
 // A sample many times as large as its board, or smaller than a grain of sand beside it, is one of
@@ -423,7 +359,7 @@ Capture ReadCapture(const fs::path& folder, Photographs photographs) {
   capture.photos =
       ReadPhotos(capture.folder, "files", &photos, capture.file, &capture.left_out_photos);
   photos.RejectUnknown();
-  ReadBoard(capture.file, *document, &capture);
+  TakeBoard(capture.file, *document, &capture);
   CheckUnits(capture.file, capture);
   capture.tiles = document->contains("tile");
   ReadPoses(capture.file, *document, &capture);

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/errors/errors.h"
+#include "base/formats/board_table.h"
 #include "base/formats/capture.h"
 #include "tests/support/message_of.h"
 #include "tests/support/process.h"
@@ -204,6 +205,22 @@ TEST_F(CaptureTest, SaysWhatIsWrongWithAChart) {
   EXPECT_THAT(complaint(photo + "reflectance = 0.18"), HasSubstr("grey"));
   EXPECT_THAT(complaint(photo + "corners_px = [1, 2]"), HasSubstr("four points"));
   EXPECT_THAT(complaint(photo + "colour = 1"), HasSubstr("unknown key"));
+}
+
+TEST_F(CaptureTest, ItsBoardCanBeReadWithoutTheRest) {
+  const auto file = folder_.Write(
+      "elsewhere.toml",
+      "[sample]\nsize = 3\n" + std::string(kGood).substr(std::string(kGood).find("[photos]")));
+  const Board board = ReadDescribedBoard(file);
+  EXPECT_EQ(board.squares_x, 12);
+  EXPECT_EQ(board.window->rows, 4);
+  const auto complaint = [&](const std::string& text) {
+    folder_.Write("elsewhere.toml", text);
+    return test::MessageOf<UserError>([&] { ReadDescribedBoard(file); });
+  };
+  EXPECT_THAT(complaint("[sample]\n"), HasSubstr("board: found no such table"));
+  EXPECT_THAT(complaint("[board]\nfile = \"board.json\"\n"), HasSubstr("give that file itself"));
+  EXPECT_THAT(complaint("[board]\nsquares = [12, 10]\n"), HasSubstr("board.square_mm"));
 }
 
 }  // namespace
