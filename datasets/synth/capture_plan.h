@@ -10,6 +10,7 @@
 #include "base/board/board.h"
 #include "base/camera/camera_model.h"
 #include "base/camera/rigid3.h"
+#include "datasets/synth/frame_board.h"
 
 namespace glint {
 
@@ -22,8 +23,8 @@ struct CameraDirection {
 struct CapturePlanOptions {
   std::uint64_t seed = 0;
   int photos = 12;
-  double megapixels = 12;        // 4:3; the focal length follows, so the field of view stays
-  double sample_mm = 100;        // side of the square sample
+  double megapixels = 12;              // 4:3; the focal length follows, so the field of view stays
+  double sample_mm = kUsualSample_mm;  // side of the square sample
   double nearest_mm = 270;       // distance of the camera from the point it looks at, uniform in
   double farthest_mm = 330;      // [nearest, farthest]
   double largest_tilt_deg = 40;  // of the views after the first
@@ -69,10 +70,6 @@ struct CapturePlan {
 // with a strength t of its own; r as in VignettingRadius2. Of purpose not the polynomial that calib
 // fits; the camera's `vignetting` is that polynomial's nearest.
 double LensFalloff(const CapturePlan& plan, const Eigen::Vector2d& point_px);
-
-// A ChArUco frame on A4 across: 18 × 14 squares with a window of 8 × 8 in the middle, scaled so
-// that a sample of `sample_mm` leaves 2 % of the window's side free all round.
-Board FrameBoard(double sample_mm);
 
 // Throws UserError for options that cannot give a capture (too few photos, a camera inside the
 // board…).
