@@ -100,6 +100,7 @@ BoardDetection DetectCharuco(const GrayImage& image, const Board& board,
   detection.markers = static_cast<int>(agreeing.size());
   // By the field that is wrong, if one explains what is seen.
   const auto mismatch = [&](const std::string& otherwise) {
+    if (!options.explain_mismatch) return Mismatch(detection, otherwise);
     const std::string why = ExplainMismatch(image, board, options, seen, agreeing.size());
     return Mismatch(detection, why.empty() ? otherwise : why);
   };
@@ -121,7 +122,9 @@ BoardDetection DetectCharuco(const GrayImage& image, const Board& board,
                     matches.size(), board.squares_x, board.squares_y));
   }
   if (agreeing.size() < 2) {
-    if (ShowsMirroredMarkers(image, board, options)) return Mismatch(detection, kMirrored);
+    if (options.explain_mismatch && ShowsMirroredMarkers(image, board, options)) {
+      return Mismatch(detection, kMirrored);
+    }
     detection.problem = fmt::format("{} of the board's {} markers ({}) seen", matches.size(),
                                     on_board, board.dictionary);
     return detection;

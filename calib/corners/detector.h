@@ -25,6 +25,9 @@ struct DetectorOptions {
   int longest_px =
       1600;  // boards are looked for in a copy reduced to this; corners are placed in full
   int min_corners = 6;  // fewer are no detection
+  // Whether it is looked for what a description has wrong that does not explain the picture, which
+  // takes several times as long as the detection.
+  bool explain_mismatch = true;
   SaddleOptions saddle;
   OutlineOptions outline;
 };

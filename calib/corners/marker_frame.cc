@@ -98,7 +98,7 @@ BoardDetection DetectMarkerFrame(const GrayImage& image, const Board& board,
   detection.mismatch = !detection.problem.empty();
   if (detection.mismatch) return detection;
   if (agreeing.size() < 2) {
-    detection.mismatch = ShowsMirroredMarkers(image, board, options);
+    detection.mismatch = options.explain_mismatch && ShowsMirroredMarkers(image, board, options);
     detection.problem = detection.mismatch
                             ? kMirrored
                             : fmt::format("{} of the board's {} markers ({}) seen", matches.size(),
