@@ -10,6 +10,8 @@
 #include "base/programs/subprocess.h"
 #include "pipeline/driver/programs.h"
 #include "pipeline/studio/captures/capture_boards.h"
+#include "pipeline/studio/captures/given_board.h"
+#include "pipeline/studio/captures/known_boards.h"
 #include "pipeline/studio/captures/program_message.h"
 #include "pipeline/studio/http/http_types.h"
 
@@ -61,7 +63,7 @@ KeptBoard BoardIn(const fs::path& folder) {
 
 bool HasPdf(const KeptBoard& board) {
   std::error_code error;
-  return fs::is_regular_file(board.folder / "board.pdf", error);
+  return !board.folder.empty() && fs::is_regular_file(board.folder / "board.pdf", error);
 }
 
 }  // namespace
@@ -69,17 +71,18 @@ bool HasPdf(const KeptBoard& board) {
 std::string BoardText(const KeptBoard& board) {
   const fs::path file = board.folder / "board.json";
   std::error_code error;
-  if (fs::is_regular_file(file, error)) return ReadTextFile(file);
+  if (!board.folder.empty() && fs::is_regular_file(file, error)) return ReadTextFile(file);
   return ToJson(board.file).dump(2) + "\n";
 }
 
 std::vector<KeptBoard> BoardShelf::List() const {
-  std::vector<KeptBoard> boards = Printed();
+  std::vector<KeptBoard> boards = Kept();
   for (KeptBoard& board : BoardsOfCaptures(captures_(), boards)) boards.push_back(std::move(board));
+  for (KeptBoard& board : KnownBoards(boards)) boards.push_back(std::move(board));
   return boards;
 }
 
-std::vector<KeptBoard> BoardShelf::Printed() const {
+std::vector<KeptBoard> BoardShelf::Kept() const {
   std::vector<KeptBoard> boards;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder_, error)) {
@@ -101,13 +104,10 @@ std::optional<KeptBoard> BoardShelf::Find(const std::string& id) const {
   return std::nullopt;
 }
 
-std::optional<std::string> BoardShelf::BoardOf(const fs::path& capture) const {
-  std::error_code error;
-  const fs::path own = capture / "board.json";
-  if (!fs::is_regular_file(own, error)) return std::nullopt;
-  const std::string text = ReadTextFile(own);
-  for (const KeptBoard& board : Printed()) {
-    if (HasPdf(board) && BoardText(board) == text) return board.id;
+std::optional<KeptBoard> BoardShelf::Same(const Board& board) const {
+  const std::string description = DescriptionOf(board);
+  for (const KeptBoard& kept : Kept()) {
+    if (DescriptionOf(kept.file.board) == description) return kept;
   }
   return std::nullopt;
 }
@@ -127,28 +127,38 @@ KeptBoard BoardShelf::Print(const std::string& paper,
   return BoardIn(folder_ / name);
 }
 
-KeptBoard BoardShelf::Adopt(const KeptBoard& board) const {
-  const std::string name = FileNameOf(board.name);
-  fs::path folder = folder_ / name;
+KeptBoard BoardShelf::Keep(const std::string& name, const std::string& text) const {
+  constexpr size_t kMost = 100;
+  const std::string plain = FileNameOf(name).substr(0, kMost);
+  fs::path folder = folder_ / plain;
   std::error_code error;
-  for (int n = 2; fs::exists(folder, error); ++n) folder = folder_ / fmt::format("{}-{}", name, n);
-  fs::create_directories(folder);
-  WriteFileAtomically(folder / "board.json", BoardText(board));
-  if (HasPdf(board)) fs::copy_file(board.folder / "board.pdf", folder / "board.pdf", error);
+  for (int n = 2; fs::exists(folder, error); ++n) folder = folder_ / fmt::format("{}-{}", plain, n);
+  fs::create_directories(folder, error);
+  WriteFileAtomically(folder / "board.json", text);
   return BoardIn(folder);
 }
 
-std::optional<KeptBoard> BoardShelf::Take(const std::string& id) const {
-  std::optional<KeptBoard> board = Find(id);
-  if (!board || board->folder.parent_path() == folder_) return board;
-  return Adopt(*board);
+KeptBoard BoardShelf::Describe(const std::string& file_name, const std::string& text) const {
+  const GivenBoard given = ReadGivenBoard(file_name, text, folder_.parent_path());
+  if (const auto same = Same(given.file.board)) return *same;
+  return Keep(given.name, given.text);
+}
+
+KeptBoard BoardShelf::Adopt(const KeptBoard& board) const {
+  if (board.folder.parent_path() == folder_) return board;
+  if (const auto same = Same(board.file.board)) return *same;
+  KeptBoard kept = Keep(board.name, BoardText(board));
+  std::error_code error;
+  if (HasPdf(board)) fs::copy_file(board.folder / "board.pdf", kept.folder / "board.pdf", error);
+  return kept;
 }
 
 KeptBoard BoardShelf::Measure(const std::string& id, double ruler_mm) {
-  const auto board = Take(id);
+  const auto board = Find(id);
   if (!board) throw HttpError{404, "there is no such board", "reload the page"};
-  RunBoardProgram({fmt::format("--measured={:.6g}", ruler_mm)}, board->folder);
-  return BoardIn(board->folder);
+  const fs::path folder = Adopt(*board).folder;
+  RunBoardProgram({fmt::format("--measured={:.6g}", ruler_mm)}, folder);
+  return BoardIn(folder);
 }
 
 std::optional<std::array<double, 2>> WindowOf(const Board& board) {
@@ -157,17 +167,47 @@ std::optional<std::array<double, 2>> WindowOf(const Board& board) {
   return std::array{opening->right_mm - opening->left_mm, opening->top_mm - opening->bottom_mm};
 }
 
+void RequireSampleSize(const std::array<double, 2>& sample_mm) {
+  constexpr double kLeast_mm = 1, kMost_mm = 10000;
+  for (const double side : sample_mm) {
+    if (side >= kLeast_mm && side <= kMost_mm) continue;
+    throw HttpError{422, fmt::format("the sample's size: found {:g} mm", side),
+                    "give width and height in millimetres"};
+  }
+}
+
+void RequireRoomFor(const std::array<double, 2>& sample_mm, const Board& board) {
+  constexpr double kTolerance_mm = 0.05;
+  const auto window = WindowOf(board);
+  if (!window) return;
+  if (sample_mm[0] <= (*window)[0] + kTolerance_mm &&
+      sample_mm[1] <= (*window)[1] + kTolerance_mm) {
+    return;
+  }
+  throw HttpError{422,
+                  fmt::format("the sample of {:g} × {:g} mm is larger than the board's window of "
+                              "{:g} × {:g} mm",
+                              sample_mm[0], sample_mm[1], (*window)[0], (*window)[1]),
+                  "give only the part that lies in the window, or print a board with a larger one"};
+}
+
+std::string DescriptionOf(const Board& board) {
+  return ToJson(BoardFile{board, std::nullopt}).dump();
+}
+
 Json ToJson(const KeptBoard& kept) {
   const Board& board = kept.file.board;
   Json json = {{"id", kept.id},
                {"name", kept.name},
+               {"words", BoardInWords(board)},
                {"paper", PaperOf(kept.file)},
                {"squares", {board.squares_x, board.squares_y}},
                {"square_mm", board.square_mm},
                {"window_mm", nullptr},
                {"ruler_mm", nullptr},
                {"print_scale", board.print_scale},
-               {"pdf", HasPdf(kept)}};
+               {"pdf", HasPdf(kept)},
+               {"known", kept.folder.empty()}};
   if (const auto window = WindowOf(board)) json["window_mm"] = *window;
   if (board.ruler) json["ruler_mm"] = board.ruler->length_mm();
   return json;

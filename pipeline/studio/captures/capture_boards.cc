@@ -12,11 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The same for boards of the same description, on whatever sheet.
-std::string DescriptionOf(const BoardFile& file) {
-  return ToJson(BoardFile{file.board, std::nullopt}).dump();
-}
-
 // board.json tells the sheet as well; else capture.toml describes the board alone.
 std::optional<BoardFile> BoardFileOf(const fs::path& folder) {
   try {
@@ -37,11 +32,11 @@ std::optional<BoardFile> BoardFileOf(const fs::path& folder) {
 std::vector<KeptBoard> BoardsOfCaptures(const std::vector<LibraryEntry>& captures,
                                         const std::vector<KeptBoard>& kept) {
   std::set<std::string> seen;
-  for (const KeptBoard& board : kept) seen.insert(DescriptionOf(board.file));
+  for (const KeptBoard& board : kept) seen.insert(DescriptionOf(board.file.board));
   std::vector<KeptBoard> boards;
   for (const LibraryEntry& entry : captures) {
     const auto file = BoardFileOf(entry.folder);
-    if (!file || !seen.insert(DescriptionOf(*file)).second) continue;
+    if (!file || !seen.insert(DescriptionOf(file->board)).second) continue;
     boards.push_back({IdOf("board of " + entry.id), entry.name, entry.folder, *file});
   }
   return boards;

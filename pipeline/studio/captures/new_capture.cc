@@ -31,29 +31,6 @@ std::string FolderName(const std::string& name) {
   return plain;
 }
 
-void CheckSize(const NewCapture& wanted) {
-  constexpr double kLeast_mm = 1, kMost_mm = 10000;
-  if (!wanted.size_mm) return;
-  for (const double side : *wanted.size_mm) {
-    if (side >= kLeast_mm && side <= kMost_mm) continue;
-    throw HttpError{422, fmt::format("the sample's size: found {:g} mm", side),
-                    "give width and height in millimetres"};
-  }
-}
-
-void CheckFits(const NewCapture& wanted) {
-  constexpr double kTolerance_mm = 0.05;
-  const auto window = WindowOf(wanted.board->file.board);
-  if (!wanted.size_mm || !window) return;
-  const auto& size = *wanted.size_mm;
-  if (size[0] <= (*window)[0] + kTolerance_mm && size[1] <= (*window)[1] + kTolerance_mm) return;
-  throw HttpError{422,
-                  fmt::format("the sample of {:g} × {:g} mm is larger than the board's window of "
-                              "{:g} × {:g} mm",
-                              size[0], size[1], (*window)[0], (*window)[1]),
-                  "give only the part that lies in the window, or print a board with a larger one"};
-}
-
 InitOptions InitOptionsOf(const NewCapture& wanted, const fs::path& folder) {
   InitOptions options;
   options.folder = folder;
@@ -101,10 +78,10 @@ fs::path MakeCapture(const fs::path& root, const NewCapture& wanted) {
   if (wanted.kind != "board" && wanted.kind != "single") {
     throw HttpError{422, "found the unknown kind '" + wanted.kind + "'", "choose board or single"};
   }
-  CheckSize(wanted);
+  if (wanted.size_mm) RequireSampleSize(*wanted.size_mm);
   if (wanted.kind == "board") {
     if (!wanted.board) throw HttpError{422, "no board is chosen", "choose or print one"};
-    CheckFits(wanted);
+    if (wanted.size_mm) RequireRoomFor(*wanted.size_mm, wanted.board->file.board);
   } else if ((wanted.picture_width_mm > 0) == (wanted.distance_mm > 0)) {
     throw HttpError{422, "the scale of the one photograph is not known",
                     "give the width that the picture shows, or the lens's distance"};

@@ -1,4 +1,4 @@
-// /api/boards: boards to choose from, printed and measured.
+// /api/boards: boards to choose from, printed, described and measured.
 #pragma once
 
 #include <string>

@@ -23,8 +23,11 @@ HttpReply MakeCaptureFrom(const RouteContext& context, const Json& json) {
   wanted.picture_width_mm = NumberIn(json, "picture_width_mm", 0);
   wanted.distance_mm = NumberIn(json, "distance_mm", 0);
   const std::string board = TextIn(json, "board", "");
-  if (!board.empty()) wanted.board = context.workspace->boards().Take(board);
-  return JsonReply({{"id", context.workspace->Make(wanted)}});
+  const BoardShelf& shelf = context.workspace->boards();
+  if (!board.empty()) wanted.board = shelf.Find(board);
+  const std::string id = context.workspace->Make(wanted);
+  if (wanted.board) (void)shelf.Adopt(*wanted.board);  // a refused capture leaves its id as it is
+  return JsonReply({{"id", id}});
 }
 
 HttpReply SendCapture(const RouteContext& context, const LibraryEntry& entry) {

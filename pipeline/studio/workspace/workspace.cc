@@ -125,17 +125,25 @@ void Workspace::AddPhotographs(const LibraryEntry& entry, const CaptureState& st
   if (!photos.empty() && lock_) NoteVerdict(entry.folder, review.advice.verdict);
 }
 
+Json Workspace::BoardJson(const CaptureState& state) const {
+  const CheckTask task = TaskOf(state);
+  if (!task.board) return nullptr;
+  if (const auto kept = boards_.Same(*task.board)) return ToJson(*kept);
+  Json json = ToJson(KeptBoard{"", "", {}, BoardFile{*task.board, std::nullopt}});
+  json["known"] = false;
+  return json;
+}
+
 Json Workspace::CaptureJson(const LibraryEntry& entry, const std::string& files,
                             const std::string& thumbnails) {
   const CaptureState state = ReadState(entry.folder);
   const auto photos = PhotosOf(state);
   Json json = RowJson(entry, state, photos, runs_.get());
-  const auto board = boards_.BoardOf(entry.folder);
   const auto run = runs_->Look(entry.id, entry.folder);
   json["folder"] = entry.folder.string();
   json["problem"] = ProblemJson(state);
   json["limits"] = LimitsJson();
-  json["board"] = board ? Json(*board) : Json();
+  json["board"] = BoardJson(state);
   AddPhotographs(entry, state, photos, thumbnails, &json);
   json["verdict"] = json["advice"]["verdict"];
   json["options"] = state.capture ? SavedOptions(*state.capture) : Json::object();

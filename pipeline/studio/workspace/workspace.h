@@ -56,6 +56,7 @@ class Workspace {
  private:
   void OnChecked(const std::string& capture);
   void RequireWritable() const;
+  Json BoardJson(const CaptureState& state) const;
   Json ThumbnailJson(const LibraryEntry& entry, const std::vector<StudioPhoto>& photos);
   void AddPhotographs(const LibraryEntry& entry, const CaptureState& state,
                       const std::vector<StudioPhoto>& photos, const std::string& thumbnails,
