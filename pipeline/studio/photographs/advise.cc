@@ -44,6 +44,11 @@ std::string Sentence(std::string text) {
   return text;
 }
 
+std::string InBrief(const Board& board) {
+  if (board.squares_x == 0) return fmt::format("has {} markers", board.markers.size());
+  return fmt::format("has {} × {} squares", board.squares_x, board.squares_y);
+}
+
 // What the check itself says, without the others.
 PhotoVerdict JudgeAlone(const PhotoCheck& check, const CheckTask& task) {
   using State = PhotoVerdict::State;
@@ -53,10 +58,8 @@ PhotoVerdict JudgeAlone(const PhotoCheck& check, const CheckTask& task) {
   }
   if (!task.board) return {};
   if (check.mismatch) {
-    return {State::kBad,
-            fmt::format("{}, which has {} × {} squares.", kOtherBoard, task.board->squares_x,
-                        task.board->squares_y),
-            "Make a new capture and choose the board that lies round the sample.", ""};
+    return {State::kBad, fmt::format("{}, which {}.", kOtherBoard, InBrief(*task.board)),
+            "Choose the board that lies round the sample.", ""};
   }
   if (!check.board_found) {
     return {State::kBad,
@@ -169,8 +172,8 @@ StudioAdvice AdviseFirst(const std::vector<LeftOutPhoto>& left_out) {
   StudioAdvice advice;
   if (all_show_another) {
     advice.sentence =
-        "Every photograph shows another board than the capture's: make a new capture, and choose "
-        "the board that lies round the sample.";
+        "Every photograph shows another board than the capture's: choose the board that lies round "
+        "the sample.";
     return advice;
   }
   advice.sentence =

@@ -18,8 +18,6 @@
 namespace glint {
 namespace {
 
-// 12 megapixels at half their size, as for `glint calib --check`.
-constexpr int kCheck_px = 2100;
 // Raised whenever the same photograph may be judged otherwise, so that older results are not used.
 constexpr int kCheckVersion = 1;
 constexpr double kUsualFocal_mm = 26;  // 35 mm equivalent, see capture/assumed_camera.h

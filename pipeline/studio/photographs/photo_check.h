@@ -15,6 +15,10 @@
 
 namespace glint {
 
+// The longer side that is looked at: 12 megapixels at half their size, as for `glint calib
+// --check`.
+inline constexpr int kCheck_px = 2100;
+
 // What a check depends on besides the photograph.
 struct CheckTask {
   std::optional<Board> board;  // none: the capture has no board

@@ -73,15 +73,29 @@ HttpReply Act(const RouteContext& context, const Door& door, const LibraryEntry&
   return JsonReply(Json::object());
 }
 
-// PUT /api/captures/ID/options, PUT /api/captures/ID/photographs/PID
+void ChangeBoardTo(const RouteContext& context, const LibraryEntry& entry, const Json& json) {
+  const BoardShelf& shelf = context.workspace->boards();
+  const auto board = shelf.Find(TextIn(json, "board", ""));
+  if (!board) throw HttpError{404, "there is no such board", "reload the page"};
+  context.workspace->SetBoard(entry, {*board, PairIn(json, "size_mm")});
+  (void)shelf.Adopt(*board);
+}
+
+// PUT /api/captures/ID/options, /board, /photographs/PID
 HttpReply Change(const RouteContext& context, const LibraryEntry& entry, const Segments& at,
                  HttpBody* body) {
   if (at.size() == 2 && at[0] == "photographs") {
     context.workspace->SetLeftOut(entry, at[1], FlagIn(JsonBody(body), "left_out"));
     return JsonReply(Json::object());
   }
-  if (at.size() != 1 || at[0] != "options") ThrowNotFound();
-  context.workspace->SetOptions(entry, JsonBody(body));
+  if (at.size() != 1) ThrowNotFound();
+  if (at[0] == "board") {
+    ChangeBoardTo(context, entry, JsonBody(body));
+  } else if (at[0] == "options") {
+    context.workspace->SetOptions(entry, JsonBody(body));
+  } else {
+    ThrowNotFound();
+  }
   return SendCapture(context, entry);
 }
 
@@ -92,6 +106,9 @@ HttpReply RouteOneCapture(const RouteContext& context, const Door& door, const L
   if (method == "GET" && at.empty()) return SendCapture(context, entry);
   if (method == "GET" && what == "thumbnail" && at.size() <= 2) {
     return SendThumbnail(context, entry, at.size() == 2 ? at[1] : "");
+  }
+  if (method == "GET" && what == "boards" && at.size() == 1) {
+    return JsonReply(context.workspace->BoardsToOfferJson(entry));
   }
   if (method == "PUT") return Change(context, entry, at, body);
   if (method == "DELETE" && what == "phone" && at.size() == 1) {

@@ -11,6 +11,7 @@
 #include "pipeline/studio/captures/notes.h"
 #include "pipeline/studio/captures/option_form.h"
 #include "pipeline/studio/runs/results.h"
+#include "pipeline/studio/workspace/board_offer.h"
 #include "pipeline/studio/workspace/capture_row.h"
 #include "pipeline/studio/workspace/killed_studio.h"
 #include "pipeline/studio/workspace/left_out.h"
@@ -168,10 +169,14 @@ std::string Workspace::Make(const NewCapture& wanted) {
   return id;
 }
 
-void Workspace::Trash(const LibraryEntry& entry) {
+void Workspace::RequireNoRun(const LibraryEntry& entry) {
   if (runs_->IsRunning(entry.id) || RunsElsewhere(entry.folder)) {
     throw HttpError{409, "the capture is being run", "cancel the run first"};
   }
+}
+
+void Workspace::Trash(const LibraryEntry& entry) {
+  RequireNoRun(entry);
   if (entry.folder == root_) {
     throw HttpError{409, "the capture is Studio's own folder", "move it yourself"};
   }
@@ -222,6 +227,33 @@ void Workspace::SetOptions(const LibraryEntry& entry, const Json& changes) {
   RequireDescription(entry.folder);
   EditCapture(entry.folder, [&](const Capture& capture, const std::string& text) {
     return WithOptions(capture, text, changes, form);
+  });
+  events_.Publish("capture", entry.id);
+}
+
+Json Workspace::BoardsToOfferJson(const LibraryEntry& entry) {
+  Json list = Json::array();
+  const BoardOffer offer = BoardsToOffer(ReadState(entry.folder), boards_.List(), checks_.get());
+  for (const KeptBoard& board : offer.boards) list.push_back(ToJson(board));
+  return {{"another", offer.shows_another}, {"boards", list}};
+}
+
+void Workspace::SetBoard(const LibraryEntry& entry, const BoardChange& change) {
+  RequireWritable();
+  RequireNoRun(entry);
+  const auto mutex = captures_.MutexOf(entry.id);
+  const std::lock_guard<std::mutex> guard(*mutex);
+  const CaptureState state = ReadState(entry.folder);
+  if (KindOf(state) != "board") {
+    throw HttpError{409, "the capture has no board", "make a capture with a board"};
+  }
+  const std::set<std::string> again = LeftOutForBoard(state, checks_.get());
+  ChangeBoard(entry.folder, change);
+  std::set<std::string> undecided = UndecidedPhotos(entry.folder);
+  undecided.insert(again.begin(), again.end());
+  NoteUndecided(entry.folder, undecided);
+  EditLeftOut(entry.folder, [&](std::set<std::string>* places) {
+    for (const std::string& place : again) places->erase(place);
   });
   events_.Publish("capture", entry.id);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/files/files.h"
+#include "pipeline/studio/captures/board_change.h"
 #include "pipeline/studio/captures/boards.h"
 #include "pipeline/studio/captures/new_capture.h"
 #include "pipeline/studio/http/http_types.h"
@@ -49,6 +50,10 @@ class Workspace {
   Json Receive(const LibraryEntry& entry, HttpBody* body);
   void SetLeftOut(const LibraryEntry& entry, const std::string& photo, bool left_out);
   void SetOptions(const LibraryEntry& entry, const Json& changes);
+  // Boards that its photographs show where they show another than the capture's.
+  Json BoardsToOfferJson(const LibraryEntry& entry);
+  // Photographs that were left out because its board was not found in them are judged again.
+  void SetBoard(const LibraryEntry& entry, const BoardChange& change);
   void Run(const LibraryEntry& entry, bool quick);
   // A small picture of a photograph, or of the result; empty: there is none (yet).
   std::filesystem::path Thumbnail(const LibraryEntry& entry, const std::string& photo);
@@ -56,6 +61,7 @@ class Workspace {
  private:
   void OnChecked(const std::string& capture);
   void RequireWritable() const;
+  void RequireNoRun(const LibraryEntry& entry);
   Json BoardJson(const CaptureState& state) const;
   Json ThumbnailJson(const LibraryEntry& entry, const std::vector<StudioPhoto>& photos);
   void AddPhotographs(const LibraryEntry& entry, const CaptureState& state,
