@@ -18,9 +18,15 @@ async function entriesOf(folder: FileSystemDirectoryEntry): Promise<FileSystemEn
   }
 }
 
+// Of a capture's folder the photographs alone: beside them lie maps and materials.
+function photographsFirst(inside: FileSystemEntry[]): FileSystemEntry[] {
+  const photos = inside.filter((entry) => entry.isDirectory && entry.name === 'photos');
+  return inside.some((entry) => entry.name === 'capture.toml') && photos.length ? photos : inside;
+}
+
 async function walk(entry: FileSystemEntry): Promise<File[]> {
   if (entry.isFile) return filesOf(entry as FileSystemFileEntry);
-  const inside = await entriesOf(entry as FileSystemDirectoryEntry);
+  const inside = photographsFirst(await entriesOf(entry as FileSystemDirectoryEntry));
   return (await Promise.all(inside.map(walk))).flat();
 }
 
@@ -31,9 +37,17 @@ export async function droppedFiles(transfer: DataTransfer): Promise<{ files: Fil
   return { files: (await Promise.all(entries.map(walk))).flat(), fromFolder };
 }
 
+// The same of a chosen folder, whose files come with their paths.
+function withoutMaps(files: File[]): File[] {
+  const paths = files.map((file) => file.webkitRelativePath);
+  const captures = paths.filter((path) => path.endsWith('/capture.toml')).map((path) => path.slice(0, -'capture.toml'.length));
+  const bare = captures.filter((folder) => paths.some((path) => path.startsWith(`${folder}photos/`)));
+  return files.filter(({ webkitRelativePath: path }) => !bare.some((folder) => path.startsWith(folder) && !path.startsWith(`${folder}photos/`)));
+}
+
 // A folder holds other things too, which are left out without a word for each; files chosen one by one are all sent.
 export function photographsAmong(files: File[]): { photographs: File[]; ignored: number } {
-  const visible = files.filter((file) => !hidden.test(file.name));
+  const visible = withoutMaps(files).filter((file) => !hidden.test(file.name));
   const photographs = visible.filter((file) => photograph.test(file.name));
   photographs.sort((a, b) => a.name.localeCompare(b.name, 'en', { numeric: true }));
   return { photographs, ignored: visible.length - photographs.length };
