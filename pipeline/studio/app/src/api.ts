@@ -4,6 +4,7 @@ import { texts } from './texts';
 
 export type Kind = 'board' | 'single' | 'rectified' | 'fixed camera';
 export type Verdict = 'good' | 'usable' | 'poor' | 'none';
+// 'empty': no photograph is used.
 export type Status = 'empty' | 'ready' | 'running' | 'done' | 'out of date' | 'failed';
 export type Size = [number, number];
 
@@ -105,7 +106,7 @@ export type SavedOptions = Record<string, Record<string, OptionValue>>;
 
 export interface Capture extends Omit<CaptureRow, 'photographs'> {
   folder: string;
-  board?: string | null;
+  board?: Board | null; // with an empty id where it is not among the kept ones
   problem?: { message: string; remedy: string } | null; // capture.toml cannot be read
   limits?: { photograph_bytes: number; photographs: number };
   phone?: PhoneLink | null; // a code that is valid still
@@ -136,12 +137,14 @@ export interface StageOptions {
 export interface Board {
   id: string;
   name: string;
+  words?: string; // what it is, as the programs say it
   paper: string;
   squares: Size;
   square_mm: number;
   window_mm: Size | null; // null: a whole board, without a window
   ruler_mm: number | null; // as printed
   pdf?: boolean; // false: of a capture whose PDF is elsewhere
+  known?: boolean; // to Studio, without a file
   print_scale?: number; // printed over designed size, from the ruler that was measured; 1: as its label says
 }
 
@@ -227,12 +230,15 @@ export const api = {
   trash: (id: string) => ask<object>('POST', `${of(id)}/trash`, {}),
   makeBoard: (paper: string, window_mm?: Size) =>
     ask<Board>('POST', '/api/boards', window_mm ? { paper, window_mm } : { paper }),
+  describeBoard: (file_name: string, description: string) => ask<Board>('POST', '/api/boards', { file_name, description }),
   measureBoard: (id: string, ruler_measured_mm: number) =>
     ask<Board>('PUT', `/api/boards/${encodeURIComponent(id)}`, { ruler_measured_mm }),
   boardPdf: (id: string) => `/api/boards/${encodeURIComponent(id)}/board.pdf`,
   photographsPath: (id: string) => `${of(id)}/photographs`,
   leaveOut: (id: string, photograph: string, left_out: boolean) =>
     ask<object>('PUT', `${of(id)}/photographs/${encodeURIComponent(photograph)}`, { left_out }),
+  boardsShown: (id: string) => ask<{ another: boolean; boards: Board[] }>('GET', `${of(id)}/boards`),
+  setBoard: (id: string, board: string, size_mm?: Size) => ask<Capture>('PUT', `${of(id)}/board`, size_mm ? { board, size_mm } : { board }),
   saveOptions: (id: string, options: Record<string, Record<string, OptionValue | null>>) =>
     ask<Capture>('PUT', `${of(id)}/options`, options),
   run: (id: string, quick: boolean) => ask<object>('POST', `${of(id)}/run`, { quick }),

@@ -2,7 +2,7 @@
 import { useEffect, useState } from 'preact/hooks';
 import { api, type Board, type Failure, type Kind } from '../api';
 import { useLive } from '../live';
-import { BoardChooser } from '../parts/board_chooser';
+import { BoardChooser, toDescribe } from '../parts/board_chooser';
 import { NumberField } from '../parts/field';
 import { PageHeading } from '../parts/heading';
 import { FailureNotice } from '../parts/notice';
@@ -41,12 +41,12 @@ export function NewCapturePage() {
   const boards = kept.data?.boards ?? [];
   const board = kind === 'board' ? (boards.find((b) => b.id === chosen) ?? null) : null;
   useEffect(() => {
-    if (chosen === undefined && boards.length > 0) setChosen(boards[0].id);
+    if (chosen === undefined && kept.data) setChosen(boards.find((b) => !b.known)?.id ?? null);
   }, [kept.data]);
   const title = name ?? (library ? unusedName(library.captures.map((c) => c.name)) : '');
   const size: [number, number] = [Number(width) || 0, Number(height) || 0];
   const single = kind === 'single';
-  const valid = title.trim() !== '' && (single ? !sizeError(pictureWidth) : !sizeError(width) && !sizeError(height));
+  const valid = title.trim() !== '' && (single ? !sizeError(pictureWidth) : !sizeError(width) && !sizeError(height) && chosen !== toDescribe);
   const drawn: [number, number] = [Math.min(Math.max(size[0], 1), 2000), Math.min(Math.max(size[1], 1), 2000)];
   const opening = board?.window_mm ?? null;
   const tooLarge = opening !== null && (size[0] > opening[0] || size[1] > opening[1]);
@@ -136,14 +136,14 @@ export function NewCapturePage() {
               </fieldset>
             )}
           </fieldset>
-          {kind === 'board' && <BoardChooser boards={boards} chosen={chosen ?? null} onChoose={setChosen} onBoard={replaceBoard} paper={paper} onPaper={setPaper} size={valid ? size : null} />}
+          {kind === 'board' && <BoardChooser boards={boards} chosen={chosen ?? null} onChoose={setChosen} onBoard={replaceBoard} paper={paper} onPaper={setPaper} size={!sizeError(width) && !sizeError(height) ? size : null} />}
         </div>
         <div class="stack sticky">
           <div class="panel">
             <SampleDrawing
               size={drawn}
               board={board}
-              paper={kind === 'board' ? paper : null}
+              paper={kind === 'board' && chosen !== toDescribe ? paper : null}
               height_mm={kind === 'board' && thickness === 'given' ? Number(height_mm) || 0 : null}
               pictureWidth_mm={single ? Math.min(Math.max(Number(pictureWidth) || 0, 1), 2000) : null}
             />

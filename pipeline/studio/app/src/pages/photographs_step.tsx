@@ -3,6 +3,7 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 import { announce } from '../announce';
 import { api, type Failure, type Photograph } from '../api';
 import { AdvicePanel } from '../parts/advice';
+import { CaptureBoard, OtherBoard } from '../parts/capture_board';
 import { DropArea } from '../parts/drop_area';
 import { OutIcon, PhoneIcon } from '../parts/icons';
 import { FailureNotice, Notice } from '../parts/notice';
@@ -59,6 +60,7 @@ export function PhotographsStep({ capture, reload, set }: StepProps) {
   const shown = onlyProblems && problems > 0 ? photographs.filter(hasProblem) : photographs;
   return (
     <div class="columns photographs">
+      {capture.board && <OtherBoard capture={capture} set={set} />}
       <div class="stack">
         {imported && <Notice title={t.imported} />}
         {!imported && <DropArea onFiles={(files) => queue.add(files)}>
@@ -77,9 +79,9 @@ export function PhotographsStep({ capture, reload, set }: StepProps) {
         </div>}
         {photographs.length === 0 && uploads.length === 0 && !imported && (
           <div class="stack start">
-            {capture.board && (
+            {capture.board?.pdf && (
               <Notice title={t.printFirst}>
-                <a class="button small" href={api.boardPdf(capture.board)} target="_blank" rel="noopener"><OutIcon />{texts.create.printPdf}</a>
+                <a class="button small" href={api.boardPdf(capture.board.id)} target="_blank" rel="noopener"><OutIcon />{texts.create.printPdf}</a>
               </Notice>
             )}
             <p class="quiet">{capture.kind === 'board' ? t.noneText : t.noneTextNoBoard}</p>
@@ -89,6 +91,7 @@ export function PhotographsStep({ capture, reload, set }: StepProps) {
       </div>
       <div class="stack sticky first-on-phone">
         {advised && <AdvicePanel advice={capture.advice} photographs={photographs} selected={selected} directions={capture.kind === 'board'} />}
+        <CaptureBoard capture={capture} set={set} />
         {(photographs.length > 0 || imported) && (
           <a class={capture.advice.enough ? 'button primary wide' : 'button wide'} href={links.step(capture.id, 'run')}>{t.goRun}</a>
         )}

@@ -1,8 +1,10 @@
-// The printed board of a capture: one that was kept, or a new one made for a paper size and printed from its PDF.
+// The printed board of a capture: one that Studio knows, one that a file or figures describe, or a new one made for a paper size and printed
+// from its PDF.
 import { useId, useState } from 'preact/hooks';
 import { announce } from '../announce';
 import { api, type Board, type Failure, type Size } from '../api';
 import { texts } from '../texts';
+import { BoardDescription } from './board_description';
 import { OutIcon } from './icons';
 import { NumberField } from './field';
 import { FailureNotice } from './notice';
@@ -14,10 +16,14 @@ function measuredRuler({ ruler_mm, print_scale = 1 }: Board): number | null {
   return ruler_mm === null || Math.abs(print_scale - 1) < 1e-6 ? null : Math.round(10 * ruler_mm) / 10;
 }
 
-function facts(board: Board): string {
+// What is chosen while the board is not described yet.
+export const toDescribe = 'describe';
+
+export function boardFacts(board: Board): string {
   const measured = measuredRuler(board);
   return [
-    board.paper || t.squares(board.squares[0], board.squares[1], board.square_mm), // of a capture: its sheet is not known
+    t.boardKnown[board.name],
+    board.paper || (board.squares[0] > 0 ? t.squares(board.squares[0], board.squares[1], board.square_mm) : board.words), // of a capture: its sheet is not known
     board.window_mm && t.window(board.window_mm[0], board.window_mm[1]),
     measured !== null && t.rulerIs(measured),
   ].filter(Boolean).join(' · ');
@@ -50,7 +56,7 @@ function Ruler({ board, onChange }: { board: Board; onChange: (board: Board) => 
 
 interface ChooserProps {
   boards: Board[];
-  chosen: string | null; // null: a new one, made with the capture or before it
+  chosen: string | null; // null: a new one, made with the capture or before it; or toDescribe
   onChoose: (id: string | null) => void;
   onBoard: (board: Board) => void;
   paper: string;
@@ -63,6 +69,7 @@ export function BoardChooser({ boards, chosen, onChoose, onBoard, paper, onPaper
   const [busy, setBusy] = useState(false);
   const [failure, setFailure] = useState<Failure | null>(null);
   const board = boards.find((b) => b.id === chosen) ?? null;
+  const isNew = board === null && chosen !== toDescribe;
   const make = async () => {
     if (!size) return;
     setBusy(true);
@@ -87,19 +94,34 @@ export function BoardChooser({ boards, chosen, onChoose, onBoard, paper, onPaper
             <input type="radio" name={group} checked={b.id === chosen} onChange={() => onChoose(b.id)} />
             <span>
               <b>{b.name}</b>
-              <small>{facts(b)}</small>
+              <small>{boardFacts(b)}</small>
             </span>
           </label>
         ))}
         <label class="choice">
-          <input type="radio" name={group} checked={board === null} onChange={() => onChoose(null)} />
+          <input type="radio" name={group} checked={chosen === toDescribe} onChange={() => onChoose(toDescribe)} />
+          <span>
+            <b>{t.boardOther}</b>
+            <small>{t.boardOtherText}</small>
+          </span>
+        </label>
+        <label class="choice">
+          <input type="radio" name={group} checked={isNew} onChange={() => onChoose(null)} />
           <span>
             <b>{t.boardNew}</b>
             <small>{t.boardNewText}</small>
           </span>
         </label>
       </div>
-      {board === null && (
+      {chosen === toDescribe && (
+        <BoardDescription
+          onBoard={(described) => {
+            onBoard(described);
+            onChoose(described.id);
+          }}
+        />
+      )}
+      {isNew && (
         <div class="new-board">
           <label class="field">
             <span>{t.paper}</span>
