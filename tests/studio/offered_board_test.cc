@@ -43,6 +43,7 @@ TEST(OfferedBoards, PhotographsOfAnotherBoardAreTakenBackInWhenTheirsIsChosen) {
   running.page->Upload(path + "/photographs", photographs);
   const Json before = running.CheckedCapture(id);
   for (const Json& photo : before["photographs"]) EXPECT_TRUE(photo["left_out"].get<bool>());
+  EXPECT_EQ(before["status"], "empty");  // there is nothing to run
   const Json offer = running.page->Get(path + "/boards").json();
   EXPECT_TRUE(offer["another"].get<bool>());
   ASSERT_EQ(offer["boards"].size(), 1u) << offer;

@@ -32,7 +32,9 @@ std::string StatusOf(const LibraryEntry& entry, const CaptureState& state,
   if (runs->IsRunning(entry.id) || RunsElsewhere(entry.folder)) return "running";
   if (!state.problem.message.empty()) return "failed";
   const bool imported = state.capture && state.capture->imported();
-  if (photos.empty() && !imported) return "empty";
+  const bool none_used = std::all_of(photos.begin(), photos.end(),
+                                     [](const StudioPhoto& photo) { return photo.left_out; });
+  if (none_used && !imported) return "empty";
   const double report_s = ReportedAt_s(entry.folder);
   const double record_s = ChangedAt_s(StudioFolderOf(entry.folder) / "run.json");
   const auto last = runs->Look(entry.id, entry.folder);

@@ -53,7 +53,7 @@ export function CapturePage({ id, step }: { id: string; step: Step | null }) {
           <PageHeading title={capture.name} />
           <p class="quiet">{captureFacts(capture, capture.photographs.length)}</p>
         </div>
-        <StatusBadge status={capture.status} />
+        <StatusBadge status={capture.status} photographs={capture.photographs.length} />
       </div>
       <nav class="steps" aria-label={texts.steps.label}>
         {steps.map((s) => (

@@ -37,7 +37,7 @@ function Card({ row, onTrash }: { row: CaptureRow; onTrash: () => void }) {
       </a>
       <p class="card-facts">{captureFacts(row, row.photographs)}</p>
       <p class="card-state">
-        <StatusBadge status={row.status} />
+        <StatusBadge status={row.status} photographs={row.photographs} />
         {row.verdict !== 'none' && <VerdictBadge verdict={row.verdict} />}
       </p>
       <p class="card-foot">

@@ -46,8 +46,8 @@ export function RunStep({ capture, reload, set }: StepProps) {
     <div class="columns">
       <div class="stack sticky">
         {none && !result && (
-          <Notice title={t.noPhotographs}>
-            <a class="button small" href={links.step(capture.id, 'photographs')}>{t.toPhotographs}</a>
+          <Notice title={capture.photographs.length ? t.allLeftOut : t.noPhotographs}>
+            <a class="button small" href={links.step(capture.id, 'photographs')}>{capture.photographs.length ? t.seePhotographs : t.toPhotographs}</a>
           </Notice>
         )}
         {capture.status === 'out of date' && !running && <Notice tone="warning" title={t.outOfDate} />}

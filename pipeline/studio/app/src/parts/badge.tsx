@@ -12,8 +12,8 @@ const statusTones: Record<Status, string> = {
 };
 const verdictTones: Record<Verdict, string> = { good: 'good', usable: 'weak', poor: 'bad', none: 'quiet' };
 
-export const StatusBadge = ({ status }: { status: Status }) => (
-  <span class={`badge ${statusTones[status] ?? 'quiet'}`}>{texts.statuses[status] ?? status}</span>
+export const StatusBadge = ({ status, photographs }: { status: Status; photographs: number }) => (
+  <span class={`badge ${statusTones[status] ?? 'quiet'}`}>{status === 'empty' && photographs > 0 ? texts.allLeftOut : (texts.statuses[status] ?? status)}</span>
 );
 
 export const VerdictBadge = ({ verdict }: { verdict: Verdict }) => (
