@@ -78,3 +78,24 @@ export function screenshots(folder) {
     if (folder) await page.screenshot({ path: path.join(folder, `${name}.png`), fullPage: true });
   };
 }
+
+// A function that judges `page`, or another, as it is now in the four shapes: pictures in `out`, width, axe; then it is as it was before.
+export function stepsOf(page, out, prefix = '') {
+  let number = 0;
+  return async function step(name, subject = page, subjectShapes = shapes) {
+    const label = `${prefix}${String(++number).padStart(2, '0')}-${name.replace(/ /g, '-')}`;
+    const before = subject.viewportSize();
+    const wrong = [];
+    for (const { width, height, scheme } of subjectShapes) {
+      await subject.setViewportSize({ width, height });
+      await subject.emulateMedia({ colorScheme: scheme });
+      await subject.waitForTimeout(150);
+      if (await tooWide(subject)) wrong.push(`wider than ${width} px`);
+      await subject.screenshot({ path: path.join(out, `${label}-${width}-${scheme}.png`) });
+      wrong.push(...(await seriousFindings(subject)));
+    }
+    await subject.setViewportSize(before);
+    await subject.emulateMedia({ colorScheme: 'light' });
+    verdict(wrong.length === 0, `${name}${wrong.length ? `: ${[...new Set(wrong)].join(' | ')}` : ''}`);
+  };
+}

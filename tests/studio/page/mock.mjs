@@ -42,7 +42,7 @@ const finishedRun = (quick) => ({ state: 'done', quick, share: 1, remaining_s: n
 
 function example(now) {
   const all = (n) => ring.slice(0, n).map((d, i) => good(`p${i + 1}`, `IMG_${1200 + i}.jpg`, d));
-  const capture = (id, name, family, more) => ({ id, name, family, seed: id.length * 7 + id.charCodeAt(0), kind: 'board', size_mm: [100, 100], photographs: all(12), status: 'done', changed_s: now - 4000, options: {}, run: null, done: null, folder: `/home/you/Glint/${name}`, ...more });
+  const capture = (id, name, family, more) => ({ id, name, family, seed: id.length * 7 + id.charCodeAt(0), kind: 'board', board: 'b1', size_mm: [100, 100], photographs: all(12), status: 'done', changed_s: now - 4000, options: {}, run: null, done: null, folder: `/home/you/Glint/${name}`, ...more });
   return [
     capture('oak', 'oak, oiled', 'oak', { done: { quick: false, previous: true, tile: true }, run: finishedRun(false), options: { tile: { enabled: true } } }),
     capture('felt', 'green felt', 'felt', { photographs: sixPhotographs(), status: 'ready', changed_s: now - 50, size_mm: [80, 120] }),
@@ -163,6 +163,11 @@ export class Mock {
     if (action === 'photographs' && method === 'POST') return send({ photographs: this.receive(capture, request, body) });
     if (action === 'photographs' && method === 'PUT') return send(this.leaveOut(capture, parts[4], json().left_out));
     if (action === 'options' && method === 'PUT') return send(this.saveOptions(capture, json()));
+    if (action === 'boards') return send({ another: false, boards: [] });
+    if (action === 'board' && method === 'PUT') {
+      capture.board = json().board;
+      return send(this.whole(capture));
+    }
     if (action === 'run') return send(this.run(capture, json().quick));
     if (action === 'cancel') return send(this.cancel(capture));
     if (action === 'open-folder') return send({});
@@ -221,7 +226,7 @@ export class Mock {
         { name: 'Roughness, 1σ', value: '0.03', meaning: 'Median standard deviation over the texels.' }],
       previous: c.done.previous ? { maps: list('/previous') } : null,
     };
-    return { ...this.row(c), folder: c.folder, board: c.board ?? null, problem: null, limits: { photograph_bytes: 200e6, photographs: 300 }, phone: null, photographs: this.shown(c, at), advice: advise(c.photographs, c.kind), options: { ...c.options, sample: { resolution_px: 1024, ...c.options.sample }, tile: { enabled: false, ...c.options.tile } }, run: c.run, result };
+    return { ...this.row(c), folder: c.folder, board: (c.kind === 'board' && this.boards.find((b) => b.id === c.board)) || null, problem: null, limits: { photograph_bytes: 200e6, photographs: 300 }, phone: null, photographs: this.shown(c, at), advice: advise(c.photographs, c.kind), options: { ...c.options, sample: { resolution_px: 1024, ...c.options.sample }, tile: { enabled: false, ...c.options.tile } }, run: c.run, result };
   }
 
   picture(c, id, send) {

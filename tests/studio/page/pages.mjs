@@ -65,6 +65,16 @@ for (const shape of shapes) {
   verdict(findings.length + said.length === 0, `the phone’s code, ${shape.width} ${shape.scheme} ${[...findings, ...said].join(' | ')}`);
   await close();
 }
+for (const shape of shapes) {
+  const { page, said, close } = await open(browser, shape, `${home}/#/capture/felt/photographs`);
+  await page.getByRole('button', { name: 'Change the board' }).click();
+  await page.getByRole('dialog').getByRole('radio', { name: /Another board/ }).check();
+  await page.getByText('Enter its figures instead').click();
+  const findings = await seriousFindings(page);
+  await shot(page, `change-the-board-${shape.width}-${shape.scheme}`);
+  verdict(findings.length + said.length === 0, `another board, ${shape.width} ${shape.scheme} ${[...findings, ...said].join(' | ')}`);
+  await close();
+}
 for (const width of [390, 768, 1024, 1600]) {
   for (const name of ['library', 'new capture', 'photographs', 'options', 'result', 'phone']) {
     const { page, close } = await open(browser, { width, height: 900, scheme: 'light' }, pages[name][0]);

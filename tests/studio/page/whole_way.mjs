@@ -5,7 +5,7 @@ import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
-import { finish, launch, open, seriousFindings, shapes, tooWide, verdict } from './browser.mjs';
+import { finish, launch, open, shapes, stepsOf, verdict } from './browser.mjs';
 import { startStudio } from './studio.mjs';
 
 const [programs, out, megapixels = '2'] = process.argv.slice(2);
@@ -18,24 +18,7 @@ const browser = await launch();
 const desk = await open(browser, shapes[2], studio.address);
 const { page } = desk;
 
-let number = 0;
-// The page as it is now, in the four shapes; then as it was before.
-async function step(name, subject = page, subjectShapes = shapes) {
-  const label = `${String(++number).padStart(2, '0')}-${name.replace(/ /g, '-')}`;
-  const before = subject.viewportSize();
-  const wrong = [];
-  for (const { width, height, scheme } of subjectShapes) {
-    await subject.setViewportSize({ width, height });
-    await subject.emulateMedia({ colorScheme: scheme });
-    await subject.waitForTimeout(150);
-    if (await tooWide(subject)) wrong.push(`wider than ${width} px`);
-    await subject.screenshot({ path: path.join(out, `${label}-${width}-${scheme}.png`) });
-    wrong.push(...(await seriousFindings(subject)));
-  }
-  await subject.setViewportSize(before);
-  await subject.emulateMedia({ colorScheme: 'light' });
-  verdict(wrong.length === 0, `${name}${wrong.length ? `: ${[...new Set(wrong)].join(' | ')}` : ''}`);
-}
+const step = stepsOf(page, out);
 const narrow = shapes.slice(0, 2);
 const seconds = (since) => ((performance.now() - since) / 1000).toFixed(1);
 
