@@ -15,6 +15,7 @@
 #include "base/photos/photo.h"
 #include "calib/chart/chart.h"
 #include "calib/colmap/colmap_model.h"
+#include "calib/moving_light/lights_file.h"
 #include "datasets/import/foreign_set.h"
 #include "fitting/weights/safetensors.h"
 #include "tests/fuzz/studio_client.h"
@@ -51,6 +52,15 @@ void ReadRectified(const fs::path& file) {
   RectifiedView view;
   view.file = file.filename();
   ReadRectifiedImage(set, view);
+}
+
+// Directions, or positions where the file says how large the picture is.
+void ReadLights(const fs::path& file) {
+  constexpr double kPictureWidth_mm = 100;
+  const LightsFile read = ReadLightsFile(file, "", kPictureWidth_mm);
+  std::vector<std::string> photos, remarks;
+  for (const ListedLight& light : read.lights) photos.push_back("photos/" + light.photo);
+  MatchLights(read, photos, &remarks);
 }
 
 // Stands below the contract, whose errors it does not know.
@@ -100,6 +110,9 @@ const std::vector<FuzzTarget>& FuzzTargets() {
       OfFile("response", "response.json", [](const fs::path& file) { ReadResponseCurve(file); }),
       OfFile("safetensors", "weights.safetensors", ReadTensors),
       OfFile("chart_csv", "chart.csv", [](const fs::path& file) { ReadChartCsv(file, "A", 1.5); }),
+      OfFile("lights_lp", "dirs.lp", ReadLights),
+      OfFile("lights_relight", "coin.relight", ReadLights),
+      OfFile("lights_dome", "lamps.dome", ReadLights),
       OfFile("hash_cache", "hashes.json", [](const fs::path& file) { HashCache{file}; }),
       {"colmap", ReadColmap},
       {"studio", [](const fs::path&, std::string_view bytes) { SendToStudio(bytes); },
