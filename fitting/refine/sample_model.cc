@@ -260,7 +260,7 @@ void SampleModel::Solve(const SampleRequest& request, Sampling* sampling) const 
                          const size_t texel = sampling->texels[k];
                          tasks.push_back({texel, PriorOf(texel), sampling->solved[k].values});
                        }
-                       sampling->solver->solve(tasks, request, worker,
+                       sampling->solver->solve(tasks, request, sampling->first_worker + worker,
                                                std::span(sampling->solved).subspan(first, block));
                      });
 }

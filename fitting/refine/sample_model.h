@@ -117,11 +117,14 @@ class SampleModel {
   struct Sampling {  // sampled texels and what solves them
     std::vector<size_t> texels;
     std::vector<SampledTexel> solved;
+    // Of blocks: which of these are each one's neighbours.
+    std::vector<std::vector<size_t>> neighbours;
     std::vector<size_t> places;  // of texels: those of a place have like half vectors
     size_t place_count = 0;
     size_t half_vectors = 0;  // that can be told apart, of all views
     const SampleSolver* solver = nullptr;
     int threads = 1;
+    int first_worker = 0;  // of those threads
   };
   Sampling Sample(size_t most, const SampleSolver& solver, int threads) const;
   Sampling SampleBlocks(size_t most, const SampleSolver& solver, int threads) const;
@@ -130,6 +133,7 @@ class SampleModel {
   HalfVectorCell CellOf(size_t texel, size_t view) const;
   void TellHalfVectorsApart(Sampling* sampling) const;
   void Solve(const SampleRequest& request, Sampling* sampling) const;
+  void FindNeighbours(Sampling* sampling) const;
   void SolveFromNeighbours(const SampleRequest& request, size_t half, Sampling* sampling) const;
   // Rounds of solving the sampled texels by all views and of updating what is being learned:
   // substances and the residuals' variance, and scatter of normals and views' deviations.
@@ -152,10 +156,10 @@ class SampleModel {
   void FitNormalsToo(Sampling* sampling);
   void FitAsChosen(Sampling* sampling);
   // By cross-validation, sample_spreads.cc.
-  // visit(model, sampling, fitted, held_out) with what is found of the sampled texels without the
-  // views held out, one fold after the other.
-  template <class Visit>
-  void ForEachFold(const Sampling& sampling, const Visit& visit) const;
+  int Folds() const;
+  // What is found of the sampled texels without the views of that fold, and how wrong it predicts
+  // those: g² by texel. Changes `part`, which begins as what is sampled.
+  std::vector<double> HeldOutSquaresOf(int fold, Sampling* part) const;
   std::vector<double> HeldOutSquares(std::span<const ViewDifferences> differences) const;
   HeldOutErrors CrossValidate(const Sampling& sampling) const;
   SampleModel ScaledBy(const SpreadFactors& factors) const;

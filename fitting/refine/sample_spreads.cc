@@ -49,18 +49,30 @@ SampleModel::Sampling SampleModel::SampleBlocks(size_t most, const SampleSolver&
                        static_cast<size_t>(column + i % across));
     }
   }
-  return SamplingOf(std::move(texels), solver, threads);
+  Sampling sampling = SamplingOf(std::move(texels), solver, threads);
+  FindNeighbours(&sampling);
+  return sampling;
+}
+
+void SampleModel::FindNeighbours(Sampling* sampling) const {
+  std::map<size_t, size_t> sampled;  // its place, by the texel
+  for (size_t k = 0; k < sampling->texels.size(); ++k) sampled.emplace(sampling->texels[k], k);
+  for (const size_t texel : sampling->texels) {
+    std::vector<size_t>& neighbours = sampling->neighbours.emplace_back();
+    ForEachNeighbour(texel, part_->initial().width, part_->initial().height, [&](size_t neighbour) {
+      const auto found = sampled.find(neighbour);
+      if (found != sampled.end()) neighbours.push_back(found->second);
+    });
+  }
 }
 
 // One colour of the checkerboard anew, by those of their neighbours that are sampled too.
 void SampleModel::SolveFromNeighbours(const SampleRequest& request, size_t half,
                                       Sampling* sampling) const {
-  const int width = part_->initial().width, height = part_->initial().height;
-  std::map<size_t, size_t> sampled;  // its place, by the texel
+  const size_t across = static_cast<size_t>(part_->initial().width);
   std::vector<size_t> moved;
   for (size_t k = 0; k < sampling->texels.size(); ++k) {
-    const size_t texel = sampling->texels[k], across = static_cast<size_t>(width);
-    sampled.emplace(texel, k);
+    const size_t texel = sampling->texels[k];
     if ((texel / across + texel % across) % kHalves == half) moved.push_back(k);
   }
   ForEachSampleBlock(moved.size(), sampling->threads, [&](size_t first, size_t block, int worker) {
@@ -68,45 +80,19 @@ void SampleModel::SolveFromNeighbours(const SampleRequest& request, size_t half,
     for (size_t i = first; i < first + block; ++i) {
       const size_t texel = sampling->texels[moved[i]];
       std::vector<Neighbour> neighbours;
-      ForEachNeighbour(texel, width, height, [&](size_t neighbour) {
-        const auto found = sampled.find(neighbour);
-        if (found == sampled.end()) return;
-        neighbours.push_back({neighbour, sampling->solved[found->second].values});
-      });
+      for (const size_t neighbour : sampling->neighbours[moved[i]]) {
+        neighbours.push_back({sampling->texels[neighbour], sampling->solved[neighbour].values});
+      }
       TexelGaussian gaussian = Knowledge(texel);
       MultiplyNeighbours(texel, neighbours, &gaussian);
       tasks.push_back({texel, Scaled(gaussian, residuals_), sampling->solved[moved[i]].values});
     }
     std::vector<SampledTexel> solved(block);
-    sampling->solver->solve(tasks, request, worker, solved);
+    sampling->solver->solve(tasks, request, sampling->first_worker + worker, solved);
     for (size_t i = 0; i < block; ++i) {
       sampling->solved[moved[first + i]].values = solved[i].values;
     }
   });
-}
-
-template <class Visit>
-void SampleModel::ForEachFold(const Sampling& sampling, const Visit& visit) const {
-  const int views = static_cast<int>(all_views_.size());
-  const int folds = std::min(views, constants::kMostFolds);
-  for (int fold = 0; fold < folds; ++fold) {
-    std::vector<int> fitted, held_out;
-    for (int v = 0; v < views; ++v) (v % folds == fold ? held_out : fitted).push_back(v);
-    SampleModel model(*this);
-    Sampling part = sampling;
-    // From what all texels share: solutions of all views remember those held out.
-    for (size_t k = 0; k < part.texels.size(); ++k) {
-      part.solved[k].values = PriorOf(part.texels[k]).mean();
-    }
-    const double explained = std::sqrt(residuals_.variance());
-    model.Solve({.views = fitted, .explained_sigma = explained}, &part);
-    model.UpdateSubstances(part);
-    const SampleRequest again = {
-        .views = fitted, .near_minimum = true, .explained_sigma = explained, .values_alone = true};
-    model.Solve(again, &part);
-    for (size_t half = 0; half < kHalves; ++half) model.SolveFromNeighbours(again, half, &part);
-    visit(model, part, fitted, held_out);
-  }
 }
 
 // Where exposures deviate, a photograph held out says nothing of its own but how well maps predict
@@ -116,23 +102,56 @@ std::vector<double> SampleModel::HeldOutSquares(
   return SquaresOf(differences, options_.robust_scale, deviations_.spreads()[kLogExposure] > 0);
 }
 
+int SampleModel::Folds() const {
+  return std::min(static_cast<int>(all_views_.size()), constants::kMostFolds);
+}
+
+std::vector<double> SampleModel::HeldOutSquaresOf(int fold, Sampling* part) const {
+  std::vector<int> fitted, held_out;
+  for (const int view : all_views_) {
+    (view % Folds() == fold ? held_out : fitted).push_back(view);
+  }
+  SampleModel model(*this);
+  // From what all texels share: solutions of all views remember those held out.
+  for (size_t k = 0; k < part->texels.size(); ++k) {
+    part->solved[k].values = PriorOf(part->texels[k]).mean();
+  }
+  const double explained = std::sqrt(residuals_.variance());
+  model.Solve({.views = fitted, .explained_sigma = explained}, part);
+  model.UpdateSubstances(*part);
+  const SampleRequest again = {
+      .views = fitted, .near_minimum = true, .explained_sigma = explained, .values_alone = true};
+  model.Solve(again, part);
+  for (size_t half = 0; half < kHalves; ++half) model.SolveFromNeighbours(again, half, part);
+  std::vector<ViewDifferences> differences(part->texels.size());
+  ForEachSampleBlock(differences.size(), part->threads,
+                     [&](size_t first, size_t count, int worker) {
+                       std::vector<TexelValues> values;
+                       for (size_t k = first; k < first + count; ++k)
+                         values.push_back(part->solved[k].values);
+                       part->solver->predict(std::span(part->texels).subspan(first, count), values,
+                                             held_out, part->first_worker + worker,
+                                             std::span(differences).subspan(first, count));
+                     });
+  return HeldOutSquares(differences);
+}
+
+// Folds are what threads share out, and the texels of each where threads are more.
 HeldOutErrors SampleModel::CrossValidate(const Sampling& sampling) const {
-  HeldOutErrors errors(sampling.place_count);
   sampling.solver->reflect(lobes_);
-  std::vector<ViewDifferences> differences(sampling.texels.size());
-  ForEachFold(sampling, [&](const SampleModel&, const Sampling& part, const std::vector<int>&,
-                            const std::vector<int>& held_out) {
-    ForEachSampleBlock(
-        differences.size(), part.threads, [&](size_t first, size_t count, int worker) {
-          std::vector<TexelValues> values;
-          for (size_t k = first; k < first + count; ++k) values.push_back(part.solved[k].values);
-          part.solver->predict(std::span(part.texels).subspan(first, count), values, held_out,
-                               worker, std::span(differences).subspan(first, count));
-        });
-    errors.BeginFold();
-    const std::vector<double> squares = HeldOutSquares(differences);
-    for (size_t k = 0; k < squares.size(); ++k) errors.Add(part.places[k], squares[k]);
+  std::vector<std::vector<double>> squares(static_cast<size_t>(Folds()));
+  const int threads_of_fold = std::max(1, sampling.threads / Folds());
+  ForEachPieceByWorker(Folds(), std::min(sampling.threads, Folds()), [&](int fold, int worker) {
+    Sampling part = sampling;
+    part.threads = threads_of_fold;
+    part.first_worker = worker * threads_of_fold;
+    squares[static_cast<size_t>(fold)] = HeldOutSquaresOf(fold, &part);
   });
+  HeldOutErrors errors(sampling.place_count);
+  for (const std::vector<double>& of_fold : squares) {
+    errors.BeginFold();
+    for (size_t k = 0; k < of_fold.size(); ++k) errors.Add(sampling.places[k], of_fold[k]);
+  }
   return errors;
 }
 
