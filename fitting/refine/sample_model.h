@@ -157,10 +157,17 @@ class SampleModel {
   void FitAsChosen(Sampling* sampling);
   // By cross-validation, sample_spreads.cc.
   int Folds() const;
-  // What is found of the sampled texels without the views of that fold, and how wrong it predicts
-  // those: g² by texel. Changes `part`, which begins as what is sampled.
-  std::vector<double> HeldOutSquaresOf(int fold, Sampling* part) const;
+  // The texels' values by these views, from the prior's means and other starts on.
+  std::vector<TexelValues> Search(std::span<const int> views, Sampling* part) const;
+  // How wrong what is found of the sampled texels without the views of that fold predicts those: g²
+  // by texel. Changes `part`, which begins as what is sampled. `start`: see FoldStarts.
+  std::vector<double> HeldOutSquaresOf(int fold, std::vector<TexelValues>* start,
+                                       Sampling* part) const;
   std::vector<double> HeldOutSquares(std::span<const ViewDifferences> differences) const;
+  // Where the texels of choices that are compared begin in each fold: at what Search() finds with
+  // the first of them, which those of the others are near to. Empty to begin with.
+  using FoldStarts = std::vector<std::vector<TexelValues>>;
+  HeldOutErrors CrossValidate(const Sampling& sampling, FoldStarts* starts) const;
   HeldOutErrors CrossValidate(const Sampling& sampling) const;
   SampleModel ScaledBy(const SpreadFactors& factors) const;
   // From factors of these powers on; returns those that predict best, and takes their mean.

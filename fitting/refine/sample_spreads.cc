@@ -106,23 +106,34 @@ int SampleModel::Folds() const {
   return std::min(static_cast<int>(all_views_.size()), constants::kMostFolds);
 }
 
-std::vector<double> SampleModel::HeldOutSquaresOf(int fold, Sampling* part) const {
-  std::vector<int> fitted, held_out;
-  for (const int view : all_views_) {
-    (view % Folds() == fold ? held_out : fitted).push_back(view);
-  }
-  SampleModel model(*this);
+std::vector<TexelValues> SampleModel::Search(std::span<const int> views, Sampling* part) const {
   // From what all texels share: solutions of all views remember those held out.
   for (size_t k = 0; k < part->texels.size(); ++k) {
     part->solved[k].values = PriorOf(part->texels[k]).mean();
   }
-  const double explained = std::sqrt(residuals_.variance());
-  model.Solve({.views = fitted, .explained_sigma = explained}, part);
+  Solve({.views = views, .explained_sigma = std::sqrt(residuals_.variance()), .values_alone = true},
+        part);
+  std::vector<TexelValues> found;
+  found.reserve(part->solved.size());
+  for (const SampledTexel& solved : part->solved) found.push_back(solved.values);
+  return found;
+}
+
+std::vector<double> SampleModel::HeldOutSquaresOf(int fold, std::vector<TexelValues>* start,
+                                                  Sampling* part) const {
+  std::vector<int> fitted, held_out;
+  for (const int view : all_views_) {
+    (view % Folds() == fold ? held_out : fitted).push_back(view);
+  }
+  if (start->empty()) *start = Search(fitted, part);
+  for (size_t k = 0; k < start->size(); ++k) part->solved[k].values = (*start)[k];
+  SampleModel model(*this);
+  SampleRequest request = {.views = fitted, .near_minimum = true};
+  model.Solve(request, part);
   model.UpdateSubstances(*part);
-  const SampleRequest again = {
-      .views = fitted, .near_minimum = true, .explained_sigma = explained, .values_alone = true};
-  model.Solve(again, part);
-  for (size_t half = 0; half < kHalves; ++half) model.SolveFromNeighbours(again, half, part);
+  request.values_alone = true;
+  model.Solve(request, part);
+  for (size_t half = 0; half < kHalves; ++half) model.SolveFromNeighbours(request, half, part);
   std::vector<ViewDifferences> differences(part->texels.size());
   ForEachSampleBlock(differences.size(), part->threads,
                      [&](size_t first, size_t count, int worker) {
@@ -136,16 +147,23 @@ std::vector<double> SampleModel::HeldOutSquaresOf(int fold, Sampling* part) cons
   return HeldOutSquares(differences);
 }
 
-// Folds are what threads share out, and the texels of each where threads are more.
 HeldOutErrors SampleModel::CrossValidate(const Sampling& sampling) const {
+  FoldStarts starts;
+  return CrossValidate(sampling, &starts);
+}
+
+// Folds are what threads share out, and the texels of each where threads are more.
+HeldOutErrors SampleModel::CrossValidate(const Sampling& sampling, FoldStarts* starts) const {
   sampling.solver->reflect(lobes_);
+  starts->resize(static_cast<size_t>(Folds()));
   std::vector<std::vector<double>> squares(static_cast<size_t>(Folds()));
   const int threads_of_fold = std::max(1, sampling.threads / Folds());
   ForEachPieceByWorker(Folds(), std::min(sampling.threads, Folds()), [&](int fold, int worker) {
     Sampling part = sampling;
     part.threads = threads_of_fold;
     part.first_worker = worker * threads_of_fold;
-    squares[static_cast<size_t>(fold)] = HeldOutSquaresOf(fold, &part);
+    squares[static_cast<size_t>(fold)] =
+        HeldOutSquaresOf(fold, &(*starts)[static_cast<size_t>(fold)], &part);
   });
   HeldOutErrors errors(sampling.place_count);
   for (const std::vector<double>& of_fold : squares) {
@@ -167,11 +185,12 @@ SampleModel SampleModel::ScaledBy(const SpreadFactors& factors) const {
 }
 
 SpreadPowers SampleModel::ChooseSpreads(const Sampling& sampling, const SpreadPowers& from) {
+  FoldStarts starts;
   const auto tried = SearchSpreads(
       [&](const SpreadPowers& powers) {
         SpreadFactors factors;
         for (size_t i = 0; i < kSpreadKinds; ++i) factors[i] = std::exp2(powers[i]);
-        return ScaledBy(factors).CrossValidate(sampling);
+        return ScaledBy(factors).CrossValidate(sampling, &starts);
       },
       from);
   *this = ScaledBy(ProbableFactors(tried));
@@ -181,9 +200,10 @@ SpreadPowers SampleModel::ChooseSpreads(const Sampling& sampling, const SpreadPo
 std::vector<SpecularLobes> SampleModel::LobesToTry(const Sampling& sampling) const {
   if (!options_.second_lobe || lobes_.two() || !TellsLobesApart()) return {};
   SampleModel model(*this);
+  FoldStarts starts;
   return SearchLobes(kDielectric.f0 * means_.LightPower(), [&](const SpecularLobes& lobes) {
     model.SetLobes(lobes);
-    return model.CrossValidate(sampling);
+    return model.CrossValidate(sampling, &starts);
   });
 }
 
@@ -227,9 +247,10 @@ bool SampleModel::TellsLobesApart() const {
 Anisotropy SampleModel::AnisotropyToTry(const Sampling& sampling) const {
   SampleModel model(*this);
   model.SetLobes({});
+  FoldStarts starts;
   return SearchAnisotropy([&](const Anisotropy& anisotropy) {
     model.lobes_.anisotropy = anisotropy;
-    return model.CrossValidate(sampling);
+    return model.CrossValidate(sampling, &starts);
   });
 }
 
