@@ -164,8 +164,9 @@ class SampleModel {
   std::vector<double> HeldOutSquaresOf(int fold, std::vector<TexelValues>* start,
                                        Sampling* part) const;
   std::vector<double> HeldOutSquares(std::span<const ViewDifferences> differences) const;
-  // Where the texels of choices that are compared begin in each fold: at what Search() finds with
-  // the first of them, which those of the others are near to. Empty to begin with.
+  // Where the texels of spreads that are compared begin in each fold: at what Search() finds with
+  // the first of them, which those of the others are near to; with other lobes they need not be.
+  // Empty to begin with.
   using FoldStarts = std::vector<std::vector<TexelValues>>;
   HeldOutErrors CrossValidate(const Sampling& sampling, FoldStarts* starts) const;
   HeldOutErrors CrossValidate(const Sampling& sampling) const;

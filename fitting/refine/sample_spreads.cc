@@ -200,10 +200,9 @@ SpreadPowers SampleModel::ChooseSpreads(const Sampling& sampling, const SpreadPo
 std::vector<SpecularLobes> SampleModel::LobesToTry(const Sampling& sampling) const {
   if (!options_.second_lobe || lobes_.two() || !TellsLobesApart()) return {};
   SampleModel model(*this);
-  FoldStarts starts;
   return SearchLobes(kDielectric.f0 * means_.LightPower(), [&](const SpecularLobes& lobes) {
     model.SetLobes(lobes);
-    return model.CrossValidate(sampling, &starts);
+    return model.CrossValidate(sampling);
   });
 }
 
@@ -247,10 +246,9 @@ bool SampleModel::TellsLobesApart() const {
 Anisotropy SampleModel::AnisotropyToTry(const Sampling& sampling) const {
   SampleModel model(*this);
   model.SetLobes({});
-  FoldStarts starts;
   return SearchAnisotropy([&](const Anisotropy& anisotropy) {
     model.lobes_.anisotropy = anisotropy;
-    return model.CrossValidate(sampling, &starts);
+    return model.CrossValidate(sampling);
   });
 }
 
