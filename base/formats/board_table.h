@@ -2,6 +2,7 @@
 #pragma once
 
 #include <toml++/toml.h>
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,6 +17,11 @@ struct BoardTable {
   std::string file;                 // relative to the capture's folder; empty: the table describes
   std::vector<std::string> photos;  // of the board alone, relative to the folder
 };
+
+// The keys by which the table describes a board.
+inline constexpr std::array kBoardDescriptionKeys = {"kind",          "squares",   "inner_corners",
+                                                     "square_mm",     "marker_mm", "dictionary",
+                                                     "legacy_layout", "window"};
 
 // none: there is no such table. `file` is the capture.toml. Throws UserError naming file, field,
 // what was found and the remedy; the board passes CheckBoard. Included by .cc files only.

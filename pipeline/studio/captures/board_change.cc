@@ -8,6 +8,7 @@
 
 #include "base/errors/errors.h"
 #include "base/files/files.h"
+#include "base/formats/board_table.h"
 #include "base/formats/capture.h"
 #include "pipeline/studio/captures/capture_edit.h"
 #include "pipeline/studio/captures/toml_edit.h"
@@ -31,11 +32,10 @@ std::string Changed(const fs::path& file, std::string text, const BoardChange& c
   }
   if (!is_another) return text;
   text = WithBoardFile(file, text, kBoardFile);
-  for (const char* key : {"kind", "squares", "inner_corners", "square_mm", "marker_mm",
-                          "dictionary", "legacy_layout", "window", "measured_ruler_mm"}) {
+  for (const char* key : kBoardDescriptionKeys) {
     text = WithTomlValue(file, text, "board", key, std::nullopt);
   }
-  return text;
+  return WithTomlValue(file, text, "board", "measured_ruler_mm", std::nullopt);  // of the old print
 }
 
 // Under the first free name; returns it. Text that is kept already is not kept twice.
@@ -102,8 +102,8 @@ void ChangeBoard(const fs::path& folder, const BoardChange& change) {
   RequireRoomFor(size_mm, change.board.file.board);
   const std::string text = ReadTextFile(capture.file);
   const bool is_another = DescriptionOf(capture.board) != DescriptionOf(change.board.file.board);
-  (void)Changed(capture.file, text, change,
-                is_another);  // before anything is written: whether it can be
+  // Throws before anything is written, where it cannot be.
+  (void)Changed(capture.file, text, change, is_another);
   if (!is_another) {
     return EditCapture(folder, [&](const Capture& now, const std::string& before) {
       return Changed(now.file, before, change, false);
