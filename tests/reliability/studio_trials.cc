@@ -182,13 +182,6 @@ class StudioUploads : public StudioTrials {
     if (listed != Photos().size()) return "only " + std::to_string(listed) + " are listed";
     return ProblemOfFiles(sent, names);
   }
-
- private:
-  static std::string PngBytes(int seed) {
-    std::vector<unsigned char> bytes;
-    cv::imencode(".png", cv::Mat(48, 64, CV_8UC3, cv::Scalar(seed, 90, 200)), bytes);
-    return {bytes.begin(), bytes.end()};
-  }
 };
 
 TEST_F(StudioUploads, KillStudio) {

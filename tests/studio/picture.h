@@ -1,4 +1,4 @@
-// Small JPEG pictures, one for each seed.
+// Small pictures, one for each seed.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,6 +14,12 @@ inline std::string JpegBytes(int seed, int width = 320, int height = 240) {
   random.fill(picture, cv::RNG::UNIFORM, 40, 200);
   std::vector<unsigned char> bytes;
   cv::imencode(".jpg", picture, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+inline std::string PngBytes(int seed) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".png", cv::Mat(48, 64, CV_8UC3, cv::Scalar(seed, 90, 200)), bytes);
   return {bytes.begin(), bytes.end()};
 }
 

@@ -8,6 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::JpegBytes;
+using test::PngBytes;
 using test::RunningStudio;
 
 std::string PhotographsOf(const std::string& id) { return "/api/captures/" + id + "/photographs"; }
@@ -71,10 +72,7 @@ TEST(Upload, APhotographTooLargeIsRefusedWhileItComes) {
 TEST(Upload, APhotographOfAnotherKindIsListedInCaptureToml) {
   const RunningStudio running;
   const std::string id = running.MakeCapture();
-  cv::Mat picture(60, 80, CV_8UC3, cv::Scalar(80, 90, 100));
-  std::vector<unsigned char> png;
-  cv::imencode(".png", picture, png);
-  running.page->Upload(PhotographsOf(id), {{"a.jpeg", {png.begin(), png.end()}}});
+  running.page->Upload(PhotographsOf(id), {{"a.jpeg", PngBytes(1)}});
   EXPECT_TRUE(fs::exists(running.folder / "wood/photos/a.png"));
   EXPECT_EQ(running.Capture(id)["photographs"].size(), 1u);
   EXPECT_NE(test::ReadAll(running.folder / "wood/capture.toml").find("\"photos/*.png\""),
@@ -84,10 +82,7 @@ TEST(Upload, APhotographOfAnotherKindIsListedInCaptureToml) {
 TEST(Upload, OneThatAKilledStudioHadKeptButNotListedIsListedWhenItIsSentAgain) {
   const RunningStudio running;
   const std::string id = running.MakeCapture();
-  cv::Mat picture(60, 80, CV_8UC3, cv::Scalar(80, 90, 100));
-  std::vector<unsigned char> png;
-  cv::imencode(".png", picture, png);
-  const std::string bytes(png.begin(), png.end());
+  const std::string bytes = PngBytes(1);
   running.folder.Write("wood/photos/a.png", bytes);
   EXPECT_EQ(running.Capture(id)["photographs"].size(), 0u);
   const Json sent = running.page->Upload(PhotographsOf(id), {{"a.png", bytes}}).json();

@@ -99,3 +99,32 @@ export function stepsOf(page, out, prefix = '') {
     verdict(wrong.length === 0, `${name}${wrong.length ? `: ${[...new Set(wrong)].join(' | ')}` : ''}`);
   };
 }
+
+export async function setResolution(page, texels) {
+  const resolution = page.getByRole('spinbutton', { name: 'Resolution of the maps' });
+  await resolution.fill(String(texels));
+  await resolution.press('Enter');
+  await page.getByText('Options are saved').waitFor();
+}
+
+// The frame of the result's viewer once it shows the material.
+export async function viewerIn(page) {
+  const viewer = await (await page.waitForSelector('iframe.report')).contentFrame();
+  await viewer.waitForFunction(() => window.glintViewer?.ready, null, { timeout: 120000 });
+  return viewer;
+}
+
+// Whether the picture changes as the pointer moves the light.
+export async function relitByPointer(page, viewer) {
+  const picture = () => viewer.evaluate(() => document.getElementById('viewer-canvas').toDataURL('image/png'));
+  const first = await picture();
+  await viewer.evaluate(() => document.getElementById('viewer-canvas').scrollIntoView({ block: 'center' }));
+  await page.waitForTimeout(300);
+  const box = await (await viewer.$('#viewer-canvas')).boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 4, box.y + box.height / 3, { steps: 5 });
+  await page.mouse.up();
+  await page.waitForTimeout(500);
+  return (await picture()) !== first;
+}

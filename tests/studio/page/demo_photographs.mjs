@@ -5,7 +5,7 @@ import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
-import { finish, launch, open, shapes, stepsOf, verdict } from './browser.mjs';
+import { finish, launch, open, relitByPointer, setResolution, shapes, stepsOf, verdict, viewerIn } from './browser.mjs';
 import { startStudio } from './studio.mjs';
 
 const [programs, out, megapixels = '2'] = process.argv.slice(2);
@@ -52,29 +52,15 @@ await step('the board of the photographs');
 
 // To the material.
 await page.getByRole('link', { name: 'Go on to Maps' }).click();
-const resolution = page.getByRole('spinbutton', { name: 'Resolution of the maps' });
-await resolution.fill('256');
-await resolution.press('Enter');
-await page.getByText('Options are saved').waitFor();
+await setResolution(page, 256);
 await page.getByRole('button', { name: 'Make the maps' }).click();
 await page.getByRole('link', { name: 'Look at the result' }).waitFor({ timeout: 300000 });
 await step('maps done');
 await page.getByRole('link', { name: 'Look at the result' }).click();
-const viewer = await (await page.waitForSelector('iframe.report')).contentFrame();
-await viewer.waitForFunction(() => window.glintViewer?.ready, null, { timeout: 120000 });
+const viewer = await viewerIn(page);
 await page.locator('.report').scrollIntoViewIfNeeded();
 await step('result');
-const picture = () => viewer.evaluate(() => document.getElementById('viewer-canvas').toDataURL('image/png'));
-const first = await picture();
-await viewer.evaluate(() => document.getElementById('viewer-canvas').scrollIntoView({ block: 'center' }));
-await page.waitForTimeout(300);
-const box = await (await viewer.$('#viewer-canvas')).boundingBox();
-await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-await page.mouse.down();
-await page.mouse.move(box.x + box.width / 4, box.y + box.height / 3, { steps: 5 });
-await page.mouse.up();
-await page.waitForTimeout(500);
-verdict((await picture()) !== first, 'the material is relit as the pointer moves');
+verdict(await relitByPointer(page, viewer), 'the material is relit as the pointer moves');
 
 // A board's file for a new capture; what describes none is refused and leaves nothing.
 await page.goto(`${studio.home}/#/new`);

@@ -5,7 +5,7 @@ import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
-import { finish, launch, open, shapes, stepsOf, verdict } from './browser.mjs';
+import { finish, launch, open, relitByPointer, setResolution, shapes, stepsOf, verdict, viewerIn } from './browser.mjs';
 import { startStudio } from './studio.mjs';
 
 const [programs, out, megapixels = '2'] = process.argv.slice(2);
@@ -97,15 +97,10 @@ async function run(button, name) {
   console.log(`     ${name}: ${seconds(begun)} s, pictures included`);
   await step(`${name} done`);
   await page.getByRole('link', { name: 'Look at the result' }).click();
-  const viewer = await (await page.waitForSelector('iframe.report')).contentFrame();
-  await viewer.waitForFunction(() => window.glintViewer?.ready, null, { timeout: 120000 });
-  return viewer;
+  return viewerIn(page);
 }
 await page.getByRole('navigation', { name: 'Steps' }).getByRole('link', { name: 'Maps' }).click();
-const resolution = page.getByRole('spinbutton', { name: 'Resolution of the maps' });
-await resolution.fill('512');
-await resolution.press('Enter');
-await page.getByText('Options are saved').waitFor();
+await setResolution(page, 512);
 verdict(/resolution_px = 512/.test(fs.readFileSync(path.join(capture, 'capture.toml'), 'utf8')), 'capture.toml has the resolution');
 await page.getByLabel('Make a seamless tile').check();
 await step('options');
@@ -125,17 +120,7 @@ for (const [name, selector] of [['figures and maps', '#figures-title'], ['tile a
 }
 
 // The light moves, and with it the picture.
-const picture = () => viewer.evaluate(() => document.getElementById('viewer-canvas').toDataURL('image/png'));
-const first = await picture();
-await viewer.evaluate(() => document.getElementById('viewer-canvas').scrollIntoView({ block: 'center' }));
-await page.waitForTimeout(300);
-const box = await (await viewer.$('#viewer-canvas')).boundingBox();
-await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-await page.mouse.down();
-await page.mouse.move(box.x + box.width / 4, box.y + box.height / 3, { steps: 5 });
-await page.mouse.up();
-await page.waitForTimeout(500);
-verdict((await picture()) !== first, 'the material is relit as the pointer moves');
+verdict(await relitByPointer(page, viewer), 'the material is relit as the pointer moves');
 await step('relit');
 
 // The library knows, and what was downloaded is whole.
