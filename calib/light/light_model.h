@@ -1,4 +1,4 @@
-// Radiance of a spot of paper, for values and for Ceres' derivatives. See light.h.
+// Radiance of a spot of paper. See light.h.
 #pragma once
 
 #include <Eigen/Core>
@@ -48,35 +48,38 @@ bool FlashOnSpot(const SpotGeometry& geometry, const T* flash_mm, const T& gloss
   return true;
 }
 
-template <class T>
-T Falloff(const SpotGeometry& geometry, const T* v) {
+inline double Falloff(const SpotGeometry& geometry, const double* v) {
   const double r2 = geometry.r2;
-  return T(1) + T(r2) * (v[0] + T(r2) * (v[1] + T(r2) * v[2]));
+  return 1 + r2 * (v[0] + r2 * (v[1] + r2 * v[2]));
 }
 
 // What a camera that is read with the wrong curve makes of radiance L: L^(1 + t1 + t2·x + t3·x²),
 // x = ln L: phones' curves lift shadows and dim highlights within a factor of five. Black
 // and what clips, 1, stay what they are.
-template <class T>
-T Toned(const T* tone, const T& radiance) {
-  const T log_radiance = log(radiance);
-  return radiance *
-         exp(log_radiance * (tone[0] + log_radiance * (tone[1] + log_radiance * tone[2])));
+inline double Toned(const double* tone, double radiance) {
+  const double x = std::log(radiance);
+  return radiance * std::exp(x * (tone[0] + x * (tone[1] + x * tone[2])));
+}
+// d ln(toned) / d ln(radiance).
+inline double TonedSlope(const double* tone, double log_radiance) {
+  return 1 + tone[0] + log_radiance * (2 * tone[1] + log_radiance * 3 * tone[2]);
 }
 
 // Parameter blocks: flash_mm[3], log_q[3], ambient[3] (a · reference), vignetting[3], gloss[1],
 // smear[1] (the share of its light that ink takes from paper beside it), tone[3] (see Toned),
-// log_exposure[3] (of R, G, B). `reference` (1/mm²) brings a to the size of 1.
-template <class T>
-bool Predict(const SpotGeometry& geometry, double reference, const T* flash_mm, const T* log_q,
-             const T* ambient, const T* vignetting, const T* gloss, const T* smear, const T* tone,
-             const T* log_exposure, T* radiance) {
-  T flash;
+// log_exposure[3] (of R, G, B). `reference` (1/mm²) brings a to the size of 1. False where no light
+// reaches the spot. Derivatives: spot_cost.h.
+inline bool Predict(const SpotGeometry& geometry, double reference, const double* flash_mm,
+                    const double* log_q, const double* ambient, const double* vignetting,
+                    const double* gloss, const double* smear, const double* tone,
+                    const double* log_exposure, double* radiance) {
+  double flash = 0;
   if (!FlashOnSpot(geometry, flash_mm, gloss[0], &flash)) return false;
-  const T seen = Falloff(geometry, vignetting) * (T(1) - smear[0] * T(geometry.smear));
+  const double seen = Falloff(geometry, vignetting) * (1 - smear[0] * geometry.smear);
   for (int c = 0; c < 3; ++c) {
-    const T linear = seen * exp(log_exposure[c] + log_q[c]) * (flash + ambient[c] * T(reference));
-    if (!(linear > T(0))) return false;
+    const double linear =
+        seen * std::exp(log_exposure[c] + log_q[c]) * (flash + ambient[c] * reference);
+    if (!(linear > 0)) return false;
     radiance[c] = Toned(tone, linear);
   }
   return true;

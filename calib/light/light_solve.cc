@@ -4,33 +4,10 @@
 #include <memory>
 
 #include "calib/light/light_cost.h"
+#include "calib/light/spot_cost.h"
 
 namespace glint::light {
 namespace {
-
-class SpotCost {
- public:
-  SpotCost(const Spot& spot, double reference, double scale)
-      : spot_(spot), reference_(reference), scale_(scale) {}
-  template <class T>
-  bool operator()(const T* flash, const T* log_q, const T* ambient, const T* vignetting,
-                  const T* gloss, const T* smear, const T* tone, const T* log_exposure,
-                  T* residual) const {
-    T radiance[3];
-    if (!Predict(spot_.geometry, reference_, flash, log_q, ambient, vignetting, gloss, smear, tone,
-                 log_exposure, radiance)) {
-      return false;
-    }
-    for (int c = 0; c < 3; ++c) {
-      residual[c] = (T(spot_.seen[c]) - radiance[c]) / T(spot_.sigma[c] * scale_);
-    }
-    return true;
-  }
-
- private:
-  const Spot& spot_;
-  double reference_, scale_;
-};
 
 // (value − expected) / σ of each of N numbers.
 template <int N>
@@ -100,13 +77,12 @@ void AddSpots(bool robust, State* state, ceres::Problem* problem) {
     if (!photo.used) continue;
     for (const Spot& spot : photo.spots) {
       if (!spot.inlier) continue;
-      problem->AddResidualBlock(
-          new ceres::AutoDiffCostFunction<SpotCost, 3, 3, 3, 3, 3, 1, 1, 3, 3>(
-              new SpotCost(spot, state->reference, state->weighing_scale())),
-          robust ? new ceres::CauchyLoss(2.0 / state->shared) : nullptr,
-          state->own_flashes ? photo.flash_mm.data() : state->flash_mm.data(), state->log_q.data(),
-          state->ambient.data(), state->vignetting[photo.camera].data(), &state->gloss,
-          &state->smear, state->tone.data(), photo.log_exposure.data());
+      problem->AddResidualBlock(new SpotCost(spot, state->reference, state->weighing_scale()),
+                                robust ? new ceres::CauchyLoss(2.0 / state->shared) : nullptr,
+                                state->own_flashes ? photo.flash_mm.data() : state->flash_mm.data(),
+                                state->log_q.data(), state->ambient.data(),
+                                state->vignetting[photo.camera].data(), &state->gloss,
+                                &state->smear, state->tone.data(), photo.log_exposure.data());
     }
   }
 }
