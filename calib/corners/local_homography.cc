@@ -43,14 +43,20 @@ std::optional<Eigen::Matrix3d> FitHomography(const std::vector<PlanePoint>& poin
       weights_in.empty() ? std::vector<double>(points.size(), 1.0) : weights_in;
   const auto board = Normalise(points, weights, [](const PlanePoint& p) { return p.board; });
   const auto image = Normalise(points, weights, [](const PlanePoint& p) { return p.image_px; });
-  Eigen::Matrix<double, 9, 9> a = Eigen::Matrix<double, 9, 9>::Zero();
+  // Σ w·(r1·r1ᵀ + r2·r2ᵀ) of the rows r1 = (b, 0, −x·b) and r2 = (0, b, −y·b): blocks of b·bᵀ.
+  Eigen::Matrix3d plain = Eigen::Matrix3d::Zero(), by_x = plain, by_y = plain, by_square = plain;
   for (size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector2d b = board(points[i].board), p = image(points[i].image_px);
-    Eigen::Matrix<double, 9, 1> r1, r2;
-    r1 << b.x(), b.y(), 1, 0, 0, 0, -p.x() * b.x(), -p.x() * b.y(), -p.x();
-    r2 << 0, 0, 0, b.x(), b.y(), 1, -p.y() * b.x(), -p.y() * b.y(), -p.y();
-    a += weights[i] * (r1 * r1.transpose() + r2 * r2.transpose());
+    const Eigen::Vector3d b = board(points[i].board).homogeneous();
+    const Eigen::Vector2d p = image(points[i].image_px);
+    const Eigen::Matrix3d outer = weights[i] * b * b.transpose();
+    plain += outer;
+    by_x += p.x() * outer;
+    by_y += p.y() * outer;
+    by_square += p.squaredNorm() * outer;
   }
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 9, 9> a;
+  a << plain, none, -by_x, none, plain, -by_y, -by_x, -by_y, by_square;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(a);
   // The null space must have one dimension; points on a line leave more.
   if (!(eigen.eigenvalues()[1] > 1e-9 * eigen.eigenvalues()[8])) return std::nullopt;
