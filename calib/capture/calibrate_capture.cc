@@ -5,14 +5,18 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "base/camera/orientation.h"
 #include "base/errors/errors.h"
 #include "base/files/files.h"
 #include "base/formats/board_file.h"
+#include "base/parallel/parallel.h"
 #include "calib/bundle/residual_picture.h"
 #include "calib/capture/above_pose.h"
 #include "calib/capture/assumed_camera.h"
@@ -77,9 +81,16 @@ void LookUpIntrinsics(const CalibOptions& options, const CalibSummary& summary,
   if (!known.empty()) bundle->model = known[0].model;
 }
 
-// Fills summary->bundle and, unless this is a quick look, summary->trust.
-void Adjust(const Capture& capture, const CalibOptions& options, BundleProblem problem,
-            CalibSummary* summary) {
+// What a bundle was adjusted with.
+struct Adjusted {
+  BundleProblem problem;
+  BundleOptions options;
+  std::optional<ModelChoice> choice;
+};
+
+// Fills summary->bundle.
+Adjusted Adjust(const Capture& capture, const CalibOptions& options, BundleProblem problem,
+                CalibSummary* summary) {
   BundleOptions bundle = BundleOptionsOf(options);
   if (!options.fix_intrinsics.empty()) {
     TakeIntrinsics(options, &problem, &bundle);
@@ -93,19 +104,17 @@ void Adjust(const Capture& capture, const CalibOptions& options, BundleProblem p
     if (options.model == "auto" && !given && !quick) choice = ChooseModel(problem, bundle);
     if (choice) bundle = WithModel(bundle, choice->model);
     summary->bundle = AdjustBundle(problem, bundle);
-    if (quick) return;
-    summary->trust = AssessTrust(capture, problem, bundle, summary->bundle);
-    summary->trust.choice = std::move(choice);
+    return {std::move(problem), bundle, std::move(choice)};
   } catch (const UserError& error) {
     throw UserError(capture.file.string() + ": " + error.what());
   }
 }
 
 // Where too few photographs are left, the reason is why the others left.
-void AdjustWhatIsLeft(const Capture& capture, const CalibOptions& options,
-                      const BundleProblem& problem, CalibSummary* summary) {
+Adjusted AdjustWhatIsLeft(const Capture& capture, const CalibOptions& options,
+                          const BundleProblem& problem, CalibSummary* summary) {
   try {
-    Adjust(capture, options, problem, summary);
+    return Adjust(capture, options, problem, summary);
   } catch (const Error& error) {
     if (summary->left_out_by_light.empty()) throw;
     std::string reasons;
@@ -196,29 +205,37 @@ class UprightCameras {
   std::map<std::pair<int, int>, int> index_;
 };
 
-void FillPhotos(const Capture& capture, CalibSummary* summary) {
+// Cameras and poses of the flash photographs that are used.
+Calibration PosesOf(const Capture& capture, const CalibSummary& summary) {
+  Calibration calibration;
   const Eigen::Vector3d offset_mm(capture.light_offset_mm.data());
-  UprightCameras cameras(summary->bundle, &summary->calibration);
-  for (size_t i = 0; i < summary->photos.size(); ++i) {
-    const DetectedPhoto& detected = summary->photos[i];
-    const std::string reason = summary->ReasonLeftOut(i);
-    if (!reason.empty()) {
-      summary->rejected.push_back({detected.name, reason});
-      spdlog::warn("{} is left out: {}", detected.name, reason);
-      continue;
-    }
-    if (detected.board_photo) continue;
-    const PhotoEstimate& estimate = summary->bundle.photos[summary->BundleIndex(i)];
-    const int turns = summary->groups.turns[i];
+  UprightCameras cameras(summary.bundle, &calibration);
+  for (const size_t i : summary.FlashPhotos()) {
+    const DetectedPhoto& detected = summary.photos[i];
+    const PhotoEstimate& estimate = summary.bundle.photos[summary.BundleIndex(i)];
+    const int turns = summary.groups.turns[i];
     CalibratedPhoto photo;
     photo.photo = detected.name;
-    photo.camera = cameras.Index(summary->groups.group[i], turns);
+    photo.camera = cameras.Index(summary.groups.group[i], turns);
     photo.camera_from_sample = TurnedPose(estimate.camera_from_sample, turns);
     photo.light_in_camera_mm = TurnedCameraPoint(offset_mm, turns);
     photo.rms_px = estimate.rms_px;
     photo.corners = static_cast<int>(estimate.corners.size());
     photo.inliers = estimate.inliers();
-    summary->calibration.photos.push_back(photo);
+    calibration.photos.push_back(photo);
+  }
+  return calibration;
+}
+
+void FillPhotos(const Capture& capture, CalibSummary* summary) {
+  Calibration poses = PosesOf(capture, *summary);
+  summary->calibration.cameras = std::move(poses.cameras);
+  summary->calibration.photos = std::move(poses.photos);
+  for (size_t i = 0; i < summary->photos.size(); ++i) {
+    const std::string reason = summary->ReasonLeftOut(i);
+    if (reason.empty()) continue;
+    summary->rejected.push_back({summary->photos[i].name, reason});
+    spdlog::warn("{} is left out: {}", summary->photos[i].name, reason);
   }
   if (!summary->calibration.photos.empty()) return;
   std::string reasons;
@@ -249,13 +266,43 @@ void WriteOutputs(const Capture& capture, const CalibSummary& summary, Stage* st
   WritePng(stage->Output("guidance_coverage.png"), CoveragePicture(summary.guidance));
 }
 
-// What follows once poses are known.
+// What follows from poses, side by side: how far they are known, the light, the sample's plane.
+void InterpretBundle(const Capture& capture, const CalibOptions& options, Adjusted adjusted,
+                     int threads, CalibSummary* summary) {
+  const Calibration poses = PosesOf(capture, *summary);
+  Trust trust;
+  LightEstimate light;
+  SampleRegistration placement;
+  const bool quick = options.quick_px > 0;
+  const std::array<std::function<void()>, 3> parts = {
+      [&] {
+        if (quick) return;
+        trust = AssessTrust(capture, adjusted.problem, adjusted.options, summary->bundle);
+      },
+      [&] { light = EstimateBoardLight(capture, options, *summary); },
+      [&] { placement = FindSamplePlane(capture, options, poses, summary->photos, threads); }};
+  ForEachPiece(static_cast<int>(parts.size()), threads,
+               [&](int part) { parts[static_cast<size_t>(part)](); });
+  summary->trust = std::move(trust);
+  if (!quick) summary->trust.choice = std::move(adjusted.choice);
+  summary->light = std::move(light);
+  summary->placement = std::move(placement);
+}
+
+// Needs summary->bundle and summary->placement.
 void FinishCapture(const Capture& capture, const CalibOptions& options, bool assumed_intrinsics,
-                   int threads, CalibSummary* summary) {
+                   CalibSummary* summary) {
   FillPhotos(capture, summary);
   FillLight(capture, options, summary);
-  PlaceSample(capture, options, threads, summary);
+  PlaceSample(summary->placement, &summary->calibration);
   summary->guidance = Judge(GuidanceInputOf(capture, *summary, assumed_intrinsics));
+}
+
+void FinishWithoutBundle(const Capture& capture, const CalibOptions& options,
+                         bool assumed_intrinsics, int threads, CalibSummary* summary) {
+  summary->placement =
+      FindSamplePlane(capture, options, PosesOf(capture, *summary), summary->photos, threads);
+  FinishCapture(capture, options, assumed_intrinsics, summary);
 }
 
 }  // namespace
@@ -330,13 +377,14 @@ void SolveCapture(const Capture& capture, const CalibOptions& options,
     summary->photo_index.clear();
     problem = MakeProblem(summary->photos, summary->groups, &summary->photo_index);
     for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
-    AdjustWhatIsLeft(capture, options, problem, summary);
-    if (!EstimateBoardLight(capture, options, round < kMostRounds, summary)) break;
+    InterpretBundle(capture, options, AdjustWhatIsLeft(capture, options, problem, summary), threads,
+                    summary);
+    if (round == kMostRounds || !FollowLight(summary)) break;
   }
   ExplainMisfits(options, problem, summary);
   WarnOfUncertainty(summary->bundle);
   if (assumed.empty()) WarnOfToldFocal(problem, summary->bundle);
-  FinishCapture(capture, options, !assumed.empty(), threads, summary);
+  FinishCapture(capture, options, !assumed.empty(), summary);
 }
 
 void SolveWithAssumedCameras(const Capture& capture, const CalibOptions& options, int threads,
@@ -390,11 +438,11 @@ CalibSummary CalibrateCapture(const Capture& capture, const CalibOptions& option
   } else if (source == PoseSource::kAbove) {
     summary.photos = DetectPhotos(WithoutChartPhoto(capture), options, common.threads);
     PoseFromAbove(capture, options, &summary);
-    FinishCapture(capture, options, true, common.threads, &summary);
+    FinishWithoutBundle(capture, options, true, common.threads, &summary);
   } else {
     summary.photos = DetectPhotos(capture, options, common.threads);
     PosesFromColmap(capture, options, common, stage, &summary);
-    FinishCapture(capture, options, false, common.threads, &summary);
+    FinishWithoutBundle(capture, options, false, common.threads, &summary);
   }
   CorrectColours(capture, &summary);
   WriteOutputs(capture, summary, stage);

@@ -23,7 +23,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 17;
+inline constexpr int kCalibVersion = 18;
 
 struct RejectedPhoto {
   std::string name, reason;

@@ -86,8 +86,8 @@ bool MayHaveToneCurve(const Capture& capture, const CalibSummary& summary) {
   return true;
 }
 
-LightEstimate EstimateFromBoard(const Capture& capture, const CalibOptions& options,
-                                const CalibSummary& summary) {
+LightOptions LightOptionsOf(const Capture& capture, const CalibOptions& options,
+                            const CalibSummary& summary) {
   LightOptions light;
   light.paper_reflectance = options.paper_reflectance;
   light.offset_mm = Eigen::Vector3d(capture.light_offset_mm.data());
@@ -96,7 +96,7 @@ LightEstimate EstimateFromBoard(const Capture& capture, const CalibOptions& opti
   if (ambient.maxCoeff() > 0) light.ambient = ambient;
   if (options.quick_px > 0) light.spots_per_photo = 120;  // for what it says of the photographs
   light.tone_known = !MayHaveToneCurve(capture, summary);
-  return EstimateLight(ProblemOf(summary), light);
+  return light;
 }
 
 // Exposures of photographs whose paper said nothing: by EXIF, relative to one whose did.
@@ -187,14 +187,14 @@ void FillSimpleLight(const Capture& capture, const CalibOptions& options, CalibS
 
 }  // namespace
 
-bool EstimateBoardLight(const Capture& capture, const CalibOptions& options, bool may_change,
-                        CalibSummary* summary) {
-  summary->light = LightEstimate();
-  if (options.light != "board") return false;
+LightEstimate EstimateBoardLight(const Capture& capture, const CalibOptions& options,
+                                 const CalibSummary& summary) {
+  if (options.light != "board" || summary.FlashPhotos().empty()) return {};
+  return EstimateLight(ProblemOf(summary), LightOptionsOf(capture, options, summary));
+}
+
+bool FollowLight(CalibSummary* summary) {
   const std::vector<size_t> flash = summary->FlashPhotos();
-  if (flash.empty()) return false;
-  summary->light = EstimateFromBoard(capture, options, *summary);
-  if (!may_change) return false;
   bool changed = false;
   for (size_t k = 0; k < summary->light.photos.size(); ++k) {
     const LightOfPhoto& photo = summary->light.photos[k];
@@ -216,7 +216,7 @@ bool EstimateBoardLight(const Capture& capture, const CalibOptions& options, boo
 
 void FillLight(const Capture& capture, const CalibOptions& options, CalibSummary* summary) {
   const bool estimated = summary->light.known || !summary->light.problem.empty();
-  if (!estimated) EstimateBoardLight(capture, options, false, summary);
+  if (!estimated) summary->light = EstimateBoardLight(capture, options, *summary);
   summary->light_findings = LightFindings(capture, *summary);
   for (const std::string& word : summary->light_findings) spdlog::warn("{}", word);
   if (options.light == "board") {

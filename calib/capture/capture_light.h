@@ -8,11 +8,13 @@
 
 namespace glint {
 
-// Fills in summary->light where the board is to tell it, and puts right what it says of
-// photographs: pixels that were turned, photographs that contradict all others. Needs the bundle.
-// True: views changed, and the bundle is to be adjusted again; never unless `may_change`.
-bool EstimateBoardLight(const Capture& capture, const CalibOptions& options, bool may_change,
-                        CalibSummary* summary);
+// The light where the board is to tell it; else, nothing known. Needs the bundle.
+LightEstimate EstimateBoardLight(const Capture& capture, const CalibOptions& options,
+                                 const CalibSummary& summary);
+
+// Puts right what summary->light says of photographs: pixels that were turned, photographs that
+// contradict all others. True: views changed, and the bundle is to be adjusted again.
+bool FollowLight(CalibSummary* summary);
 
 // Fills in `calibration`: positions of the flash, power, exposures, ambient light, the cameras'
 // vignetting; and in the summary how they were found. Needs calibration.photos and the bundle.

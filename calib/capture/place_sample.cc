@@ -18,8 +18,9 @@ double Longest_mm(const Capture& capture) {
   return std::max(capture.sample_size_mm[0], capture.sample_size_mm[1]);
 }
 
-const SamplePicture& PictureOf(const CalibSummary& summary, const CalibratedPhoto& photo) {
-  return std::find_if(summary.photos.begin(), summary.photos.end(),
+const SamplePicture& PictureOf(const std::vector<DetectedPhoto>& detected,
+                               const CalibratedPhoto& photo) {
+  return std::find_if(detected.begin(), detected.end(),
                       [&](const DetectedPhoto& p) { return p.name == photo.photo; })
       ->picture;
 }
@@ -65,10 +66,8 @@ class LookUpMap {
   const SamplePicture& picture_;
 };
 
-TopView TopViewOf(const CalibSummary& summary, const CalibratedPhoto& photo, const cv::Size& size,
-                  double pixel_mm) {
-  const SamplePicture& picture = PictureOf(summary, photo);
-  const Camera& camera = summary.calibration.cameras[static_cast<size_t>(photo.camera)];
+TopView TopViewOf(const Camera& camera, const CalibratedPhoto& photo, const SamplePicture& picture,
+                  const cv::Size& size, double pixel_mm) {
   TopView view{size.width, size.height, {}, Inverse(photo.camera_from_sample).translation};
   view.radiance.resize(static_cast<size_t>(size.area()));
   if (picture.values.empty()) return view;  // it does not show the sample
@@ -98,30 +97,21 @@ void FillPriors(const Capture& capture, const CalibOptions& options, Registratio
                      constants::kMeasuredHeightShare * std::abs(problem->height_mm));
 }
 
-void MoveToSample(const SampleRegistration& registration, Calibration* calibration) {
-  const Rigid3 board_from_sample = AssumedFromSample(registration.plane);
-  calibration->board_from_sample = board_from_sample;
-  for (size_t i = 0; i < calibration->photos.size(); ++i) {
-    CalibratedPhoto& photo = calibration->photos[i];
-    photo.camera_from_sample = photo.camera_from_sample * board_from_sample;
-    photo.registration = registration.homographies[i];
-  }
-}
-
 double Tilt_deg(const PlaneValues& plane) {
   return std::atan(std::hypot(plane[1], plane[2])) * 180 / std::numbers::pi;
 }
 
 }  // namespace
 
-void PlaceSample(const Capture& capture, const CalibOptions& options, int threads,
-                 CalibSummary* summary) {
+SampleRegistration FindSamplePlane(const Capture& capture, const CalibOptions& options,
+                                   const Calibration& calibration,
+                                   const std::vector<DetectedPhoto>& detected, int threads) {
   RegistrationProblem problem;
   FillPriors(capture, options, &problem);
   problem.sample_width_mm = capture.sample_size_mm[0];
   problem.sample_height_mm = capture.sample_size_mm[1];
   problem.margin = kSampleMargin;
-  const std::vector<CalibratedPhoto>& photos = summary->calibration.photos;
+  const std::vector<CalibratedPhoto>& photos = calibration.photos;
   const double pixel_mm = Longest_mm(capture) / constants::kRegistrationSide_px;
   const cv::Size size(
       static_cast<int>(std::lround(kSampleMargin * problem.sample_width_mm / pixel_mm)),
@@ -129,10 +119,20 @@ void PlaceSample(const Capture& capture, const CalibOptions& options, int thread
   problem.views.resize(photos.size());
   ForEachPiece(static_cast<int>(photos.size()), threads, [&](int piece) {
     const auto i = static_cast<size_t>(piece);
-    problem.views[i] = TopViewOf(*summary, photos[i], size, pixel_mm);
+    problem.views[i] = TopViewOf(calibration.cameras[static_cast<size_t>(photos[i].camera)],
+                                 photos[i], PictureOf(detected, photos[i]), size, pixel_mm);
   });
-  summary->placement = photos.size() < 2 ? Unregistered(problem) : RegisterSample(problem, threads);
-  MoveToSample(summary->placement, &summary->calibration);
+  return photos.size() < 2 ? Unregistered(problem) : RegisterSample(problem, threads);
+}
+
+void PlaceSample(const SampleRegistration& registration, Calibration* calibration) {
+  const Rigid3 board_from_sample = AssumedFromSample(registration.plane);
+  calibration->board_from_sample = board_from_sample;
+  for (size_t i = 0; i < calibration->photos.size(); ++i) {
+    CalibratedPhoto& photo = calibration->photos[i];
+    photo.camera_from_sample = photo.camera_from_sample * board_from_sample;
+    photo.registration = registration.homographies[i];
+  }
 }
 
 Json PlacementMetrics(const CalibSummary& summary) {

@@ -8,10 +8,14 @@
 
 namespace glint {
 
-// Finds the plane from the photographs (registration/register_sample.h) and moves the calibration's
-// poses into the sample's frame: the sample lies at z = 0 from here on. Needs calibration.photos.
-void PlaceSample(const Capture& capture, const CalibOptions& options, int threads,
-                 CalibSummary* summary);
+// Finds the plane from the photographs (registration/register_sample.h), from cameras and poses
+// alone. `detected` holds their pictures of the sample.
+SampleRegistration FindSamplePlane(const Capture& capture, const CalibOptions& options,
+                                   const Calibration& calibration,
+                                   const std::vector<DetectedPhoto>& detected, int threads);
+
+// Moves the calibration's poses into the sample's frame: the sample lies at z = 0 from here on.
+void PlaceSample(const SampleRegistration& registration, Calibration* calibration);
 
 // For the report.
 Json PlacementMetrics(const CalibSummary& summary);
