@@ -11,6 +11,10 @@
 
 namespace glint {
 
+// Threads that compress and decompress blocks of 32 rows side by side, from the first image on; 1,
+// the default: the caller's alone. The bytes are the same. To be called before any image is opened.
+void SetExrThreads(int threads);
+
 // How samples are stored. kHalf (IEEE binary16) rounds by at most 2⁻¹¹ of a value from 6.1e-5 on,
 // absolutely by 3e-8 below; what exceeds its range becomes the largest, 65504.
 enum class ExrPrecision { kFloat, kHalf };

@@ -12,6 +12,7 @@
 
 #include "base/files/files.h"
 #include "base/files/memory_limit.h"
+#include "base/images/exr_rows.h"
 #include "base/images/image.h"
 #include "base/images/image_format.h"
 #include "base/images/jpeg_segments.h"
@@ -65,13 +66,22 @@ void RejectUnreadable(const std::filesystem::path& file, std::string reason,
                   "give a JPEG, PNG, TIFF, EXR, HEIC or RAW file, or remove it");
 }
 
+namespace {
+
+int exr_threads = 1;
+
+}  // namespace
+
+void SetExrThreads(int threads) { exr_threads = threads; }
+
 void SetUpOiio() {
   static std::once_flag once;
   std::call_once(once, [] {
+    constexpr int kInTheCaller = -1;
     OIIO::attribute("limits:channels", 64);
     OIIO::attribute("limits:imagesize_MB", 16384);  // kMaxPixels are refused before
     OIIO::attribute("threads", 1);
-    OIIO::attribute("exr_threads", -1);
+    OIIO::attribute("exr_threads", exr_threads > 1 ? exr_threads : kInTheCaller);
     // OpenEXR makes a table with an entry for every line of an image before anyone sees its size.
     Imf::Header::setMaxImageSize(kMostExrSide, kMostExrSide);
   });

@@ -11,7 +11,7 @@
 
 namespace glint {
 
-// Limits on size and channels, one thread inside the library (ours run outside); done once.
+// Limits on size and channels, one thread inside the library but for EXR (SetExrThreads); done once.
 void SetUpOiio();
 
 // Opens an image and checks its header. What is returned keeps all that its reader needs. Throws

@@ -17,6 +17,7 @@
 
 #include "base/errors/errors.h"
 #include "base/files/memory_limit.h"
+#include "base/images/exr_rows.h"
 #include "base/programs/help_formatter.h"
 #include "base/programs/stage.h"
 
@@ -79,6 +80,7 @@ int RunBody(const ProgramInfo& info, const CommonOptions& common,
             const std::function<ProgramResult(const CommonOptions&)>& body) {
   constexpr double kGiga = 1e9;
   SetMemoryLimit(static_cast<std::uint64_t>(kGiga * common.memory_gb));
+  SetExrThreads(common.threads);
   const auto began = std::chrono::steady_clock::now();
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
