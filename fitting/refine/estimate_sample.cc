@@ -113,12 +113,13 @@ class Estimator {
         gathered_(problem_, start),
         look_(problem_, threads),
         looks_(LooksOf(problem_, start, look_, true, threads)),
-        by_gloss_(problem_, start, {look_, Substances(looks_, options.substances, true)}, looks_),
+        by_gloss_(problem_, start, {look_, Substances(looks_, options.substances, true)}, looks_,
+                  threads),
         model_(by_gloss_, options) {
     if (look_.tells()) {
       by_colour_.emplace(problem_, start,
                          SampleSubstances{look_, Substances(looks_, options.substances, false)},
-                         looks_);
+                         looks_, threads);
     }
     shared_light_.distance_mm = MeanLightDistance_mm(said_);
   }

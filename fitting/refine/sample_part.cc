@@ -66,15 +66,16 @@ TexelLooks LooksOf(const RefineProblem& problem, const SvbrdfMaps& initial, cons
 }
 
 SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
-                       SampleSubstances known, const TexelLooks& looks)
+                       SampleSubstances known, const TexelLooks& looks, int threads)
     : problem_(problem),
       initial_(initial),
       known_(std::move(known)),
-      shares_(known_.substances.SharesOf(looks)) {}
+      shares_(known_.substances.SharesOf(looks, threads)) {}
 
 SamplePart::SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial,
                        const SampleSubstances& known, int threads)
     : SamplePart(problem, initial, known,
-                 LooksOf(problem, initial, known.look, known.substances.by_gloss(), threads)) {}
+                 LooksOf(problem, initial, known.look, known.substances.by_gloss(), threads),
+                 threads) {}
 
 }  // namespace glint

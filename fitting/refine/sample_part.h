@@ -24,7 +24,7 @@ class SamplePart {
  public:
   // `problem` and `initial` must outlive this. `looks`: of LooksOf().
   SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial, SampleSubstances known,
-             const TexelLooks& looks);
+             const TexelLooks& looks, int threads);
   SamplePart(const RefineProblem& problem, const SvbrdfMaps& initial, const SampleSubstances& known,
              int threads);
 

@@ -8,6 +8,7 @@
 #include "base/cpu/vector_clones.h"
 #include "base/model/solver.h"
 #include "base/model/substances.h"
+#include "base/parallel/parallel.h"
 #include "fitting/texel/texel_parameters.h"
 #include "fitting/view_correction/bounded_step.h"
 
@@ -118,21 +119,24 @@ Substances::Substances(const TexelLooks& looks, int substances, bool by_gloss)
   centres_ = Centres(sampled, substances);
 }
 
-std::vector<float> Substances::SharesOf(const TexelLooks& looks) const {
+std::vector<float> Substances::SharesOf(const TexelLooks& looks, int threads) const {
+  constexpr int kTexelsAtOnce = 4096;
   const size_t texels = looks.colour.size() / 3;
   std::vector<float> all(texels * centres_.size());
-  for (size_t t = 0; t < texels; ++t) {
-    const Feature x = FeatureOf(looks, t);
-    const float least = Distance2(centres_[Nearest(centres_, x)], x);
-    float sum = 0;
-    float* shares = all.data() + t * centres_.size();
-    for (size_t k = 0; k < centres_.size(); ++k) {
-      const float d = Distance2(centres_[k], x) - least;
-      sum += shares[k] =
-          std::exp(-d / (2 * constants::kMembershipWidth * constants::kMembershipWidth));
+  ForEachBlock(static_cast<int>(texels), kTexelsAtOnce, threads, [&](int begin, int end) {
+    for (auto t = static_cast<size_t>(begin); t < static_cast<size_t>(end); ++t) {
+      const Feature x = FeatureOf(looks, t);
+      const float least = Distance2(centres_[Nearest(centres_, x)], x);
+      float sum = 0;
+      float* shares = all.data() + t * centres_.size();
+      for (size_t k = 0; k < centres_.size(); ++k) {
+        const float d = Distance2(centres_[k], x) - least;
+        sum += shares[k] =
+            std::exp(-d / (2 * constants::kMembershipWidth * constants::kMembershipWidth));
+      }
+      for (size_t k = 0; k < centres_.size(); ++k) shares[k] /= sum;
     }
-    for (size_t k = 0; k < centres_.size(); ++k) shares[k] /= sum;
-  }
+  });
   return all;
 }
 

@@ -44,7 +44,7 @@ class Substances {
 
   int count() const { return static_cast<int>(centres_.size()); }
   // Shares of each such texel, `count()` of them one after the other, sum 1.
-  std::vector<float> SharesOf(const TexelLooks& looks) const;
+  std::vector<float> SharesOf(const TexelLooks& looks, int threads = 1) const;
 
  private:
   using Feature = std::array<float, 4>;
