@@ -16,7 +16,7 @@ constexpr size_t kMostPhotos = 20;
 // Between the highlights of neighbouring top views; within GuidanceLimits' top_deg.
 constexpr double kTopTilt_deg = 7;
 // The tilts that README asks for, 15 to 40°, in three steps.
-constexpr std::array kTilts_deg = {25.0, 35.0, 17.5};
+constexpr std::array kTilts_deg = {17.5, 35.0, 25.0};
 
 constexpr char kOtherBoard[] = "It shows another board than the capture's";
 
@@ -150,16 +150,21 @@ Direction NextTop(const Verdict& verdict, const std::vector<GuidancePhoto>& phot
   return {kTopTilt_deg, LargestGap(tops, kOffCentre_deg).middle_deg};
 }
 
+bool ShowsHighlights(const Verdict& verdict, const Direction& direction) {
+  if (!Has(verdict, "highlight") || verdict.suggestions.empty()) return false;
+  const Direction& best = verdict.suggestions[0].direction;
+  return best.tilt_deg == direction.tilt_deg && best.azimuth_deg == direction.azimuth_deg;
+}
+
 // Why the photograph is asked for, in a few words.
 std::string Reason(const Verdict& verdict, const Direction& direction) {
-  if (verdict.views.empty()) return "the fit is initialised from such a view";
-  if (direction.tilt_deg <= verdict.limits.top_deg) {
-    return verdict.top_views == 0 ? "the fit is initialised from such a view"
-                                  : "a few views from near the top make the colours more certain";
-  }
+  if (verdict.top_views == 0) return "the fit is initialised from such a view";
   if (verdict.tilted_views == 0) return "tilted views reveal relief and gloss";
+  if (ShowsHighlights(verdict, direction)) return "it shows a highlight where none has been seen";
+  if (direction.tilt_deg <= verdict.limits.top_deg) {
+    return "a few views from near the top make the colours more certain";
+  }
   if (Has(verdict, "sides")) return "no tilted photograph comes from there yet";
-  if (Has(verdict, "highlight")) return "it shows a highlight where none has been seen";
   return "each further side lowers the error";
 }
 
@@ -238,11 +243,10 @@ Direction NextDirection(const Verdict& verdict, const std::vector<GuidancePhoto>
   if (verdict.tilted_views == 0) return NextTilted(verdict, photos);
   const bool dark = Has(verdict, "highlight") && !verdict.suggestions.empty();
   const bool one_sided = Has(verdict, "sides");
-  // In turn, so that neither is left for the end.
-  if (one_sided && (!dark || verdict.tilted_views < verdict.top_views)) {
-    return NextTilted(verdict, photos);
-  }
-  if (dark) return verdict.suggestions[0].direction;
+  // In turn, so that neither is left for the end: highlights tell roughness, sides tell relief.
+  const bool few_are_tilted = 2 * verdict.tilted_views < static_cast<int>(verdict.views.size());
+  if (dark && !few_are_tilted) return verdict.suggestions[0].direction;
+  if (dark || one_sided) return NextTilted(verdict, photos);
   // One top view for each two tilted ones, as in README's twelve.
   if (verdict.top_views < kTopViews && 2 * verdict.top_views < verdict.tilted_views + 1) {
     return NextTop(verdict, photos);
