@@ -154,7 +154,7 @@ Glint FitWithGlint(const Scene& scene, int threads) {
   Glint result;
   const Autoencoder network = Autoencoder::Load(FindModel("autoencoder.safetensors"));
   result.took = Timed([&] {
-    FitOptions options = FitOptions::Latent();
+    FitOptions options = FitOptions::LatentForRefinement();
     options.threads = threads;
     const FitResult fit = FitLatent(scene.set, scene.start, network, options);
     result.maps = Refine(ProblemOf(scene.set), fit.maps, {}, threads).maps;

@@ -25,58 +25,56 @@ struct MeasuredRun {
 
 constexpr double kMega = 1e6;
 
-// Two cores of an EPYC with AVX-512 and bfloat16 and nothing else running, 26 November 2026;
-// refinement of version 26, run.json of each stage. The report of version 10: what it takes longer
-// than version 9, 0.052 µs per texel of every photograph (half of its processor-seconds, since two
-// views are compared at once), is added to what that one took. Memory: 29 November 2026, refinement
-// of version 41.
+// Two cores of an EPYC with AVX-512 and bfloat16 and nothing else running, 30 November 2026;
+// refinement of version 42, run.json of each stage. A mirror of a sample takes refinement nearly
+// twice as long as the leather of these.
 std::vector<MeasuredRun> Runs() {
   const auto size = [](int photographs, int side, double megapixels = 12) {
     return CaptureSize{photographs, kMega * megapixels, 1.0 * side * side, true};
   };
   return {
       {size(5, 256),
-       {{"calib", 2.23, 307},
-        {"rectify", 0.96, 239},
-        {"fit", 8.82, 539},
-        {"refine", 0.84, 181},
-        {"export", 0.222, 161},
-        {"report", 0.35, 197}}},
+       {{"calib", 2.16, 304},
+        {"rectify", 0.57, 243},
+        {"fit", 2.82, 550},
+        {"refine", 2.44, 198},
+        {"export", 0.34, 163},
+        {"report", 0.46, 204}}},
       {size(12, 512),
-       {{"calib", 4.92, 358},
-        {"rectify", 2.39, 263},
-        {"fit", 9.55, 706},
-        {"refine", 5.26, 351},
-        {"export", 0.72, 211},
-        {"report", 0.93, 256}}},
+       {{"calib", 4.4, 357},
+        {"rectify", 1.66, 265},
+        {"fit", 3.59, 731},
+        {"refine", 5.65, 377},
+        {"export", 0.78, 213},
+        {"report", 1.28, 242}}},
       {size(9, 1024),
-       {{"calib", 4.52, 315},
-        {"rectify", 2.38, 274},
-        {"fit", 9.18, 678},
-        {"refine", 5.24, 851},
-        {"export", 1.78, 395},
-        {"report", 1.91, 412}}},
+       {{"calib", 3.5, 336},
+        {"rectify", 2.38, 282},
+        {"fit", 4.2, 674},
+        {"refine", 11.3, 918},
+        {"export", 2.86, 397},
+        {"report", 2.58, 364}}},
       {size(9, 1024, 2),
-       {{"calib", 1.92, 224},
-        {"rectify", 1.47, 174},
-        {"fit", 8.65, 698},
-        {"refine", 5.67, 887},
-        {"export", 1.76, 397},
-        {"report", 1.82, 366}}},
+       {{"calib", 2.24, 249},
+        {"rectify", 2.2, 177},
+        {"fit", 3.85, 704},
+        {"refine", 11.7, 909},
+        {"export", 2.68, 394},
+        {"report", 2.44, 364}}},
       {size(12, 1024),
-       {{"calib", 5.03, 348},
-        {"rectify", 3.33, 281},
-        {"fit", 10.4, 738},
-        {"refine", 8.66, 967},
-        {"export", 1.86, 395},
-        {"report", 2.23, 407}}},
+       {{"calib", 4.33, 355},
+        {"rectify", 3.15, 283},
+        {"fit", 4.67, 733},
+        {"refine", 13.2, 1005},
+        {"export", 2.59, 397},
+        {"report", 2.83, 366}}},
       {size(12, 2048),
-       {{"calib", 5.05, 351},
-        {"rectify", 8.95, 274},
-        {"fit", 12.8, 756},
-        {"refine", 24.2, 1159},
-        {"export", 7.36, 913},
-        {"report", 7.0, 739}}},
+       {{"calib", 4.37, 351},
+        {"rectify", 10.5, 280},
+        {"fit", 6.72, 753},
+        {"refine", 53, 1300},
+        {"export", 11.3, 911},
+        {"report", 9.54, 757}}},
   };
 }
 
