@@ -11,7 +11,8 @@
 
 namespace glint {
 
-// Limits on size and channels, one thread inside the library but for EXR (SetExrThreads); done once.
+// Limits on size and channels, one thread inside the library but for EXR (SetExrThreads); done
+// once.
 void SetUpOiio();
 
 // Opens an image and checks its header. What is returned keeps all that its reader needs. Throws
