@@ -2,8 +2,6 @@
 
 #include <ceres/jet.h>
 
-#include <algorithm>
-
 namespace glint::light {
 namespace {
 

@@ -15,7 +15,8 @@ constexpr int kTopViews = 4;
 constexpr size_t kMostPhotos = 20;
 // Between the highlights of neighbouring top views; within GuidanceLimits' top_deg.
 constexpr double kTopTilt_deg = 7;
-// The tilts that README asks for, 15 to 40°, in three steps.
+// The tilts that README asks for, 15 to 40°, in three steps. Where they are equally rare the first
+// is asked for: the least also brings highlights to the rim.
 constexpr std::array kTilts_deg = {17.5, 35.0, 25.0};
 
 constexpr char kOtherBoard[] = "It shows another board than the capture's";
