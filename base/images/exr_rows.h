@@ -70,6 +70,8 @@ class ExrWriter {
  private:
   struct Output;
   [[noreturn]] void Fail(const std::string& reason);
+  void WriteFloats(const Image& rows);
+  void WriteHalves(const Image& rows);
   std::filesystem::path file_;
   std::unique_ptr<Output> output_;
   int next_row_ = 0;

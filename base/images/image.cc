@@ -1,18 +1,9 @@
 #include "base/images/image.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <memory>
 
-#include "base/errors/errors.h"
 #include "base/images/exr_rows.h"
-#include "base/images/oiio.h"
 #include "base/images/png_rows.h"
-#include "base/images/png_samples.h"
 
 namespace glint {
 
@@ -36,35 +27,15 @@ void WritePng(const std::filesystem::path& file, const Image& image, int bits,
   writer.Close();
 }
 
-std::string EncodePng(const Image& image, int bits, const PngTags& tags) {
-  SetUpOiio();
-  OIIO::Filesystem::IOVecOutput encoded;
-  const std::string name = "memory.png";
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name, &encoded);
-  const auto fail = [&](const std::string& reason) {
-    throw EnvironmentError("a PNG cannot be encoded: " + reason);
-  };
-  if (!output) fail(OIIO::geterror());
-  const OIIO::ImageSpec spec =
-      PngSpec(image.width, image.height, static_cast<int>(image.channels.size()), bits, tags);
-  if (!output->open(name, spec)) fail(output->geterror());
-  const PngSamples samples(image, bits);
-  if (!output->write_image(samples.type(), samples.data())) fail(output->geterror());
-  if (!output->close()) fail(output->geterror());
-  const auto& bytes = encoded.buffer();
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-ImageHeader ReadImageHeader(const std::filesystem::path& file) {
-  const auto input = OpenImage(file);
-  const OIIO::ImageSpec& spec = input->spec();
-  return {spec.width, spec.height, spec.channelnames};
-}
-
 Image ReadExr(const std::filesystem::path& file, std::map<std::string, std::string>* attributes) {
   ExrReader reader(file);
   if (attributes != nullptr) *attributes = reader.attributes();
   return reader.Read(0, reader.height());
+}
+
+ImageHeader ReadExrHeader(const std::filesystem::path& file) {
+  const ExrReader reader(file);
+  return {reader.width(), reader.height(), reader.channels()};
 }
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// Images in memory and on disk, through OpenImageIO.
+// Images in memory, and as Glint writes them: EXR and PNG.
 #pragma once
 
 #include <array>
@@ -32,10 +32,7 @@ struct Image {
   int ChannelIndex(const std::string& name) const;
 };
 
-// Largest image that is read (pixels); larger ones are refused before they are allocated.
-inline constexpr std::size_t kMaxPixels = 512u << 20;
-
-// float32 scan-line EXR, ZIP, linear Rec.709 chromaticities, no time stamp: identical inputs give
+// float32 scan-line EXR, piz, linear Rec.709 chromaticities, no time stamp: identical inputs give
 // identical bytes. `attributes` become string attributes "glint:<name>". Throws EnvironmentError.
 void WriteExr(const std::filesystem::path& file, const Image& image,
               const std::map<std::string, std::string>& attributes = {});
@@ -61,11 +58,17 @@ void WritePng(const std::filesystem::path& file, const Image& image, int bits = 
 // The bytes of such a file.
 std::string EncodePng(const Image& image, int bits = 8, const PngTags& tags = {});
 
-// Size and channels of any image, from its header alone. Throws UserError.
+// An 8 bit PNG such as WritePng makes, as red, green and blue of 0 … 1. Throws UserError.
+Image ReadPng(const std::filesystem::path& file);
+
+// Size and channels, from an image's header alone. Throws UserError.
 struct ImageHeader {
   int width = 0, height = 0;
   std::vector<std::string> channels;
 };
+ImageHeader ReadExrHeader(const std::filesystem::path& file);
+ImageHeader ReadPngHeader(const std::filesystem::path& file);
+// Of any image that Glint reads (image_format.h).
 ImageHeader ReadImageHeader(const std::filesystem::path& file);
 
 }  // namespace glint

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/errors/errors.h"
+#include "base/images/image_bounds.h"
 
 namespace glint {
 
@@ -21,24 +22,10 @@ void SetUpOiio();
 std::shared_ptr<OIIO::ImageInput> OpenImage(const std::filesystem::path& file,
                                             const OIIO::ImageSpec* configuration = nullptr);
 
-// The same for OpenEXR alone: no other format's reader looks at the file, which some allocate
-// gigabytes for. What is read by rows need not fit into memory.
-enum class HowRead { kWhole, kByRows };
-std::unique_ptr<OIIO::ImageInput> OpenExr(const std::filesystem::path& file,
-                                          HowRead how = HowRead::kWhole);
-// Throws UserError where so many rows need more memory than allowed: a small file may ask for a
-// large image.
-void RequireMemoryForRows(const std::filesystem::path& file, const OIIO::ImageSpec& spec, int rows);
-
-// A fixed date keeps the library from writing the present one.
-inline constexpr char kNoDate[] = "1970:01:01 00:00:00";
-
 // What OpenImage throws for a file that does not open. `reason` is OpenImageIO's own, and `formats`
 // the formats it was built with ("bmp,heif,jpeg,…").
 [[noreturn]] void RejectUnreadable(const std::filesystem::path& file, std::string reason,
                                    const std::string& formats);
-
-[[noreturn]] void RejectTruncated(const std::filesystem::path& file, OIIO::ImageInput* input);
 
 // All samples, interleaved. Throws UserError when the file ends early.
 template <class T>
@@ -47,7 +34,7 @@ std::vector<T> ReadSamples(const std::filesystem::path& file, OIIO::ImageInput* 
   const OIIO::ImageSpec& spec = input->spec();
   std::vector<T> samples(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
   if (!input->read_image(0, 0, 0, spec.nchannels, type, samples.data())) {
-    RejectTruncated(file, input);
+    RejectTruncated(file, input->geterror());
   }
   return samples;
 }

@@ -1,100 +1,131 @@
 #include "base/images/png_rows.h"
 
-#include <OpenImageIO/filesystem.h>
+#include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "base/errors/errors.h"
-#include "base/images/oiio.h"
-#include "base/images/png_samples.h"
+#include "base/images/image_bounds.h"
+#include "base/images/png_encoder.h"
 
 namespace glint {
+namespace {
 
-OIIO::ImageSpec PngSpec(int width, int height, int channels, int bits, const PngTags& tags) {
-  OIIO::ImageSpec spec(width, height, channels, bits == 16 ? OIIO::TypeUInt16 : OIIO::TypeUInt8);
-  spec.attribute("DateTime", kNoDate);
-  // Maps and photographs hold noise, in which little repeats but what lies side by side. Compared
-  // with zlib's search for repeats anywhere, maps are written eight times as fast and are at most
-  // an eighth larger.
-  constexpr int kAverageFilter = 64;  // libpng's PNG_FILTER_AVG
-  spec.attribute("compression", "rle");
-  spec.attribute("png:filter", kAverageFilter);
-  if (tags.transfer == PngTransfer::kSrgb) spec.attribute("oiio:ColorSpace", "sRGB");
-  if (tags.pixels_per_m > 0) {
-    spec.attribute("XResolution", static_cast<float>(tags.pixels_per_m / 100));
-    spec.attribute("YResolution", static_cast<float>(tags.pixels_per_m / 100));
-    spec.attribute("ResolutionUnit", "cm");
-  }
-  return spec;
-}
-
-PngSamples::PngSamples(const Image& image, int bits) : bits_(bits) {
+// Values of an image clamped to [0, 1], rounded to 8 or 16 bits, interleaved; most significant byte
+// first, as PNG has them.
+std::vector<std::uint8_t> SamplesOf(const Image& image, int bits) {
   const size_t channels = image.channels.size(), pixels = image.pixels();
+  const size_t bytes = bits == 16 ? 2 : 1;
   const float scale = bits == 16 ? 65535.0f : 255.0f;
-  (bits == 16 ? words_.resize(channels * pixels) : bytes_.resize(channels * pixels));
+  std::vector<std::uint8_t> samples(channels * pixels * bytes);
   for (size_t c = 0; c < channels; ++c) {
     const auto plane = image.channel(static_cast<int>(c));
     for (size_t i = 0; i < pixels; ++i) {
       const float value = std::isfinite(plane[i]) ? std::clamp(plane[i], 0.0f, 1.0f) : 0.0f;
-      const auto rounded = std::lround(value * scale);
-      if (bits == 16) {
-        words_[i * channels + c] = static_cast<std::uint16_t>(rounded);
-      } else {
-        bytes_[i * channels + c] = static_cast<std::uint8_t>(rounded);
-      }
+      const auto rounded = static_cast<unsigned>(std::lround(value * scale));
+      std::uint8_t* to = samples.data() + (i * channels + c) * bytes;
+      if (bits == 16) *to++ = static_cast<std::uint8_t>(rounded >> 8);
+      *to = static_cast<std::uint8_t>(rounded & 0xff);
     }
   }
+  return samples;
+}
+
+std::uint32_t BigEndian(const char* bytes) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
+  return value;
+}
+
+}  // namespace
+
+ImageHeader ReadPngHeader(const std::filesystem::path& file) {
+  // Signature, length and name of IHDR, which comes first; width, height, depth, colours.
+  constexpr size_t kWidth = 16, kHeight = 20, kColours = 25, kBytes = 26;
+  RequireImageFile(file);
+  std::array<char, kBytes> head = {};
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.read(head.data(), kBytes)) RejectTruncated(file, "no header");
+  std::vector<std::string> channels = {"Y"};
+  if ((head[kColours] & PNG_COLOR_MASK_COLOR) != 0) channels = kRgbChannels;
+  if ((head[kColours] & PNG_COLOR_MASK_ALPHA) != 0) channels.emplace_back("A");
+  return {static_cast<int>(BigEndian(head.data() + kWidth)),
+          static_cast<int>(BigEndian(head.data() + kHeight)), channels};
+}
+
+Image ReadPng(const std::filesystem::path& file) {
+  RequireImageFile(file);
+  png_image png = {};
+  png.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_file(&png, file.c_str()) == 0) RejectTruncated(file, png.message);
+  png.format = PNG_FORMAT_RGB;
+  // Frees what the header's reader holds, whatever is thrown.
+  const std::unique_ptr<png_image, decltype(&png_image_free)> held(&png, &png_image_free);
+  const ImageSize size = {static_cast<int>(png.width), static_cast<int>(png.height), 3};
+  RequireSize(file, size);
+  RequireMemoryForRows(file, size, size.height);
+  std::vector<std::uint8_t> samples(PNG_IMAGE_SIZE(png));
+  if (png_image_finish_read(&png, nullptr, samples.data(), 0, nullptr) == 0) {
+    RejectTruncated(file, png.message);
+  }
+  Image image(size.width, size.height, kRgbChannels);
+  for (int c = 0; c < 3; ++c) {
+    const auto plane = image.channel(c);
+    for (size_t i = 0; i < plane.size(); ++i) {
+      plane[i] = static_cast<float>(samples[3 * i + static_cast<size_t>(c)]) / 255.0f;
+    }
+  }
+  return image;
+}
+
+std::string EncodePng(const Image& image, int bits, const PngTags& tags) {
+  std::string encoded;
+  PngEncoder encoder([&](const char* bytes, size_t size) { encoded.append(bytes, size); });
+  if (!encoder.Begin(image.width, image.height, static_cast<int>(image.channels.size()), bits,
+                     tags) ||
+      !encoder.Write(SamplesOf(image, bits), image.height) || !encoder.End()) {
+    throw EnvironmentError("a PNG cannot be encoded: " + encoder.reason());
+  }
+  return encoded;
 }
 
 struct PngWriter::Output {
-  // A file that remembers what went wrong: libpng's writer does not say when the disk is full.
-  class CheckedFile : public OIIO::Filesystem::IOProxy {
-   public:
-    explicit CheckedFile(const std::filesystem::path& file)
-        : IOProxy(file.string(), IOProxy::Write), stream_(file, std::ios::binary) {}
-    const char* proxytype() const override { return "checked"; }
-    size_t write(const void* bytes, size_t size) override {
-      stream_.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
-      m_pos += static_cast<std::int64_t>(size);
-      return size;
-    }
-    bool well() { return static_cast<bool>(stream_.flush()); }
-    bool Finish() {
-      stream_.close();
-      return !stream_.fail();
-    }
-
-   private:
-    std::ofstream stream_;
-  };
-
-  CheckedFile file;
-  std::unique_ptr<OIIO::ImageOutput> image;
+  Output(const std::filesystem::path& file, int width_in, int height_in, int channels_in,
+         int bits_in)
+      : stream(file, std::ios::binary),
+        encoder([this](const char* bytes, size_t size) {
+          stream.write(bytes, static_cast<std::streamsize>(size));
+        }),
+        width(width_in),
+        height(height_in),
+        channels(channels_in),
+        bits(bits_in) {}
+  std::ofstream stream;
+  PngEncoder encoder;
   int width, height, channels, bits;
   int next_row = 0;
 };
 
 PngWriter::PngWriter(const std::filesystem::path& file, int width, int height, int channels,
                      int bits, const PngTags& tags)
-    : file_(file) {
-  SetUpOiio();
-  output_.reset(new Output{Output::CheckedFile(file), nullptr, width, height, channels, bits});
-  output_->image = OIIO::ImageOutput::create("rows.png", &output_->file);
-  Check(output_->image && output_->file.well() &&
-        output_->image->open("rows.png", PngSpec(width, height, channels, bits, tags)));
+    : file_(file), output_(std::make_unique<Output>(file, width, height, channels, bits)) {
+  Check(output_->encoder.Begin(width, height, channels, bits, tags));
 }
 
 PngWriter::~PngWriter() = default;
 PngWriter::PngWriter(PngWriter&&) noexcept = default;
 
 void PngWriter::Check(bool well) {
-  if (well && output_->file.well()) return;
-  const std::string reason = output_->image ? output_->image->geterror() : OIIO::geterror();
-  output_->image.reset();
+  if (well && output_->stream.flush()) return;
+  const std::string reason = output_->encoder.reason();
+  output_.reset();
   std::error_code error;
   std::filesystem::remove(file_, error);
   throw EnvironmentError(file_.string() + ": cannot write the image" +
@@ -107,17 +138,15 @@ void PngWriter::Write(const Image& rows) {
       output_->next_row + rows.height > output_->height) {
     throw std::invalid_argument("PngWriter: rows of another image");
   }
-  const PngSamples samples(rows, output_->bits);
-  const int first = output_->next_row;
   output_->next_row += rows.height;
-  Check(
-      output_->image->write_scanlines(first, output_->next_row, 0, samples.type(), samples.data()));
+  Check(output_->encoder.Write(SamplesOf(rows, output_->bits), rows.height));
 }
 
 void PngWriter::Close() {
   if (output_->next_row != output_->height) throw std::logic_error("PngWriter: rows are missing");
-  Check(output_->image->close());
-  Check(output_->file.Finish());
+  Check(output_->encoder.End());
+  output_->stream.close();
+  Check(!output_->stream.fail());
 }
 
 }  // namespace glint

@@ -16,6 +16,7 @@ extern "C" {
 #include <vector>
 
 #include "base/errors/errors.h"
+#include "base/images/image_bounds.h"
 #include "base/photos/upright.h"
 
 namespace glint {

@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t kMostBytes = 512u << 20;
+constexpr std::size_t kMostWebpBytes = 512u << 20;
 
 struct FreeMux {
   void operator()(WebPMux* mux) const { WebPMuxDelete(mux); }
@@ -24,7 +24,7 @@ std::string ChunkOf(const WebPMux* mux, const char* name) {
 }  // namespace
 
 WebpFacts ReadWebpFacts(const std::filesystem::path& file) {
-  const std::string bytes = ReadTextFile(file, kMostBytes);
+  const std::string bytes = ReadTextFile(file, kMostWebpBytes);
   const WebPData data{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
   const std::unique_ptr<WebPMux, FreeMux> mux(WebPMuxCreate(&data, 0));
   if (!mux) return {};

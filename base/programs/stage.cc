@@ -15,6 +15,7 @@
 #include <ctime>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "base/cpu/instruction_set.h"
@@ -120,9 +121,11 @@ void Exchange(const fs::path& fresh, const fs::path& folder) {
   fs::remove_all(aside);
 }
 
-bool IsImage(const std::string& name) {
-  const std::string extension = fs::path(name).extension();
-  return extension == ".exr" || extension == ".png";
+// Of an image as stages write them.
+std::optional<ImageHeader> HeaderOf(const fs::path& file) {
+  if (file.extension() == ".exr") return ReadExrHeader(file);
+  if (file.extension() == ".png") return ReadPngHeader(file);
+  return std::nullopt;
 }
 
 // Whether a file is no part of the capture whose stage folder CAPTURE/glint/STAGE is: its path from
@@ -137,11 +140,10 @@ ManifestOutput Describe(const fs::path& folder, const std::string& name) {
   ManifestOutput output;
   output.path = name;
   output.hash = HashFile(folder / name);
-  if (IsImage(name)) {
-    const ImageHeader header = ReadImageHeader(folder / name);
-    output.width = header.width;
-    output.height = header.height;
-    output.channels = header.channels;
+  if (const auto header = HeaderOf(folder / name)) {
+    output.width = header->width;
+    output.height = header->height;
+    output.channels = header->channels;
   }
   return output;
 }

@@ -93,7 +93,7 @@ namespace {
 
 SvbrdfMaps ReadMapsAtMost(const fs::path& file, int most_side, ReflectanceConvention* convention) {
   if (most_side == 0) return ReadSvbrdf(file, convention);
-  const ImageHeader header = ReadImageHeader(file);
+  const ImageHeader header = ReadExrHeader(file);
   const auto [width, height] = SizeAtMost(header.width, header.height, most_side);
   return ResampledSvbrdf(file, width, height, convention).Read(0, height);
 }

@@ -55,7 +55,7 @@ std::vector<float> TrustOf(const std::filesystem::path& maps_manifest, const Mat
                            const SvbrdfMaps& maps) {
   const auto file = maps_manifest.parent_path() / "confidence.exr";
   if (!std::filesystem::exists(file)) return {};
-  const ImageHeader header = ReadImageHeader(file);
+  const ImageHeader header = ReadExrHeader(file);
   if (header.width != source.width() || header.height != source.height()) {
     throw UserError(file, "normal.X, normal.Y", "deviations that do not belong to these maps",
                     "run glint-refine again");

@@ -1,8 +1,11 @@
 // Images that are read and written by rows are those that are read and written whole.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
+#include <filesystem>
 
 #include "base/errors/errors.h"
 #include "base/files/files.h"
@@ -129,6 +132,64 @@ TEST(PngRows, HaveTheSameBytesHoweverTheyAreCut) {
       EXPECT_EQ(ReadTextFile(folder / "rows.png"), ReadTextFile(folder / "whole.png")) << at_once;
     }
   }
+}
+
+TEST(PngRows, AreReadAsTheyWereWritten) {
+  const test::TemporaryFolder folder;
+  const Image image = Waves(33, 15, {"R", "G", "B"});
+  WritePng(folder / "a.png", image);
+  const Image read = ReadPng(folder / "a.png");
+  ASSERT_EQ(read.width, 33);
+  ASSERT_EQ(read.height, 15);
+  for (size_t i = 0; i < image.samples.size(); ++i) {
+    EXPECT_NEAR(read.samples[i], image.samples[i], 0.5 / 255 + 1e-6);
+  }
+}
+
+TEST(PngRows, OfAFileThatIsCutAreRefusedByName) {
+  const test::TemporaryFolder folder;
+  WritePng(folder / "a.png", Waves(64, 64, {"R", "G", "B"}));
+  const std::string whole = ReadTextFile(folder / "a.png");
+  for (const size_t size : {size_t{10}, size_t{40}, whole.size() / 2}) {
+    WriteFileAtomically(folder / "a.png", whole.substr(0, size));
+    EXPECT_THAT(test::MessageOf<UserError>([&] { ReadPng(folder / "a.png"); }),
+                ::testing::AllOf(HasSubstr("a.png: "), HasSubstr("damaged")))
+        << size;
+  }
+}
+
+TEST(ImageHeaders, AreThoseOfTheirImages) {
+  const test::TemporaryFolder folder;
+  WriteExr(folder / "a.exr", Image(7, 5, {"normal.X", "B", "G", "R"}));
+  const ImageHeader exr = ReadExrHeader(folder / "a.exr");
+  EXPECT_EQ(exr.width, 7);
+  EXPECT_EQ(exr.height, 5);
+  EXPECT_EQ(exr.channels, (std::vector<std::string>{"R", "G", "B", "normal.X"}));
+  for (const auto& channels :
+       {std::vector<std::string>{"Y"}, {"R", "G", "B"}, {"R", "G", "B", "A"}}) {
+    for (const int bits : {8, 16}) {
+      WritePng(folder / "a.png", Image(300, 5, channels), bits);
+      const ImageHeader png = ReadPngHeader(folder / "a.png");
+      EXPECT_EQ(png.width, 300);
+      EXPECT_EQ(png.height, 5);
+      EXPECT_EQ(png.channels, channels);
+      EXPECT_EQ(ReadImageHeader(folder / "a.png").channels, channels);
+    }
+  }
+}
+
+// A disk that is full as the last bytes are written, where OpenEXR would say nothing.
+TEST(ExrRows, ThatDoNotFitAreAnErrorAndNotAPartOfAFile) {
+  const test::TemporaryFolder folder;
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{20 << 10, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW(WriteExr(folder / "large.exr", Waves(256, 256, {"R", "G", "B"})), EnvironmentError);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_FALSE(std::filesystem::exists(folder / "large.exr"));
 }
 
 }  // namespace

@@ -90,7 +90,8 @@ TEST_F(ExportStageTest, LargeMapsKeepTheirSizeAndTheirRelief) {
   }
   for (const char* map : {"height", "ao"}) {
     const std::string file = "material_" + std::string(map) + ".png";
-    const Image exact = ReadPicture(whole / file), averaged = ReadPicture(small / file);
+    const Image exact = ReadPhoto(whole / file).image.Planes();
+    const Image averaged = ReadPhoto(small / file).image.Planes();
     ASSERT_EQ(averaged.width, kWidth);
     ASSERT_EQ(averaged.height, kHeight);
     double sum = 0, squares = 0, difference = 0;
