@@ -6,6 +6,7 @@
 
 #include "base/errors/errors.h"
 #include "base/formats/capture.h"
+#include "base/programs/capture_size.h"
 #include "base/programs/cost_model.h"
 #include "base/programs/program.h"
 #include "calib/capture/calibrate_capture.h"
@@ -85,7 +86,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, CalibOpti
                {"manifest", stage.manifest_file().string()}};
   std::string text = stage.UpToDateText(), brief = "up to date";
   if (!stage.UpToDate()) {
-    RequireMemoryForStage("calib", capture, common.threads);
+    RequireMemoryForStage("calib", capture, SizeOf(capture), common.threads);
     const CalibSummary summary = CalibrateCapture(capture, *options, common, &stage);
     json["metrics"] = MetricsOf(summary);
     text = TextOf(summary);

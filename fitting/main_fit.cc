@@ -37,7 +37,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, FitStageO
   for (const auto& input : FitInputs(*options)) inputs.push_back(input);
   Stage stage(capture.work() / "fit", {"fit", kFitVersion}, *set, common, inputs);
   if (stage.UpToDate()) return stage.UpToDateResult();
-  RequireMemoryForStage("fit", capture, common.threads);
+  RequireMemoryForStage("fit", capture, SizeOfMaps(capture), common.threads);
   return Summarise(stage, *options, RunFitStage(views_manifest, *options, common.threads, &stage));
 }
 

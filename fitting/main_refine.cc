@@ -100,7 +100,7 @@ ProgramResult RunPart(const Capture& capture, const Sources& sources, const Opti
   }
   Stage stage = PartOf(sources, part, set, common);
   if (stage.UpToDate()) return stage.UpToDateResult();
-  RequireMemoryForStage("refine", capture, common.threads);
+  RequireMemoryForStage("refine", capture, SizeOfMaps(capture), common.threads);
   const RowRange rows =
       RunRefinePart(sources.views_manifest, sources.start, options, part, common.threads, &stage);
   ProgramResult result;
@@ -150,7 +150,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RefineSta
     RemoveParts(sources.work);
     return stage.UpToDateResult();
   }
-  RequireMemoryForStage("refine", capture, common.threads);
+  RequireMemoryForStage("refine", capture, SizeOfMaps(capture), common.threads);
   const std::vector<Stage> parts = Parts(folder, sources, *set, options->join, common);
   std::vector<std::filesystem::path> folders;
   folders.reserve(parts.size());

@@ -30,7 +30,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, TileStage
   ReadManifest(source, options->from);
   Stage stage(capture.work() / "tile", {"tile", kTileVersion}, *set, common, {source});
   if (stage.UpToDate()) return stage.UpToDateResult();
-  RequireMemoryForStage("tile", capture, common.threads);
+  RequireMemoryForStage("tile", capture, SizeOfMaps(capture), common.threads);
   return Summarise(stage, RunTileStage(capture, *options, common.threads, &stage));
 }
 

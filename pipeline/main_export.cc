@@ -42,7 +42,7 @@ ProgramResult Export(const std::filesystem::path& folder, OptionSet* set, Export
   if (stage.UpToDate()) {
     return stage.UpToDateResult();
   }
-  RequireMemoryForStage("export", capture, common.threads);
+  RequireMemoryForStage("export", capture, SizeOfMaps(capture), common.threads);
   VerifyOutputs(source, manifest);
   ExportTask task{source, SizeOf(capture, manifest, source), manifest.stage == "tile"};
   task.metals = MetalsOf(source, manifest);

@@ -20,7 +20,7 @@ ProgramResult WriteReport(const std::filesystem::path& folder, OptionSet* set,
   if (stage.UpToDate()) {
     return stage.UpToDateResult({{"page", page}});
   }
-  RequireMemoryForStage("report", capture, common.threads);
+  RequireMemoryForStage("report", capture, SizeOfMaps(capture), common.threads);
   const ReportInput input = ReadReportInput(capture.work(), options->from);
   const Report report = MakeReport(input, *options, common.threads);
   WriteFileAtomically(stage.Output("index.html"), report.html);

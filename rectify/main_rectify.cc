@@ -3,6 +3,7 @@
 
 #include "base/errors/errors.h"
 #include "base/formats/capture.h"
+#include "base/programs/capture_size.h"
 #include "base/programs/cost_model.h"
 #include "base/programs/program.h"
 #include "rectify/views/rectify_capture.h"
@@ -54,7 +55,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RectifyOp
   for (const auto& file : capture.FilesBehind(photos)) inputs.push_back(file);
   Stage stage(capture.work() / "rectify", {"rectify", kRectifyVersion}, *set, common, inputs);
   if (stage.UpToDate()) return stage.UpToDateResult();
-  RequireMemoryForStage("rectify", capture, common.threads);
+  RequireMemoryForStage("rectify", capture, SizeOf(capture), common.threads);
   return Summarise(stage, RectifyCapture(capture, calibration, *options, task, common, &stage));
 }
 

@@ -8,7 +8,6 @@
 #include "base/errors/errors.h"
 #include "base/files/memory_limit.h"
 #include "base/formats/rectified_set.h"
-#include "base/photos/photo.h"
 #include "base/stages/stages.h"
 
 namespace glint {
@@ -36,23 +35,18 @@ const StageCost* CostOf(const std::string& stage) {
 
 }  // namespace
 
-CaptureSize SizeOf(const Capture& capture) {
+CaptureSize SizeOfMaps(const Capture& capture) {
   CaptureSize size;
   size.texels = static_cast<double>(capture.resolution_px[0]) * capture.resolution_px[1];
   size.photographs = static_cast<int>(capture.photos.size());
   size.native_bfloat16 = NativeBfloat16();
   try {
-    if (capture.imported()) {
-      const fs::path manifest = ViewsManifest(capture.work());
-      if (!fs::exists(manifest)) return size;
-      const RectifiedSet set = ReadRectifiedSet(manifest);
-      size.texels = static_cast<double>(set.plane.width) * set.plane.height;
-      size.photographs = static_cast<int>(set.views.size());
-      return size;
-    }
-    if (capture.photos.empty()) return size;
-    const auto [width, height] = PhotoSize(capture.folder / capture.photos.front());
-    size.photograph_px = static_cast<double>(width) * height;
+    if (!capture.imported()) return size;
+    const fs::path manifest = ViewsManifest(capture.work());
+    if (!fs::exists(manifest)) return size;
+    const RectifiedSet set = ReadRectifiedSet(manifest);
+    size.texels = static_cast<double>(set.plane.width) * set.plane.height;
+    size.photographs = static_cast<int>(set.views.size());
   } catch (const Error&) {
     // The stage that reads it will say so.
   }
@@ -82,8 +76,8 @@ double PredictedMemory_bytes(const std::string& stage, const CaptureSize& size, 
          cost->network_texel_bytes * size.photographs * std::min(size.texels, kNetworkTexels);
 }
 
-void RequireMemoryForStage(const std::string& stage, const Capture& capture, int threads) {
-  const CaptureSize size = SizeOf(capture);
+void RequireMemoryForStage(const std::string& stage, const Capture& capture,
+                           const CaptureSize& size, int threads) {
   const double needed = PredictedMemory_bytes(stage, size, threads);
   const auto limit = static_cast<double>(MemoryLimit_bytes());
   if (needed <= limit) return;

@@ -14,13 +14,14 @@ namespace glint {
 
 struct CaptureSize {
   int photographs = 0;
-  double photograph_px = 0;  // of one
+  double photograph_px = 0;  // of one; 0: not known, for stages that decode none
   double texels = 0;
   bool native_bfloat16 = false;  // of the processor: networks take half the time
 };
 
-// By capture.toml and the first photograph's header; an imported capture's by its rectified views.
-CaptureSize SizeOf(const Capture& capture);
+// By capture.toml; an imported capture's by its rectified views. Photographs are not looked at:
+// what reads them brings in the libraries that decode them (SizeOf, capture_size.h).
+CaptureSize SizeOfMaps(const Capture& capture);
 
 // Of a stage, or of "initial": the stage fit with its method of that name, which fits nothing. 0
 // for any other.
@@ -30,6 +31,7 @@ double PredictedSeconds(const std::string& stage, const CaptureSize& size);
 double PredictedMemory_bytes(const std::string& stage, const CaptureSize& size, int threads);
 
 // Throws EnvironmentError where that is more than MemoryLimit_bytes().
-void RequireMemoryForStage(const std::string& stage, const Capture& capture, int threads);
+void RequireMemoryForStage(const std::string& stage, const Capture& capture,
+                           const CaptureSize& size, int threads);
 
 }  // namespace glint

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/files/memory_limit.h"
+#include "base/programs/capture_size.h"
 #include "base/programs/run_progress.h"
 #include "base/stages/stages.h"
 

@@ -19,6 +19,7 @@
 #include "base/files/hash_cache.h"
 #include "base/formats/manifest.h"
 #include "base/photos/photo_name.h"
+#include "base/programs/capture_size.h"
 #include "base/programs/cost_model.h"
 #include "base/programs/program.h"
 #include "base/programs/run_progress.h"
@@ -328,7 +329,7 @@ RunSummary RunCapture(const RunOptions& options) {
   const std::vector<NinjaEdge> edges = Edges(capture, steps, options.force);
   const RunPlan plan = PlanOf(capture, edges);
   for (const auto& [stage, seconds] : plan.stages) {
-    RequireMemoryForStage(stage, capture, std::max(1, options.threads));
+    RequireMemoryForStage(stage, capture, SizeOf(capture), std::max(1, options.threads));
   }
   WriteFileAtomically(capture.work() / "build.ninja",
                       NinjaText(edges, RequireGlintProgram("glint"), options.choices));

@@ -3,6 +3,7 @@
 
 #include "base/files/json.h"
 #include "base/formats/capture.h"
+#include "base/programs/capture_size.h"
 #include "base/programs/cost_model.h"
 #include "base/stages/stages.h"
 #include "tests/e2e/capture_fixture.h"
