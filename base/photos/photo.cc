@@ -177,9 +177,15 @@ std::shared_ptr<OIIO::ImageInput> OpenPhoto(const std::filesystem::path& file) {
   return input;
 }
 
-Photo DecodeFile(const std::filesystem::path& file) {
+}  // namespace
+
+Photo ReadPhoto(const std::filesystem::path& file) {
   const PhotoName name = SplitPhotoName(file);
-  if (name.frame >= 0) return ReadVideoFrame(name.file, name.frame);
+  if (name.frame >= 0) {
+    Photo frame = ReadVideoFrame(name.file, name.frame);
+    CountDecodedPhoto();
+    return frame;
+  }
   const auto input = OpenPhoto(file);
   RequireSize(file, input->spec().width, input->spec().height);
   const std::string jpeg = BytesOfJpeg(file, *input);
@@ -190,18 +196,9 @@ Photo DecodeFile(const std::filesystem::path& file) {
   photo.orientation = orientation.exif;
   ReadPixels(file, input.get(), TurnToApply(orientation), &photo);
   RequireWholeRaw(file, photo);
-  return photo;
-}
-
-}  // namespace
-
-Photo ReadPhoto(const std::filesystem::path& file) {
-  Photo photo = DecodeFile(file);
   CountDecodedPhoto();
   return photo;
 }
-
-Image ReadPicture(const std::filesystem::path& file) { return DecodeFile(file).image.Planes(); }
 
 PhotoHeader ReadPhotoHeader(const std::filesystem::path& file) {
   PhotoHeader header;

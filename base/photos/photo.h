@@ -53,10 +53,6 @@ struct Photo {
 // EnvironmentError (no decoder installed).
 Photo ReadPhoto(const std::filesystem::path& file);
 
-// The same of a picture that is no photograph, such as a stage's PNG: it is not counted as one
-// (decode_count.h).
-Image ReadPicture(const std::filesystem::path& file);
-
 // Width and height as ReadPhoto would give them, from the header alone.
 std::pair<int, int> PhotoSize(const std::filesystem::path& file);
 

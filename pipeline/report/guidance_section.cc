@@ -1,7 +1,7 @@
 #include "pipeline/report/guidance_section.h"
 
 #include "base/files/files.h"
-#include "base/photos/photo.h"
+#include "base/images/image.h"
 #include "pipeline/report/figure.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/metrics_html.h"
@@ -18,7 +18,7 @@ std::string PictureUri(const fs::path& file) {
   if (file.extension() == ".svg") {
     return "data:image/svg+xml;base64," + Base64(ReadTextFile(file, kMaxSvgBytes));
   }
-  return PngUri(ReadPicture(file));
+  return PngUri(ReadPng(file));
 }
 
 std::string Caption(const std::string& name) {

@@ -1,9 +1,11 @@
 #include "pipeline/report/picture.h"
 
+#include <turbojpeg.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
+#include <memory>
 #include <opencv2/imgproc.hpp>
 
 #include "base/errors/errors.h"
@@ -13,19 +15,14 @@
 namespace glint {
 namespace {
 
-// 8 bit, BGR or grey.
-cv::Mat Bytes(const Image& image) {
-  const int channels = image.channels.size() >= 3 ? 3 : 1;
-  cv::Mat bytes(image.height, image.width, CV_8UC(channels));
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      for (int c = 0; c < channels; ++c) {
-        const float value = image.channel(
-            c)[static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x)];
-        const float clamped = std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f;
-        bytes.ptr<unsigned char>(y)[x * channels + (channels - 1 - c)] =
-            static_cast<unsigned char>(std::lround(255 * clamped));
-      }
+// Interleaved, of three channels or one.
+std::vector<unsigned char> Bytes(const Image& image, size_t channels) {
+  std::vector<unsigned char> bytes(channels * image.pixels());
+  for (size_t c = 0; c < channels; ++c) {
+    const auto plane = image.channel(static_cast<int>(c));
+    for (size_t i = 0; i < plane.size(); ++i) {
+      const float clamped = std::isfinite(plane[i]) ? std::clamp(plane[i], 0.0f, 1.0f) : 0.0f;
+      bytes[i * channels + c] = static_cast<unsigned char>(std::lround(255 * clamped));
     }
   }
   return bytes;
@@ -65,11 +62,18 @@ Image ShrunkPlanes(std::span<const float> rgb_planar, int width, int height, int
 }
 
 std::string JpegBytes(const Image& image, int quality) {
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(".jpg", Bytes(image), bytes, {cv::IMWRITE_JPEG_QUALITY, quality})) {
-    throw ComputationError("report: a picture cannot be encoded as JPEG");
-  }
-  return {bytes.begin(), bytes.end()};
+  const bool coloured = image.channels.size() >= 3;
+  const std::vector<unsigned char> samples = Bytes(image, coloured ? 3 : 1);
+  const std::unique_ptr<void, decltype(&tjDestroy)> encoder(tjInitCompress(), &tjDestroy);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;  // NOLINT(google-runtime-int): TurboJPEG's
+  const bool well =
+      encoder && tjCompress2(encoder.get(), samples.data(), image.width, 0, image.height,
+                             coloured ? TJPF_RGB : TJPF_GRAY, &bytes, &size,
+                             coloured ? TJSAMP_420 : TJSAMP_GRAY, quality, TJFLAG_ACCURATEDCT) == 0;
+  const std::unique_ptr<unsigned char, decltype(&tjFree)> held(bytes, &tjFree);
+  if (!well) throw ComputationError("report: a picture cannot be encoded as JPEG");
+  return {reinterpret_cast<const char*>(bytes), size};
 }
 
 std::string JpegUri(const Image& image, int quality) {

@@ -7,7 +7,6 @@
 #include "base/files/hash.h"
 #include "base/formats/svbrdf_file.h"
 #include "base/images/exr_rows.h"
-#include "base/photos/photo.h"
 #include "base/resampling/resampling.h"
 #include "datasets/looks/looks_figures.h"
 #include "pipeline/report/downloads_section.h"
@@ -198,7 +197,7 @@ std::string TileSection(const ReportInput& input, const ReportOptions& options) 
                                          [&](const ManifestInput& in) { return in.hash == maps; });
   if (!of_these_maps) return "";
   const Trace data{ManifestLink("tile"), "data"}, metrics{ManifestLink("tile"), "metrics"};
-  const Image preview = ReadPicture(input.work / "tile" / "preview.png");
+  const Image preview = ReadPng(input.work / "tile" / "preview.png");
   return Section("Repeated", ManifestLink("tile"),
                  "<p>A piece of " +
                      FigureHtml(manifest.data["size_mm"][0], data.Field("size_mm[0]")) + " × " +
@@ -314,10 +313,9 @@ std::string StageSection(const ReportInput& input, const std::string& stage) {
   std::string body = MetricsHtml(metrics, {link, "metrics"});
   std::string pictures;
   for (const ManifestOutput& output : manifest.outputs) {
-    const std::string extension = fs::path(output.path).extension();
-    if (extension != ".png" && extension != ".jpg") continue;
+    if (fs::path(output.path).extension() != ".png") continue;
     if (output.path.compare(0, sizeof(kGuidancePrefix) - 1, kGuidancePrefix) == 0) continue;
-    const Image picture = ReadPicture(input.work / stage / output.path);
+    const Image picture = ReadPng(input.work / stage / output.path);
     pictures += Figure(PngUri(Shrunk(picture, kStagePicture_px)), output.path, "wide");
   }
   body += pictures;

@@ -153,7 +153,7 @@ TEST_F(BadInputTest, APhotographOfOnePixel) {
 }
 
 TEST_F(BadInputTest, APhotographWithNan) {
-  Image image = ReadPicture(Photos()[1]);
+  Image image = ReadPhoto(Photos()[1]).image.Planes();
   image.samples[1000] = std::numeric_limits<float>::quiet_NaN();
   Replace(Photos()[1], image, ".exr");
   ExpectRefusal({Photos()[1].string(), "pixel (", "found a value that is not a number"});
@@ -176,7 +176,7 @@ TEST_F(BadInputTest, BoardInNoPhotograph) {
 
 TEST_F(BadInputTest, BoardInOnePhotographOnly) {
   // All as PNG, so that none has the EXIF of another camera.
-  const Image first = ReadPicture(Photos()[0]);
+  const Image first = ReadPhoto(Photos()[0]).image.Planes();
   Replace(Photos()[0], first, ".png");
   for (size_t i = 1; i < Photos().size(); ++i) {
     ReplaceByColor(Photos()[i], 0.5f, first.width, first.height);
