@@ -29,5 +29,18 @@ TEST(Start, WhatOnlyStartsOtherProgramsLoadsNoImageLibraries) {
   }
 }
 
+// What stages write is EXR and PNG, for which OpenEXR and libpng are enough.
+TEST(Start, WhatReadsNoPhotographLoadsNoDecodersOfPhotographs) {
+  for (const std::string program : {"glint-refine", "glint-export", "glint-report"}) {
+    const std::string libraries = LibrariesOf(program);
+    EXPECT_NE(libraries.find("libOpenEXR"), std::string::npos) << libraries;
+    for (const std::string heavy : {"libOpenImageIO", "libopencv_imgcodecs", "libgdal", "libraw"}) {
+      EXPECT_EQ(libraries.find(heavy), std::string::npos) << program << " loads " << heavy;
+    }
+  }
+  // libtorch brings OpenCV's decoders.
+  EXPECT_EQ(LibrariesOf("glint-fit").find("libOpenImageIO"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace glint
