@@ -11,10 +11,10 @@
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/ImfTileDescription.h>
 #include <half.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -59,6 +59,13 @@ std::vector<std::string> ChannelsOf(const Imf::Header& header) {
   std::sort(channels.begin(), channels.end(),
             [](const std::string& a, const std::string& b) { return PlaceOf(a) < PlaceOf(b); });
   return channels;
+}
+
+// OpenEXR holds a whole row of tiles, however few rows are asked for.
+int RowsInMemory(const Imf::Header& header, int rows) {
+  if (!header.hasTileDescription()) return rows;
+  const unsigned most = std::min(header.tileDescription().ySize, 1u << 30);
+  return std::max(rows, static_cast<int>(most));
 }
 
 // The channel's rows from `first_row` of the file on, at `samples`.
@@ -125,7 +132,7 @@ Image ExrReader::Read(int first_row, int rows) {
   if (first_row < 0 || rows < 1 || first_row + rows > size.height) {
     throw std::invalid_argument("ExrReader: rows outside of the image");
   }
-  RequireMemoryForRows(file_, size, rows);
+  RequireMemoryForRows(file_, size, RowsInMemory(input_->file.header(), rows));
   Image image(size.width, rows, channels_);
   const Imath::Box2i& window = input_->file.header().dataWindow();
   const int top = window.min.y + first_row;

@@ -1,4 +1,5 @@
 // Images that are read and written by rows are those that are read and written whole.
+#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -96,6 +97,35 @@ TEST(ExrRows, NeedMemoryForThemselvesAlone) {
   const std::string message = test::MessageOf<UserError>([&] { reader.Read(0, 1000); });
   SetMemoryLimit(0);
   EXPECT_THAT(message, HasSubstr("a.exr: size: found 1000x1000 pixels of 3 channels"));
+}
+
+void WriteTiled(const std::filesystem::path& file, const Image& image, int tile_height) {
+  OIIO::ImageSpec spec(image.width, image.height, 1, OIIO::TypeFloat);
+  spec.tile_width = 64;
+  spec.tile_height = tile_height;
+  const auto output = OIIO::ImageOutput::create("openexr");
+  ASSERT_TRUE(output && output->open(file.string(), spec)) << OIIO::geterror();
+  ASSERT_TRUE(output->write_image(OIIO::TypeFloat, image.samples.data())) << output->geterror();
+  ASSERT_TRUE(output->close());
+}
+
+TEST(ExrRows, OfTilesAreThoseOfTheImage) {
+  const test::TemporaryFolder folder;
+  const Image image = Waves(150, 130, {"Y"});
+  WriteTiled(folder / "a.exr", image, 32);
+  EXPECT_EQ(ReadExr(folder / "a.exr").samples, image.samples);
+  ExrReader reader(folder / "a.exr");
+  EXPECT_EQ(reader.Read(17, 70).samples, RowsOf(image, 17, 70).samples);
+}
+
+TEST(ExrRows, OfTilesNeedMemoryForARowOfTiles) {
+  const test::TemporaryFolder folder;
+  WriteTiled(folder / "a.exr", Waves(64, 8, {"Y"}), 1 << 16);
+  SetMemoryLimit(2000000);
+  ExrReader reader(folder / "a.exr");
+  const std::string message = test::MessageOf<UserError>([&] { reader.Read(0, 1); });
+  SetMemoryLimit(0);
+  EXPECT_THAT(message, HasSubstr("a.exr: size: found 64x65536 pixels of 1 channels"));
 }
 
 TEST(ExrRows, AreAveragedAsTheWholeIs) {
