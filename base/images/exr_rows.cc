@@ -1,6 +1,7 @@
 #include "base/images/exr_rows.h"
 
 #include <ImathBox.h>
+#include <ImathVec.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticities.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -68,17 +69,6 @@ int RowsInMemory(const Imf::Header& header, int rows) {
   return std::max(rows, static_cast<int>(most));
 }
 
-// The channel's rows from `first_row` of the file on, at `samples`.
-template <class Sample>
-Imf::Slice SliceOf(Imf::PixelType type, const Sample* samples, int left, int first_row, int width) {
-  constexpr size_t kBytes = sizeof(Sample);
-  // Where its sample (0, 0) would be, which need not be in memory.
-  const std::ptrdiff_t before = static_cast<std::ptrdiff_t>(first_row) * width + left;
-  const auto origin =
-      reinterpret_cast<std::uintptr_t>(samples) - static_cast<std::uintptr_t>(before) * kBytes;
-  return {type, reinterpret_cast<char*>(origin), kBytes, kBytes * static_cast<size_t>(width)};
-}
-
 }  // namespace
 
 void SetExrThreads(int threads) { Imf::setGlobalThreadCount(threads > 1 ? threads : 0); }
@@ -138,8 +128,9 @@ Image ExrReader::Read(int first_row, int rows) {
   const int top = window.min.y + first_row;
   Imf::FrameBuffer planes;
   for (size_t c = 0; c < channels_.size(); ++c) {
-    planes.insert(channels_[c], SliceOf(Imf::FLOAT, image.channel(static_cast<int>(c)).data(),
-                                        window.min.x, top, size.width));
+    planes.insert(channels_[c],
+                  Imf::Slice::Make(Imf::FLOAT, image.channel(static_cast<int>(c)).data(),
+                                   Imath::V2i(window.min.x, top), size.width, rows));
   }
   try {
     input_->file.setFrameBuffer(planes);
@@ -250,9 +241,9 @@ void ExrWriter::Fail(const std::string& reason) {
 void ExrWriter::WriteFloats(const Image& rows) {
   Imf::FrameBuffer planes;
   for (size_t c = 0; c < rows.channels.size(); ++c) {
-    planes.insert(
-        output_->channels[c],
-        SliceOf(Imf::FLOAT, rows.channel(static_cast<int>(c)).data(), 0, next_row_, rows.width));
+    planes.insert(output_->channels[c],
+                  Imf::Slice::Make(Imf::FLOAT, rows.channel(static_cast<int>(c)).data(),
+                                   Imath::V2i(0, next_row_), rows.width, rows.height));
   }
   output_->file->setFrameBuffer(planes);
   output_->file->writePixels(rows.height);
@@ -271,7 +262,9 @@ void ExrWriter::WriteHalves(const Image& rows) {
               .subspan(static_cast<size_t>(begin) * width, static_cast<size_t>(count) * width);
       half* to = halves.data() + c * plane;
       for (size_t i = 0; i < from.size(); ++i) to[i] = half(std::min(from[i], kLargestHalf));
-      planes.insert(output_->channels[c], SliceOf(Imf::HALF, to, 0, next_row_ + begin, rows.width));
+      planes.insert(
+          output_->channels[c],
+          Imf::Slice::Make(Imf::HALF, to, Imath::V2i(0, next_row_ + begin), rows.width, count));
     }
     output_->file->setFrameBuffer(planes);
     output_->file->writePixels(count);
