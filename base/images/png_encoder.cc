@@ -15,7 +15,10 @@ PngEncoder::PngEncoder(Sink sink)
       png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, this, &PngEncoder::Failed, nullptr)) {
   if (png_ == nullptr) throw std::bad_alloc();
   info_ = png_create_info_struct(png_);
-  if (info_ == nullptr) throw std::bad_alloc();
+  if (info_ == nullptr) {
+    png_destroy_write_struct(&png_, nullptr);
+    throw std::bad_alloc();
+  }
   png_set_write_fn(png_, this, &PngEncoder::Written, nullptr);
 }
 

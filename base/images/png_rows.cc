@@ -52,7 +52,11 @@ ImageHeader ReadPngHeader(const std::filesystem::path& file) {
   RequireImageFile(file);
   std::array<char, kBytes> head = {};
   std::ifstream stream(file, std::ios::binary);
-  if (!stream.read(head.data(), kBytes)) RejectTruncated(file, "no header");
+  constexpr size_t kSignatureBytes = 8;
+  if (!stream.read(head.data(), kBytes) ||
+      png_sig_cmp(reinterpret_cast<png_const_bytep>(head.data()), 0, kSignatureBytes) != 0) {
+    RejectTruncated(file, "no header of a PNG");
+  }
   std::vector<std::string> channels = {"Y"};
   if ((head[kColours] & PNG_COLOR_MASK_COLOR) != 0) channels = kRgbChannels;
   if ((head[kColours] & PNG_COLOR_MASK_ALPHA) != 0) channels.emplace_back("A");

@@ -195,6 +195,8 @@ TEST(ImageHeaders, AreThoseOfTheirImages) {
   EXPECT_EQ(exr.width, 7);
   EXPECT_EQ(exr.height, 5);
   EXPECT_EQ(exr.channels, (std::vector<std::string>{"R", "G", "B", "normal.X"}));
+  WriteFileAtomically(folder / "a.png", std::string(64, 'x'));
+  EXPECT_THROW(ReadPngHeader(folder / "a.png"), UserError);
   for (const auto& channels :
        {std::vector<std::string>{"Y"}, {"R", "G", "B"}, {"R", "G", "B", "A"}}) {
     for (const int bits : {8, 16}) {
@@ -208,7 +210,7 @@ TEST(ImageHeaders, AreThoseOfTheirImages) {
   }
 }
 
-// A disk that is full as the last bytes are written, where OpenEXR would say nothing.
+// A disk that fills up, as a limit on file sizes plays it.
 TEST(ExrRows, ThatDoNotFitAreAnErrorAndNotAPartOfAFile) {
   const test::TemporaryFolder folder;
   rlimit before{};
