@@ -19,7 +19,8 @@ struct RectifiedView {
   std::string photo;  // the photograph it came from, as in capture.toml's folder
   bool ldr = true;    // the photograph clips at radiance 1
   View view;
-  // Side of a texel at the sample's centre in the photograph; not known of imported pictures.
+  // Side of a texel at the sample's centre in the photograph, which was resampled; not known of
+  // imported pictures and of a fixed camera's whose pixels are the texels.
   std::optional<double> pixels_per_texel;
 };
 

@@ -63,6 +63,15 @@ Gathered Gather(const Reader& reader, int width, int height, const FilterKernel&
   return sum;
 }
 
+// A texel that is a pixel of its own. The radial kernel would not leave it as it is: at whole
+// distances its weights are not 0.
+template <class Reader>
+Gathered Take(const Reader& reader, int width, const Eigen::Vector2d& centre) {
+  const auto column = static_cast<size_t>(centre.x()), row = static_cast<size_t>(centre.y());
+  const LinearPhoto::Pixel pixel = reader.At(row * static_cast<size_t>(width) + column);
+  return {{pixel.rgb[0], pixel.rgb[1], pixel.rgb[2]}, 1, pixel.saturated};
+}
+
 // Image points of the texel centres of a tile and of one texel around it, for differences.
 class TileGrid {
  public:
@@ -115,6 +124,7 @@ class Resampler {
         plane_(plane),
         options_(options),
         kernel_(options.filter),
+        as_they_are_(TexelsArePixels(projection, plane)),
         clamps_(!photo.is_float() && (options.vignetting || options.colour ||
                                       options.gain_rgb != ResampleOptions().gain_rgb)),
         view_(view) {}
@@ -142,8 +152,9 @@ class Resampler {
         jacobian.Mirrored()) {
       return TexelStatus::kOutside;
     }
-    const Gathered sum = Gather(reader, photo_.width(), photo_.height(), kernel_,
-                                FootprintFromJacobian(jacobian), centre);
+    const Gathered sum = as_they_are_ ? Take(reader, photo_.width(), centre)
+                                      : Gather(reader, photo_.width(), photo_.height(), kernel_,
+                                               FootprintFromJacobian(jacobian), centre);
     // Only a picture smaller than the kernel's lobes can leave no weight.
     if (!(sum.weight > 1e-3)) return TexelStatus::kOutside;
     const size_t texels = view_->status.size();
@@ -170,11 +181,30 @@ class Resampler {
   const SamplePlane& plane_;
   const ResampleOptions& options_;
   const FilterKernel kernel_;
+  const bool as_they_are_;
   const bool clamps_;  // what is corrected may pass 1, where the photo clips
   ResampledView* view_;
 };
 
 }  // namespace
+
+bool TexelsArePixels(const PlaneProjection& projection, const SamplePlane& plane) {
+  // Sizes in millimetres are rounded; a twentieth of a pixel is less than filters blur by.
+  constexpr double kNear_px = 0.05;
+  const auto first = projection.ImageFromPlane(plane.x_mm(0), plane.y_mm(0));
+  if (!first) return false;
+  for (const int column : {-1, plane.width}) {
+    for (const int row : {-1, plane.height}) {
+      const auto at = projection.ImageFromPlane(plane.x_mm(column), plane.y_mm(row));
+      if (!at) return false;
+      const Eigen::Vector2d pixel = *at - Eigen::Vector2d(0.5, 0.5);
+      const Eigen::Vector2d expected = *first + Eigen::Vector2d(column, row);
+      if ((*at - expected).norm() > kNear_px) return false;
+      if ((pixel - pixel.array().round().matrix()).norm() > kNear_px) return false;
+    }
+  }
+  return true;
+}
 
 ResampledView ResampleToPlane(const LinearPhoto& photo, const PlaneProjection& projection,
                               const SamplePlane& plane, const ResampleOptions& options,

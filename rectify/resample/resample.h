@@ -43,9 +43,15 @@ struct ResampledView {
   std::vector<TexelStatus> status;  // [H·W]
 };
 
+// Whether every texel is a pixel of its own, as in a fixed camera's whole picture: the plane's
+// corners are an upright rectangle of the picture, as many pixels apart as texels, to a twentieth
+// of a pixel.
+bool TexelsArePixels(const PlaneProjection& projection, const SamplePlane& plane);
+
 // Per texel: the image of its centre, the ellipse its area covers there, and the weighted mean of
 // the linear pixel values under the kernel stretched over that ellipse. Never aliases when the
-// photo is finer than the texels, at any tilt; interpolates when it is coarser. Weights are
+// photo is finer than the texels, at any tilt; interpolates when it is coarser; takes pixels as
+// they are where TexelsArePixels. Weights are
 // normalised, so that constants stay constants; negative results (the kernel's lobes beside a
 // highlight; colours beyond Rec.709) become 0. Threaded by tiles; the result does not depend on the
 // number of threads. With `vignetting`, gains or `colour` the value is what reached the lens; a

@@ -146,7 +146,8 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
                       });
     writer.Close();
     Warn(files[i], counts);
-    view.pixels_per_texel = counts.pixels_per_texel;
+    // Not of pixels that became texels: how sharp a picture was made is its maker's.
+    if (!TexelsArePixels(projection, set.plane)) view.pixels_per_texel = counts.pixels_per_texel;
     exposures.push_back(photo.exposure);
     Json metrics = {{"name", view.name}};
     metrics.update(ToJson(counts));

@@ -20,13 +20,17 @@ SamplePlane Plane(int texels, double size_mm) {
   return plane;
 }
 
-// A picture that is a top view already, one pixel a texel.
+// A picture that is a top view already, one pixel a texel and a fraction of a pixel beside it.
 ResampledView OneToOne(const LinearPhoto& photo, FilterKind filter) {
   const SamplePlane plane = Plane(photo.width(), 1.0);
   ResampleOptions options;
   options.filter = filter;
-  return ResampleToPlane(photo, TopViewProjection(plane, photo.width(), photo.height()), plane,
-                         options);
+  options.border_px = 1;
+  Eigen::Matrix3d beside = Eigen::Matrix3d::Identity();
+  beside(0, 2) = 0.2 / plane.width;
+  const HomographyProjection top = TopViewProjection(plane, photo.width(), photo.height());
+  const MovedProjection projection(top, beside);
+  return ResampleToPlane(photo, projection, plane, options);
 }
 
 // Values of 8 bits.
@@ -238,7 +242,7 @@ TEST(Resample, EightAndSixteenBitAndFloatStorageAgree) {
 
 // One clipped pixel rules out the texels whose kernel reaches it, and no other.
 TEST(Resample, MasksWhatAClippedPixelTouches) {
-  for (const int scale : {1, 4}) {
+  for (const int scale : {2, 4}) {
     const int side = 32 * scale;
     Image image = FlatImage(side, side, 0.25f);
     const int at = 16 * scale + scale / 2;
@@ -259,6 +263,45 @@ TEST(Resample, MasksWhatAClippedPixelTouches) {
       }
     }
   }
+}
+
+// A whole picture, and a part of it that begins at a pixel.
+TEST(Resample, PixelsThatAreTexelsStayAsTheyAre) {
+  Image noise = NoiseImage(48, 5);
+  noise.channel(1)[20 * 48 + 20] = 1.0f;
+  const LinearPhoto photo(PhotoOf(noise, 8), Encoding::kGamma22);
+  for (const int side : {48, 32}) {
+    const SamplePlane plane = Plane(side, 1), whole = Plane(48, 48.0 / side);
+    const HomographyProjection projection = TopViewProjection(whole, 48, 48);
+    ASSERT_TRUE(TexelsArePixels(projection, plane));
+    const ResampledView view = ResampleToPlane(photo, projection, plane, {});
+    const int margin = (48 - side) / 2;
+    photo.Visit([&](const auto& pixels) {
+      for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+          const size_t texel = static_cast<size_t>(row) * side + column;
+          const auto pixel = pixels.At(static_cast<size_t>(row + margin) * 48 + column + margin);
+          ASSERT_EQ(view.rgb[texel], pixel.rgb[0]);
+          ASSERT_EQ(view.status[texel],
+                    pixel.saturated ? TexelStatus::kSaturated : TexelStatus::kUsable);
+        }
+      }
+    });
+  }
+}
+
+TEST(Resample, PixelsAreNoTexelsWhereTheyLieBetweenThem) {
+  const SamplePlane plane = Plane(32, 1);
+  EXPECT_TRUE(TexelsArePixels(TopViewProjection(plane, 32, 32), plane));
+  EXPECT_FALSE(TexelsArePixels(TopViewProjection(plane, 33, 33), plane));
+  EXPECT_FALSE(TexelsArePixels(TopViewProjection(plane, 64, 64), plane));
+  const HomographyProjection top = TopViewProjection(plane, 32, 32);
+  Eigen::Matrix3d moved = Eigen::Matrix3d::Identity();
+  moved(1, 2) = 0.5 / 32;
+  EXPECT_FALSE(TexelsArePixels(MovedProjection(top, moved), plane));
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
+  turned.topLeftCorner<2, 2>() << 0, -1, 1, 0;
+  EXPECT_FALSE(TexelsArePixels(MovedProjection(top, turned), plane));
 }
 
 TEST(Resample, FloatsClipOnlyWhereAsked) {
