@@ -8,6 +8,8 @@
 
 #include "base/parallel/parallel.h"
 #include "base/statistics/median.h"
+#include "calib/moving_light/gloss_likeness.h"
+#include "calib/moving_light/lamp_colours.h"
 
 namespace glint {
 namespace {
@@ -17,14 +19,10 @@ constexpr double kMostSlope = 1;
 // Scale of e beside a point's own: no surface is matte to better than this.
 constexpr double kLeastScale = 0.08;
 constexpr double kLeastCosine = 0.02;
-// Radiance that stray light and rounding to 8 bits leave uncertain: half a code at gamma 2.2.
-constexpr double kDark = 0.002;
 constexpr double kLeastRadiance = 2e-4;
-constexpr double kOfMedian = 1.4826;  // a Gaussian's standard deviation
 constexpr int kMostRounds = 60;
-constexpr double kSettled = 0.002;  // of a lamp's logarithm, in one round
-// What gloss feigns of a lamp's colour, log: two sets with a single lamp have .06 and .03 to .08.
-constexpr double kFeignedColour = 0.06;
+constexpr double kSettled = 0.002;       // of a lamp's logarithm, in one round
+constexpr double kOfDisagreement = 0.3;  // a dozen kinds of points that err together
 
 double WeightedMedian(std::vector<std::pair<double, double>>* values) {
   double total = 0;
@@ -79,6 +77,8 @@ class LampSolver {
 
   // Logarithms about their mean.
   const std::vector<double>& strengths() const { return strength_; }
+  // Logarithms, but for a common term.
+  const std::vector<double>& albedos() const { return albedo_; }
   // By lamp: how far its points lie about its strength, those of large scale less.
   std::vector<double> Disagreements() const {
     std::vector<double> by_lamp;
@@ -88,7 +88,7 @@ class LampSolver {
         if (!known_[At(v, p)]) continue;
         off.push_back(std::abs(log_[At(v, p)] - strength_[v] - albedo_[p] - ReceivedBy(v, p)));
       }
-      by_lamp.push_back(kOfMedian * Median(off));
+      by_lamp.push_back(kSdOfMedian * Median(off));
     }
     return by_lamp;
   }
@@ -109,7 +109,7 @@ class LampSolver {
       if (value < 0) return;
       const double radiance = std::max<double>(value, kLeastRadiance);
       sum += std::log(radiance) / 3;
-      noise += std::pow(std::log1p(kDark / radiance), 2) / 3;
+      noise += std::pow(std::log1p(kDarkRadiance / radiance), 2) / 3;
     }
     known_[At(v, p)] = true;
     log_[At(v, p)] = sum;
@@ -216,7 +216,7 @@ class LampSolver {
       if (!known_[At(v, p)]) continue;
       off.push_back(std::abs(log_[At(v, p)] - strength_[v] - albedo_[p] - ReceivedBy(v, p)));
     }
-    scale_[p] = kOfMedian * Median(off);
+    scale_[p] = kSdOfMedian * Median(off);
   }
 
   const LampProblem& problem_;
@@ -230,73 +230,20 @@ class LampSolver {
   std::vector<double> scale_;
 };
 
-// Ratios of one channel to green, log: medians over points and over lamps in turns, points weighted
-// by how little their colour changes. Colour does not depend on where the light is, but for gloss.
-std::vector<double> ColourRatios(const LampProblem& problem, int channel) {
-  const size_t lamps = problem.lights_mm.size(), points = problem.points_mm.size();
-  const auto c = static_cast<size_t>(channel);
-  std::vector<double> ratio(lamps * points, std::nan("")), of_lamp(lamps, 0.0);
-  std::vector<double> of_point(points, 0.0), scale(points, 1.0);
-  for (size_t v = 0; v < lamps; ++v) {
-    for (size_t p = 0; p < points; ++p) {
-      const auto& rgb = problem.radiance[v][p];
-      if (std::min({rgb[0], rgb[1], rgb[2]}) < 2 * kDark) continue;
-      ratio[v * points + p] = std::log(rgb[c] / rgb[1]);
-    }
-  }
-  constexpr int kRounds = 8;
-  constexpr double kLeastColourScale = 0.01;
-  for (int round = 0; round < kRounds; ++round) {
-    for (size_t p = 0; p < points; ++p) {
-      std::vector<double> values;
-      for (size_t v = 0; v < lamps; ++v) {
-        const double r = ratio[v * points + p];
-        if (!std::isnan(r)) values.push_back(r - of_lamp[v]);
-      }
-      of_point[p] = Median(values);
-      for (double& value : values) value = std::abs(value - of_point[p]);
-      scale[p] = values.size() < 3 ? 0 : std::hypot(kOfMedian * Median(values), kLeastColourScale);
-    }
-    for (size_t v = 0; v < lamps; ++v) {
-      std::vector<std::pair<double, double>> values;
-      for (size_t p = 0; p < points; ++p) {
-        const double r = ratio[v * points + p];
-        if (std::isnan(r) || scale[p] == 0) continue;
-        values.emplace_back(r - of_point[p], 1 / (scale[p] * scale[p]));
-      }
-      of_lamp[v] = WeightedMedian(&values);
-    }
-    const double mean =
-        std::accumulate(of_lamp.begin(), of_lamp.end(), 0.0) / static_cast<double>(lamps);
-    for (double& value : of_lamp) value -= mean;
-  }
-  return of_lamp;
-}
-
 // What single lamps differ by, of the strengths that a matte surface tells: these are a Gaussian
 // process over the directions, what gloss and the sample's tilt feign; the lamps' own; and an error
 // as large as the points disagree. The mean of the second, given their sum (Rasmussen and Williams
 // 2006, 2.25), with Cauchy's weights: one lamp may differ from all others.
-std::vector<double> OwnPart(const std::vector<Eigen::Vector3d>& directions,
+std::vector<double> OwnPart(const std::vector<Eigen::Vector3d>& lights_mm,
                             const std::vector<double>& strengths,
                             const std::vector<double>& disagreement) {
   constexpr double kFeigned = 0.5;  // gloss doubles what a sample reflects, and more
-  constexpr double kLength = 0.5;   // 29° of direction, as wide as the lobe of a roughness of .5
   constexpr double kOwn = 0.15;     // lamps of a dome, and hands that hold one
-  constexpr double kOfDisagreement = 0.3;  // a dozen kinds of points that err together
   constexpr int kRounds = 5;
   const auto n = static_cast<Eigen::Index>(strengths.size());
   Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(strengths.data(), n);
   y.array() -= y.mean();
-  Eigen::MatrixXd feigned(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const double off =
-          (directions[static_cast<size_t>(i)] - directions[static_cast<size_t>(j)]).norm() /
-          kLength;
-      feigned(i, j) = kFeigned * kFeigned * std::exp(-off * off / 2);
-    }
-  }
+  const Eigen::MatrixXd feigned = kFeigned * kFeigned * GlossLikeness(lights_mm);
   Eigen::VectorXd own = Eigen::VectorXd::Zero(n), variance = own;
   for (int round = 0; round < kRounds; ++round) {
     Eigen::MatrixXd sum = feigned;
@@ -311,14 +258,14 @@ std::vector<double> OwnPart(const std::vector<Eigen::Vector3d>& directions,
   return {own.data(), own.data() + n};
 }
 
-// Toward 0 as far as gloss may have feigned it (James and Stein 1961); returns the spread left.
-double Shrink(std::vector<double>* values) {
-  double squares = 0;
-  for (const double value : *values) squares += value * value;
-  const double variance = squares / static_cast<double>(std::max<size_t>(values->size(), 1));
-  const double left = std::max(0.0, variance - kFeignedColour * kFeignedColour);
-  for (double& value : *values) value *= variance > 0 ? left / variance : 0;
-  return std::sqrt(left);
+// About 0, red's or blue's.
+double SpreadOf(const std::vector<LampColour>& colours) {
+  double red = 0, blue = 0;
+  for (const LampColour& colour : colours) {
+    red += colour.red * colour.red;
+    blue += colour.blue * colour.blue;
+  }
+  return std::sqrt(std::max(red, blue) / static_cast<double>(colours.size()));
 }
 
 void CheckProblem(const LampProblem& problem) {
@@ -341,19 +288,19 @@ LampStrengths EstimateLampStrengths(const LampProblem& problem, int threads) {
   if (problem.lights_mm.size() < kFewest || problem.points_mm.empty()) return result;
   LampSolver solver(problem, threads);
   solver.Run();
-  std::vector<double> red = ColourRatios(problem, 0), blue = ColourRatios(problem, 2);
-  result.colour_sd = std::max(Shrink(&red), Shrink(&blue));
   result.point_sd = solver.point_sd();
-  std::vector<Eigen::Vector3d> directions;
-  for (const Eigen::Vector3d& light : problem.lights_mm) directions.push_back(light.normalized());
-  const std::vector<double> own = OwnPart(directions, solver.strengths(), solver.Disagreements());
+  const std::vector<double> own =
+      OwnPart(problem.lights_mm, solver.strengths(), solver.Disagreements());
+  const std::vector<LampColour> colours = EstimateLampColours(problem, solver.albedos(), threads);
   for (size_t v = 0; v < result.lamps.size(); ++v) {
     LampStrength& lamp = result.lamps[v];
     lamp.exposure = std::exp(own[v]);
-    const double mean = (red[v] + blue[v]) / 3;
-    lamp.colour = {std::exp(red[v] - mean), std::exp(-mean), std::exp(blue[v] - mean)};
+    const auto& [red, blue] = colours[v];
+    const double mean = (red + blue) / 3;
+    lamp.colour = {std::exp(red - mean), std::exp(-mean), std::exp(blue - mean)};
     lamp.used_share = solver.used_share(v);
   }
+  result.colour_sd = SpreadOf(colours);
   return result;
 }
 

@@ -19,18 +19,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
-namespace glint {
+#include "calib/moving_light/lamp_problem.h"
 
-// Radiance at points of the sample in every photograph.
-struct LampProblem {
-  std::vector<Eigen::Vector3d> points_mm;  // on the sample
-  std::vector<Eigen::Vector3d> lights_mm;  // by photograph, in the sample's frame
-  // By photograph, then point: linear R, G, B; a channel below 0: clipped, or not seen.
-  std::vector<std::vector<std::array<float, 3>>> radiance;
-};
+namespace glint {
 
 struct LampStrength {
   double exposure = 1;              // relative to the mean (of logarithms) of all
