@@ -357,12 +357,18 @@ class FixedCamera {
   void SetStrengths(const LampProblem& lamps) {
     Calibration& calibration = summary_.calibration;
     calibration.fixed_camera = true;
-    calibration.light_power_known = false;
     calibration.ambient_rgb = Eigen::Vector3d(capture_.ambient.data());
-    // That of a white surface which reaches 0.8; refined later.
-    calibration.light_rgb.setConstant(0.8 * std::numbers::pi * lamps.lights_mm[0].squaredNorm());
+    const Eigen::Vector3d given(capture_.light_power.data());
+    calibration.light_power_known = given.maxCoeff() > 0;
+    calibration.light_rgb = given;
+    if (!calibration.light_power_known) {
+      // That of a white surface which reaches 0.8; refined later.
+      calibration.light_rgb.setConstant(0.8 * std::numbers::pi * lamps.lights_mm[0].squaredNorm());
+    }
     if (options_.light != "board") return;  // nominal: all alike, or by EXIF
     summary_.lamps = EstimateLampStrengths(lamps, threads_);
+    // Exposures are those of the first photograph's light; what is given is the mean lamp's power.
+    if (calibration.light_power_known) calibration.light_rgb *= summary_.lamps.lamps[0].exposure;
     for (size_t i = 0; i < calibration.photos.size(); ++i) {
       const LampStrength& lamp = summary_.lamps.lamps[i];
       const LampStrength& first = summary_.lamps.lamps[0];

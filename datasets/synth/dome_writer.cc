@@ -143,11 +143,22 @@ std::string PictureName(size_t index, const std::string& format) {
   return fmt::format("light_{:03}.{}", index, format);
 }
 
+// The mean (of logarithms) of all lamps and channels, radiance times mm².
+double MeanPower(const std::vector<Lamp>& lamps, const DomeOptions& options) {
+  double sum = 0;
+  for (const Lamp& lamp : lamps) {
+    for (const double power : ViewOf(options, lamp).light_rgb) sum += std::log(power) / 3;
+  }
+  return std::exp(sum / static_cast<double>(lamps.size()));
+}
+
 void WriteTruth(const fs::path& folder, const std::vector<Lamp>& lamps,
-                const MaterialSource& material, const DomeOptions& options) {
+                const MaterialSource& material, const DomeOptions& options, double exposure) {
   fs::create_directories(folder);
   WriteSvbrdf(folder / "svbrdf.exr", material.maps, ReflectanceConvention::Photograph());
-  Json json = {{"sample_mm", options.sample_mm}, {"lights", Json::array()}};
+  Json json = {{"sample_mm", options.sample_mm},
+               {"power", exposure * MeanPower(lamps, options)},
+               {"lights", Json::array()}};
   for (size_t i = 0; i < lamps.size(); ++i) {
     const Lamp& lamp = lamps[i];
     json["lights"].push_back(
@@ -194,7 +205,7 @@ void WriteDome(const fs::path& folder, const MaterialSource& material, const Dom
                         lamps[i].told.z());
   }
   WriteFileAtomically(folder / "dirs.lp", list);
-  WriteTruth(folder / "truth", lamps, material, options);
+  WriteTruth(folder / "truth", lamps, material, options, exposure);
 }
 
 }  // namespace glint

@@ -3,7 +3,8 @@
 //
 //   OUT/light_000.jpg … (or .png)   OUT/dirs.lp
 //   OUT/truth/svbrdf.exr            the sample's maps
-//   OUT/truth/lights.json           where each lamp really was, its strength and colour
+//   OUT/truth/lights.json           where each lamp really was, its strength and colour; the mean
+//                                   lamp's power, as [light] power takes it
 #pragma once
 
 #include <cstdint>

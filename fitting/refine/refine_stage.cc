@@ -178,8 +178,8 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStart& start,
                          const RefineStageOptions& options) {
   RefineOptions refine = options.refine;
   refine.kinds.metal_share = MetalShareOf(start.metals);
-  if (set.light_power_known) return refine;
-  refine.kinds.light_power_spread = options.light_power_spread;
+  if (!set.light_power_known) refine.kinds.light_power_spread = options.light_power_spread;
+  if (set.light_power_known && !set.fixed_camera) return refine;
   refine.exposure_spread = options.exposure_spread;
   refine.residual_sigma = options.residual_sigma;
   // Directions are those that were measured, on a dome or a ball; lamps differ in strength.
