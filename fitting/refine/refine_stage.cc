@@ -250,6 +250,7 @@ struct Sample {
  private:
   SampleEstimate EstimateCorrected(int threads) {
     if (correction.taken) source.Correct(correction.corrections);
+    if (set.fixed_camera) source.MaskShadows(threads);
     return EstimateFrom(options, threads, &source);
   }
 };

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/resampling/resampling.h"
+#include "fitting/photographs/cast_shadows.h"
 #include "fitting/refine/correct_views.h"
 
 namespace glint {
@@ -41,7 +42,19 @@ RefineProblem SampleSource::Part::Problem() const {
 
 void SampleSource::Correct(ViewCorrections corrections) { corrections_ = std::move(corrections); }
 
+void SampleSource::MaskShadows(int threads) {
+  constexpr int kSide = 256;  // of the texels that tell the relief's slopes
+  const int stride = std::max(1, std::max(plane().width, plane().height) / kSide);
+  relief_slope_sd_ = ReliefSlopeSd(Every(stride, threads).photographs, threads);
+}
+
 PhotographSet SampleSource::PhotographRows(int first_row, int rows, int threads) {
+  PhotographSet set = CorrectedRows(first_row, rows, threads);
+  MaskCastShadows(relief_slope_sd_, threads, &set);
+  return set;
+}
+
+PhotographSet SampleSource::CorrectedRows(int first_row, int rows, int threads) {
   if (corrections_.views.empty()) return photographs_.Rows(first_row, rows, threads);
   const int reached = RowsReached(corrections_);
   const int above = std::min(first_row, reached);

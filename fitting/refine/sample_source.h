@@ -34,6 +34,9 @@ class SampleSource {
   };
   // From now on Rows() and Every() give photographs as the corrections say.
   void Correct(ViewCorrections corrections);
+  // From now on Rows() and Every() give photographs without texels that the sample's own relief
+  // hides from the light (cast_shadows.h). For lights that were moved.
+  void MaskShadows(int threads);
 
   // With views alone, as said.
   PhotographSet Views() const { return photographs_.WithoutPixels(); }
@@ -46,12 +49,14 @@ class SampleSource {
 
  private:
   PhotographSet PhotographRows(int first_row, int rows, int threads);
+  PhotographSet CorrectedRows(int first_row, int rows, int threads);
 
   std::filesystem::path maps_file_;
   ResampledSvbrdf maps_;
   std::optional<ResampledDeviations> deviations_;
   RectifiedPhotographs photographs_;
   ViewCorrections corrections_;  // no views: none
+  double relief_slope_sd_ = 0;   // 0: shadows stay
 };
 
 }  // namespace glint

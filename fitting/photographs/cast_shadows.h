@@ -1,0 +1,30 @@
+// Texels of a relief that another part of it hides from a low light.
+//
+// A matte surface shows y_v = I_v/E_v = b·l_v, with b its albedo times its normal (Woodham 1980).
+// b is solved for each texel, from the high half of the lights first, then from all, with Cauchy's
+// weights and the scale s of the texel's own residuals: gloss and shadows are outliers. The texel
+// lies in shadow under light v with the odds
+//
+//   π_v N₊(q; 0, 0.2²) / ((1 − π_v) Cauchy(q − 1; s)),   q = y_v / b·l_v,
+//
+// where indirect light leaves some of what it would receive. π_v is how often a Gaussian surface of
+// the relief's slopes hides a light that is so low (Smith, "Geometrical shadowing of a random rough
+// surface", IEEE Trans. Antennas Propag. 1967): a level sample casts none, whatever is dark.
+#pragma once
+
+#include "fitting/photographs/photographs.h"
+
+namespace glint {
+
+// Standard deviation of a slope along one axis over the sample's texels, from at most 16,384 of
+// them; 0 where they have fewer than eight photographs. Of photographs of all rows.
+double ReliefSlopeSd(const PhotographSet& set, int threads);
+
+// Takes texels in shadow out of the photographs' masks. Each texel by itself: rows may be some of
+// the sample's. Fewer than eight photographs stay as they are.
+void MaskCastShadows(double relief_slope_sd, int threads, PhotographSet* set);
+
+// π above, of a light whose elevation has this tangent.
+double ShadowedShare(double elevation_tangent, double relief_slope_sd);
+
+}  // namespace glint
