@@ -1,5 +1,6 @@
 // A synthetic dome from photographs to refined maps: the lamps' strengths are found, and what
 // cannot be used is told.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +13,7 @@
 #include "base/formats/calibration.h"
 #include "base/formats/manifest.h"
 #include "base/formats/rectified_set.h"
+#include "base/formats/svbrdf_file.h"
 #include "tests/calib/testing/synthetic_capture.h"
 
 namespace glint {
@@ -102,6 +104,14 @@ std::string FromBelow(const std::string& line) {
   return line.substr(0, z) + "-" + line.substr(z);
 }
 
+double MeanDiffuse(const SvbrdfMaps& maps) {
+  double sum = 0;
+  for (int c = 0; c < 3; ++c) {
+    for (const float value : maps.plane(kDiffuseR + c)) sum += value;
+  }
+  return sum;
+}
+
 double Correlation(const std::vector<double>& a, const std::vector<double>& b) {
   double mean_a = 0, mean_b = 0, aa = 0, ab = 0, bb = 0;
   for (size_t i = 0; i < a.size(); ++i) {
@@ -151,6 +161,28 @@ TEST_F(FixedCamera, StrengthsOfLampsAreFoundThoseOfHeldOutPhotographsToo) {
   for (const auto& [name, correction] : Corrections()) {
     EXPECT_EQ(correction.value("held_out", false), name == "view_003") << name;
   }
+}
+
+// The scale that nothing else tells: how dark the sample is.
+TEST_F(FixedCamera, PowerThatIsStatedIsTheMeanLampsAndSetsAlbedos) {
+  const Json truth = ReadJsonFile(capture_ / "truth/lights.json", "");
+  const double power = truth["power"].get<double>();
+  std::string toml = test::ReadAll(capture_ / "capture.toml");
+  const size_t at = toml.find("# power = 30000");
+  ASSERT_NE(at, std::string::npos);
+  toml.replace(at, std::string("# power = 30000").size(), fmt::format("power = {:.6g}", power));
+  test::WriteAll(capture_ / "capture.toml", toml);
+  Run({});
+  const Calibration calibration = Calibrated();
+  EXPECT_TRUE(calibration.light_power_known);
+  double mean = 0;
+  for (const CalibratedPhoto& photo : calibration.photos) {
+    mean += std::log(calibration.light_rgb[1] * photo.exposure) / kLights;
+  }
+  EXPECT_NEAR(mean, std::log(power), 1e-6);
+  const SvbrdfMaps found = ReadSvbrdf(capture_ / "glint/refine/svbrdf.exr");
+  const SvbrdfMaps expected = ReadSvbrdf(capture_ / "truth/svbrdf.exr");
+  EXPECT_NEAR(MeanDiffuse(found) / MeanDiffuse(expected), 1, 0.1);
 }
 
 TEST_F(FixedCamera, CalibrationTakesTheDirectionsThatAreGiven) {
