@@ -124,7 +124,6 @@ class Resampler {
         plane_(plane),
         options_(options),
         kernel_(options.filter),
-        as_they_are_(TexelsArePixels(projection, plane)),
         clamps_(!photo.is_float() && (options.vignetting || options.colour ||
                                       options.gain_rgb != ResampleOptions().gain_rgb)),
         view_(view) {}
@@ -152,9 +151,10 @@ class Resampler {
         jacobian.Mirrored()) {
       return TexelStatus::kOutside;
     }
-    const Gathered sum = as_they_are_ ? Take(reader, photo_.width(), centre)
-                                      : Gather(reader, photo_.width(), photo_.height(), kernel_,
-                                               FootprintFromJacobian(jacobian), centre);
+    const Gathered sum = options_.pixels_as_they_are
+                             ? Take(reader, photo_.width(), centre)
+                             : Gather(reader, photo_.width(), photo_.height(), kernel_,
+                                      FootprintFromJacobian(jacobian), centre);
     // Only a picture smaller than the kernel's lobes can leave no weight.
     if (!(sum.weight > 1e-3)) return TexelStatus::kOutside;
     const size_t texels = view_->status.size();
@@ -181,7 +181,6 @@ class Resampler {
   const SamplePlane& plane_;
   const ResampleOptions& options_;
   const FilterKernel kernel_;
-  const bool as_they_are_;
   const bool clamps_;  // what is corrected may pass 1, where the photo clips
   ResampledView* view_;
 };

@@ -21,6 +21,8 @@ struct ResampleOptions {
   // inside.
   double border_px = 1e-3;
   int threads = 1;  // never changes a value
+  // Every texel is the pixel under its centre: of planes of which TexelsArePixels() holds.
+  bool pixels_as_they_are = false;
   // The lens's fall-off, which is divided out; its principal point and size are those of the photo.
   std::optional<Camera> vignetting;
   // What R, G, B are multiplied by: a white balance that changed between photographs.
@@ -43,7 +45,7 @@ struct ResampledView {
   std::vector<TexelStatus> status;  // [H·W]
 };
 
-// Whether every texel is a pixel of its own, as in a fixed camera's whole picture: the plane's
+// Whether every texel is a pixel of its own, as in a fixed camera's whole picture: the whole plane's
 // corners are an upright rectangle of the picture, as many pixels apart as texels, to a twentieth
 // of a pixel.
 bool TexelsArePixels(const PlaneProjection& projection, const SamplePlane& plane);
@@ -51,7 +53,7 @@ bool TexelsArePixels(const PlaneProjection& projection, const SamplePlane& plane
 // Per texel: the image of its centre, the ellipse its area covers there, and the weighted mean of
 // the linear pixel values under the kernel stretched over that ellipse. Never aliases when the
 // photo is finer than the texels, at any tilt; interpolates when it is coarser; takes pixels as
-// they are where TexelsArePixels. Weights are
+// they are where asked to. Weights are
 // normalised, so that constants stay constants; negative results (the kernel's lobes beside a
 // highlight; colours beyond Rec.709) become 0. Threaded by tiles; the result does not depend on the
 // number of threads. With `vignetting`, gains or `colour` the value is what reached the lens; a

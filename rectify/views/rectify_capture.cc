@@ -135,6 +135,8 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     if (camera.vignetting != std::array<double, 3>{}) resample.vignetting = camera;
     for (int c = 0; c < 3; ++c) resample.gain_rgb[c] = 1 / calibrated.white_balance_rgb[c];
     resample.colour = calibration.colour_correction;
+    resample.pixels_as_they_are =
+        calibration.fixed_camera && TexelsArePixels(projection, set.plane);
     RectifiedWriter writer(stage->Output(view.file), set, view);
     guess.BeginView();
     const ViewCounts counts =
@@ -147,7 +149,7 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     writer.Close();
     Warn(files[i], counts);
     // Not of pixels that became texels: how sharp a picture was made is its maker's.
-    if (!TexelsArePixels(projection, set.plane)) view.pixels_per_texel = counts.pixels_per_texel;
+    if (!resample.pixels_as_they_are) view.pixels_per_texel = counts.pixels_per_texel;
     exposures.push_back(photo.exposure);
     Json metrics = {{"name", view.name}};
     metrics.update(ToJson(counts));

@@ -69,7 +69,7 @@ TEST(LampStrengths, LampsThatAreAlikeAreFoundToBe) {
     EXPECT_LT((lamp.colour - Eigen::Vector3d::Ones()).norm(), 0.01);
     EXPECT_GT(lamp.used_share, 0.99);
   }
-  EXPECT_NEAR(found.colour_sd, 0, 1e-4);
+  EXPECT_NEAR(found.colour_sd, 0, 1e-5);
 }
 
 TEST(LampStrengths, LampThatDiffersFromAllOthersIsFound) {
