@@ -14,13 +14,13 @@
 namespace glint {
 namespace {
 
-constexpr size_t kFewest = 8;         // photographs that tell a shadow from relief
-constexpr double kIndirect = 0.2;     // of what a texel would receive, that it does in shadow
-constexpr double kLeastScale = 0.05;  // of the residuals of a matte texel, by its albedo
-constexpr double kGrazing = 0.05;     // cosine; a texel turned farther away is dark by itself
-constexpr int kRounds = 3;            // of weights, each of high lights and of all
-constexpr double kMostSlope = 1;
-constexpr size_t kMostForSlopes = 16384;
+constexpr size_t kFewest = 8;             // photographs that tell a shadow from relief
+constexpr double kIndirect = 0.2;         // of what a texel would receive, that it does in shadow
+constexpr double kLeastScale = 0.05;      // of the residuals of a matte texel, by its albedo
+constexpr double kGrazing = 0.05;         // cosine; a texel turned farther away is dark by itself
+constexpr int kRounds = 3;                // of weights, each of high lights and of all
+constexpr double kMostSlope = 1;          // that one texel counts with
+constexpr size_t kMostForSlopes = 16384;  // texels: their mean square to a hundredth
 
 // What one texel shows under each light.
 struct Seen {
@@ -202,8 +202,7 @@ void MaskCastShadows(double relief_slope_sd, int threads, PhotographSet* set) {
       for (const Seen& seen : texel.seen()) {
         const float expected = texel.Expected(seen);
         if (expected < kGrazing * texel.albedo()) continue;
-        const double scale = texel.scale();
-        if (InShadow(seen.value / expected, scale, share[seen.view])) {
+        if (InShadow(seen.value / expected, texel.scale(), share[seen.view])) {
           set->photographs[seen.view].mask[at] = 0.0f;
         }
       }
