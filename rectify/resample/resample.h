@@ -45,9 +45,9 @@ struct ResampledView {
   std::vector<TexelStatus> status;  // [H·W]
 };
 
-// Whether every texel is a pixel of its own, as in a fixed camera's whole picture: the whole plane's
-// corners are an upright rectangle of the picture, as many pixels apart as texels, to a twentieth
-// of a pixel.
+// Whether every texel is a pixel of its own, as in a fixed camera's whole picture: the whole
+// plane's corners are an upright rectangle of the picture, as many pixels apart as texels, to a
+// twentieth of a pixel.
 bool TexelsArePixels(const PlaneProjection& projection, const SamplePlane& plane);
 
 // Per texel: the image of its centre, the ellipse its area covers there, and the weighted mean of
