@@ -17,7 +17,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 43;
+inline constexpr int kRefineVersion = 44;
 
 struct RefineStageOptions {
   RefineOptions refine;

@@ -1,10 +1,11 @@
 #include "fitting/refine/sample_source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "base/parallel/parallel.h"
 #include "base/resampling/resampling.h"
-#include "fitting/photographs/cast_shadows.h"
 #include "fitting/refine/correct_views.h"
 
 namespace glint {
@@ -42,15 +43,53 @@ RefineProblem SampleSource::Part::Problem() const {
 
 void SampleSource::Correct(ViewCorrections corrections) { corrections_ = std::move(corrections); }
 
+// Larger maps have heights for blocks of texels: initial maps are no finer (fit's --finest-size).
+HidingRelief SampleSource::ReliefOfMaps(int threads) {
+  constexpr int kMostSide = 512;
+  const int stride = (std::max(plane().width, plane().height) + kMostSide - 1) / kMostSide;
+  SamplePlane coarse = plane();
+  coarse.width = std::max(1, coarse.width / stride);
+  coarse.height = std::max(1, coarse.height / stride);
+  const SvbrdfMaps maps =
+      ResampledSvbrdf(maps_file_, coarse.width, coarse.height).Read(0, coarse.height);
+  HidingRelief relief{Horizon(IntegrateNormals(maps, coarse, 0, {}, threads), coarse), 0};
+  const double slope_sd = ReliefSlopeSd(Every(stride, threads).photographs, threads);
+  relief.finer_slope_sd =
+      std::sqrt(std::max(0.0, slope_sd * slope_sd - relief.horizon.slope_variance()));
+  return relief;
+}
+
 void SampleSource::MaskShadows(int threads) {
-  constexpr int kSide = 256;  // of the texels that tell the relief's slopes
-  const int stride = std::max(1, std::max(plane().width, plane().height) / kSide);
-  relief_slope_sd_ = ReliefSlopeSd(Every(stride, threads).photographs, threads);
+  const HidingRelief relief = ReliefOfMaps(threads);
+  const size_t width = static_cast<size_t>(plane().width);
+  std::vector<std::vector<bool>> shadows(
+      Views().photographs.size(),
+      std::vector<bool>(width * static_cast<size_t>(plane().height), false));
+  for (int first = 0; first < plane().height; first += kRowsAtOnce) {
+    PhotographSet set =
+        CorrectedRows(first, std::min(kRowsAtOnce, plane().height - first), threads);
+    MaskCastShadows(relief, threads, &set);
+    ForEachPiece(static_cast<int>(shadows.size()), threads, [&](int piece) {
+      const auto view = static_cast<size_t>(piece);
+      const std::vector<float>& mask = set.photographs[view].mask;
+      for (size_t t = 0; t < mask.size(); ++t) {
+        shadows[view][width * static_cast<size_t>(first) + t] = mask[t] == 0;
+      }
+    });
+  }
+  shadows_ = std::move(shadows);
 }
 
 PhotographSet SampleSource::PhotographRows(int first_row, int rows, int threads) {
   PhotographSet set = CorrectedRows(first_row, rows, threads);
-  MaskCastShadows(relief_slope_sd_, threads, &set);
+  const size_t first = static_cast<size_t>(first_row) * static_cast<size_t>(plane().width);
+  ForEachPiece(static_cast<int>(shadows_.size()), threads, [&](int piece) {
+    const auto view = static_cast<size_t>(piece);
+    std::vector<float>& mask = set.photographs[view].mask;
+    for (size_t t = 0; t < mask.size(); ++t) {
+      if (shadows_[view][first + t]) mask[t] = 0.0f;
+    }
+  });
   return set;
 }
 

@@ -11,6 +11,7 @@
 #include "base/reflectance/svbrdf_maps.h"
 #include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/refine/refine.h"
+#include "fitting/shadows/cast_shadows.h"
 #include "fitting/view_correction/view_correction.h"
 
 namespace glint {
@@ -34,8 +35,8 @@ class SampleSource {
   };
   // From now on Rows() and Every() give photographs as the corrections say.
   void Correct(ViewCorrections corrections);
-  // From now on Rows() and Every() give photographs without texels that the sample's own relief
-  // hides from the light (cast_shadows.h). For lights that were moved.
+  // From now on Rows() and Every() give photographs without texels that the sample's own relief, as
+  // the initial maps have it, hides from the light (cast_shadows.h). For lights that were moved.
   void MaskShadows(int threads);
 
   // With views alone, as said.
@@ -50,13 +51,15 @@ class SampleSource {
  private:
   PhotographSet PhotographRows(int first_row, int rows, int threads);
   PhotographSet CorrectedRows(int first_row, int rows, int threads);
+  HidingRelief ReliefOfMaps(int threads);
 
   std::filesystem::path maps_file_;
   ResampledSvbrdf maps_;
   std::optional<ResampledDeviations> deviations_;
   RectifiedPhotographs photographs_;
   ViewCorrections corrections_;  // no views: none
-  double relief_slope_sd_ = 0;   // 0: shadows stay
+  // By photograph, of all texels: those in shadow. Empty: none.
+  std::vector<std::vector<bool>> shadows_;
 };
 
 }  // namespace glint

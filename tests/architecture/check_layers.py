@@ -18,7 +18,7 @@ LAYERS = {
     "triage colmap guidance capture",
     "rectify": "resample views",
     "fitting": "encoding weights photographs layers render autoencoder estimator rectified_photographs relief "
-    "initial_maps latent texel view_correction refine tiling",
+    "shadows initial_maps latent texel view_correction refine tiling",
     "datasets": "procedural material_pack map_formats import synth statistics looks evaluation",
     "training": "",
     "pipeline": "driver export viewer report overview studio",

@@ -1,4 +1,4 @@
-#include "fitting/photographs/cast_shadows.h"
+#include "fitting/shadows/cast_shadows.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -14,12 +14,13 @@
 namespace glint {
 namespace {
 
-constexpr size_t kFewest = 8;             // photographs that tell a shadow from relief
-constexpr double kIndirect = 0.2;         // of what a texel would receive, that it does in shadow
-constexpr double kLeastScale = 0.05;      // of the residuals of a matte texel, by its albedo
-constexpr double kGrazing = 0.05;         // cosine; a texel turned farther away is dark by itself
-constexpr int kRounds = 3;                // of weights, each of high lights and of all
-constexpr double kMostSlope = 1;          // that one texel counts with
+constexpr size_t kFewest = 8;         // photographs that tell a shadow from relief
+constexpr double kIndirect = 0.2;     // of what a texel would receive, that it does in shadow
+constexpr double kLeastScale = 0.05;  // of the residuals of a matte texel, by its albedo
+constexpr double kGrazing = 0.05;     // cosine; a texel turned farther away is dark by itself
+constexpr double kMostSure = 0.99;    // of a shadow, by heights alone: initial maps may be wrong
+constexpr int kRounds = 3;            // of weights, each of high lights and of all
+constexpr double kMostSlope = 1;      // that one texel counts with
 constexpr size_t kMostForSlopes = 16384;  // texels: their mean square to a hundredth
 
 // What one texel shows under each light.
@@ -59,6 +60,11 @@ class MatteTexel {
 
   const std::vector<Seen>& seen() const { return seen_; }
   float Expected(const Seen& seen) const { return normal_.dot(seen.light); }
+  bool IsTurnedAway(const Seen& seen) const {
+    return Expected(seen) < static_cast<float>(kGrazing) * albedo();
+  }
+  // What it shows of what is expected.
+  float Share(const Seen& seen) const { return seen.value / std::max(Dark(), Expected(seen)); }
   float albedo() const { return normal_.norm(); }
   const Eigen::Vector3f& normal() const { return normal_; }  // times the albedo
   // By how much it departs from what is expected, relative to that, and the scale of such.
@@ -186,24 +192,28 @@ double ReliefSlopeSd(const PhotographSet& set, int threads) {
   return known > 0 ? std::sqrt(squares / (2 * known)) : 0;
 }
 
-void MaskCastShadows(double relief_slope_sd, int threads, PhotographSet* set) {
-  if (set->photographs.size() < kFewest || !(relief_slope_sd > 0)) return;
+void MaskCastShadows(const HidingRelief& relief, int threads, PhotographSet* set) {
+  if (set->photographs.size() < kFewest) return;
   const std::vector<size_t> order = HighestFirst(*set);
-  std::vector<double> share;
+  std::vector<double> by_finer;
   for (const Photograph& photograph : set->photographs) {
-    share.push_back(ShadowedShare(ElevationTangent(photograph.view), relief_slope_sd));
+    by_finer.push_back(ShadowedShare(ElevationTangent(photograph.view), relief.finer_slope_sd));
   }
-  const size_t texels = static_cast<size_t>(set->plane.width) * set->plane.height;
-  ForEachBlock(static_cast<int>(texels), 1024, threads, [&](int begin, int end) {
+  const SamplePlane& plane = set->plane;
+  ForEachBlock(plane.width * plane.height, 1024, threads, [&](int begin, int end) {
     MatteTexel texel(*set, order);
     for (int i = begin; i < end; ++i) {
-      const auto at = static_cast<size_t>(i);
-      if (!texel.Solve(at)) continue;
+      if (!texel.Solve(static_cast<size_t>(i))) continue;
+      const double x_mm = plane.x_mm(i % plane.width), y_mm = plane.y_mm(i / plane.width);
       for (const Seen& seen : texel.seen()) {
-        const float expected = texel.Expected(seen);
-        if (expected < kGrazing * texel.albedo()) continue;
-        if (InShadow(seen.value / expected, texel.scale(), share[seen.view])) {
-          set->photographs[seen.view].mask[at] = 0.0f;
+        Photograph& photograph = set->photographs[seen.view];
+        const double by_heights =
+            relief.horizon.HiddenShare(x_mm, y_mm, photograph.view.light_in_sample_mm);
+        // What is finer hides lit texels; one that is turned away is dark by itself.
+        const double by_what_is_finer = texel.IsTurnedAway(seen) ? 0 : by_finer[seen.view];
+        const double hidden = std::min(kMostSure, by_heights + (1 - by_heights) * by_what_is_finer);
+        if (InShadow(texel.Share(seen), texel.scale(), hidden)) {
+          photograph.mask[static_cast<size_t>(i)] = 0.0f;
         }
       }
     }

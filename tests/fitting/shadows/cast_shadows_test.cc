@@ -1,6 +1,6 @@
 // Shadows that a relief casts are told from dark texels, from texels that are turned away, and from
 // gloss.
-#include "fitting/photographs/cast_shadows.h"
+#include "fitting/shadows/cast_shadows.h"
 
 #include <gtest/gtest.h>
 
@@ -85,6 +85,13 @@ class CastShadows : public ::testing::Test {
     return masked;
   }
 
+  // All the relief is finer than the maps that are known of it.
+  HidingRelief Unresolved(double slope_sd) const {
+    const HeightField level{kSide, kSide, 100.0 / kSide, 100.0 / kSide,
+                            std::vector<float>(kTexels, 0.0f)};
+    return {Horizon(level, set_.plane), slope_sd};
+  }
+
   PhotographSet set_;
   std::vector<Normal> normals_;
 };
@@ -99,7 +106,7 @@ TEST_F(CastShadows, SlopesOfTheReliefAreFound) {
 TEST_F(CastShadows, AreTakenOutAndLittleElse) {
   Make(0.25);
   Hide();
-  MaskCastShadows(ReliefSlopeSd(set_, 2), 2, &set_);
+  MaskCastShadows(Unresolved(ReliefSlopeSd(set_, 2)), 2, &set_);
   size_t hidden = 0, found = 0, wrong = 0, lit = 0;
   for (const Photograph& photograph : set_.photographs) {
     for (size_t t = 0; t < kTexels; ++t) {
@@ -117,7 +124,7 @@ TEST_F(CastShadows, AreTakenOutAndLittleElse) {
 // A relief that faces away from a light is dark by itself, which tells its normals.
 TEST_F(CastShadows, TexelsThatAreTurnedAwayStay) {
   Make(0.3);
-  MaskCastShadows(ReliefSlopeSd(set_, 2), 2, &set_);
+  MaskCastShadows(Unresolved(ReliefSlopeSd(set_, 2)), 2, &set_);
   EXPECT_EQ(Masked(), 0u);
 }
 
@@ -132,7 +139,7 @@ TEST_F(CastShadows, GlossIsNone) {
       SetRadiance(Lit(photograph.view, t) + gloss, t, &photograph);
     }
   }
-  MaskCastShadows(ReliefSlopeSd(set_, 2), 2, &set_);
+  MaskCastShadows(Unresolved(ReliefSlopeSd(set_, 2)), 2, &set_);
   EXPECT_LT(static_cast<double>(Masked()), 0.002 * kTexels * kLights);
 }
 
@@ -140,7 +147,63 @@ TEST_F(CastShadows, GlossIsNone) {
 TEST_F(CastShadows, LevelSampleCastsNone) {
   Make(0.01);
   Hide();
-  MaskCastShadows(0.01, 1, &set_);
+  MaskCastShadows(Unresolved(0.01), 1, &set_);
+  EXPECT_EQ(Masked(), 0u);
+}
+
+// A metal is dark wherever its highlight is not: only the relief's heights tell its shadows.
+TEST_F(CastShadows, OfAMetalsRidgeAreFoundByItsHeights) {
+  Make(0);
+  HeightField ridge{kSide, kSide, 100.0 / kSide, 100.0 / kSide, std::vector<float>(kTexels, 0.0f)};
+  constexpr int kRidge = 14;
+  for (int row = 0; row < kSide; ++row) {
+    ridge.height_mm[static_cast<size_t>(row) * kSide + kRidge] = 8;
+  }
+  const HidingRelief relief{Horizon(ridge, set_.plane), 0};
+  const auto hidden = [&](const Photograph& photograph, size_t t) {
+    return relief.horizon.HiddenShare(set_.plane.x_mm(static_cast<int>(t) % kSide),
+                                      set_.plane.y_mm(static_cast<int>(t) / kSide),
+                                      photograph.view.light_in_sample_mm);
+  };
+  for (Photograph& photograph : set_.photographs) {
+    const Vec3d& light = photograph.view.light_in_sample_mm;
+    const double off = std::hypot(light[0], light[1]) / 1000;
+    const auto lobe = static_cast<float>(0.01 + 2 * std::exp(-off * off / (2 * 0.3 * 0.3)));
+    for (size_t t = 0; t < kTexels; ++t) {
+      SetRadiance(hidden(photograph, t) > 0.5 ? 0 : lobe, t, &photograph);
+    }
+  }
+  PhotographSet by_gloss_alone = set_;
+  MaskCastShadows(relief, 2, &set_);
+  MaskCastShadows(Unresolved(0), 2, &by_gloss_alone);
+  size_t in_shadow = 0, found = 0, lit = 0, wrong = 0;
+  for (const Photograph& photograph : set_.photographs) {
+    for (size_t t = 0; t < kTexels; ++t) {
+      const double share = hidden(photograph, t);
+      const bool masked = photograph.mask[t] == 0;
+      if (share > 0.99) {
+        ++in_shadow;
+        found += masked;
+      } else if (share < 0.01) {
+        ++lit;
+        wrong += masked;
+      }
+    }
+  }
+  ASSERT_GT(in_shadow, 200u);
+  EXPECT_GT(static_cast<double>(found), 0.98 * static_cast<double>(in_shadow));
+  EXPECT_LT(static_cast<double>(wrong), 0.01 * static_cast<double>(lit));
+  for (const Photograph& photograph : by_gloss_alone.photographs) {
+    EXPECT_EQ(photograph.mask, std::vector<float>(kTexels, 1.0f));
+  }
+}
+
+// What is bright is lit, whatever the heights say: those of initial maps may be wrong.
+TEST_F(CastShadows, MatteTexelsThatAreBrightAreLit) {
+  Make(0.05);
+  HeightField wrong{kSide, kSide, 100.0 / kSide, 100.0 / kSide, std::vector<float>(kTexels, 0.0f)};
+  for (int row = 0; row < kSide; ++row) wrong.height_mm[static_cast<size_t>(row) * kSide + 12] = 30;
+  MaskCastShadows({Horizon(wrong, set_.plane), 0}, 2, &set_);
   EXPECT_EQ(Masked(), 0u);
 }
 
@@ -149,7 +212,7 @@ TEST_F(CastShadows, SevenPhotographsStayAsTheyAre) {
   Hide();
   set_.photographs.resize(7);
   EXPECT_EQ(ReliefSlopeSd(set_, 1), 0);
-  MaskCastShadows(0.25, 1, &set_);
+  MaskCastShadows(Unresolved(0.25), 1, &set_);
   EXPECT_EQ(Masked(), 0u);
 }
 
@@ -158,8 +221,8 @@ TEST_F(CastShadows, DoNotDependOnTheNumberOfThreads) {
   Hide();
   EXPECT_EQ(ReliefSlopeSd(set_, 1), ReliefSlopeSd(set_, 3));
   PhotographSet other = set_;
-  MaskCastShadows(0.25, 1, &set_);
-  MaskCastShadows(0.25, 3, &other);
+  MaskCastShadows(Unresolved(0.25), 1, &set_);
+  MaskCastShadows(Unresolved(0.25), 3, &other);
   for (size_t v = 0; v < kLights; ++v) {
     EXPECT_EQ(set_.photographs[v].mask, other.photographs[v].mask);
   }
