@@ -23,7 +23,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 19;
+inline constexpr int kCalibVersion = 20;
 
 struct RejectedPhoto {
   std::string name, reason;

@@ -86,6 +86,15 @@ bool MayHaveToneCurve(const Capture& capture, const CalibSummary& summary) {
   return true;
 }
 
+// Which may be sRGB's curve as well: nobody said it.
+bool ReadWithGamma22(const Capture& capture, const CalibSummary& summary) {
+  return capture.encoding == "auto" &&
+         std::all_of(summary.photos.begin(), summary.photos.end(), [](const DetectedPhoto& photo) {
+           return photo.board_photo ||
+                  ResolveEncoding("auto", photo.name, photo.measures.file) == Encoding::kGamma22;
+         });
+}
+
 LightOptions LightOptionsOf(const Capture& capture, const CalibOptions& options,
                             const CalibSummary& summary) {
   LightOptions light;
@@ -96,6 +105,7 @@ LightOptions LightOptionsOf(const Capture& capture, const CalibOptions& options,
   if (ambient.maxCoeff() > 0) light.ambient = ambient;
   if (options.quick_px > 0) light.spots_per_photo = 120;  // for what it says of the photographs
   light.tone_known = !MayHaveToneCurve(capture, summary);
+  light.perhaps_srgb = !light.tone_known && ReadWithGamma22(capture, summary);
   return light;
 }
 
@@ -205,7 +215,8 @@ bool FollowLight(CalibSummary* summary) {
       groups.pixel_turns[i] = (groups.pixel_turns[i] + photo.turns) % 4;
       changed = true;
     }
-    const std::string reason = ContradictionOf(photo);
+    const std::string reason =
+        ContradictionOf(summary->light, photo, summary->photos[i].measures.file.exif.flash);
     if (reason.empty()) continue;
     LeaveOut(reason, &summary->photos[i]);
     summary->left_out_by_light.push_back({photo.name, reason});
@@ -253,7 +264,8 @@ void WriteLightPicture(const CalibSummary& summary, Stage* stage) {
 }
 
 std::optional<ResponseCurve> ToneCurveOf(const Capture& capture, const CalibSummary& summary) {
-  if (!summary.light.tone || capture.encoding != "auto") return std::nullopt;
+  const LightEstimate& light = summary.light;
+  if (!(light.tone || light.srgb) || capture.encoding != "auto") return std::nullopt;
   const DetectedPhoto& first = summary.photos[summary.FlashPhotos()[0]];
   const Encoding encoding = ResolveEncoding("auto", first.name, first.measures.file);
   ResponseCurve curve;
@@ -262,7 +274,8 @@ std::optional<ResponseCurve> ToneCurveOf(const Capture& capture, const CalibSumm
     const bool hdr = curve.linear[c].back() > 1;
     float before = -1;
     for (float& value : curve.linear[c]) {
-      value = static_cast<float>(summary.light.tone->Linear(value));
+      const double read = light.srgb ? SrgbForGamma22(value) : value;
+      value = static_cast<float>(light.tone ? light.tone->Linear(read) : read);
       value = std::max(value, std::nextafter(before, 2.0f));  // profiles' tables begin with zeros
       if (before < 0) value = 0;
       before = value;

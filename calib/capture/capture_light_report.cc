@@ -40,6 +40,7 @@ Json BoardLight(const LightEstimate& light) {
     v["covariance"] = std::vector<double>(covariance.data(), covariance.data() + 9);
     json["vignetting"].push_back(v);
   }
+  json["srgb"] = light.srgb;
   json["residual_rms_percent"] = light.rms_percent;
   json["paper_samples"] = light.samples;
   json["inliers"] = light.inliers;
@@ -70,6 +71,9 @@ std::string BoardText(const LightEstimate& light) {
       light.inliers, light.samples, light.rms_percent,
       PlusMinus(light.flash_in_camera_mm, "{:.2f}"), PlusMinus(light.power_rgb, "{:.4g}"),
       PlusMinus(light.ambient_rgb, "{:.3g}"));
+  if (light.srgb) {
+    text += "  sRGB's tone curve explains the paper better than gamma 2.2 and is used\n";
+  }
   for (size_t c = 0; c < light.vignetting.size(); ++c) {
     double corner = 0;
     for (const Estimate& v : light.vignetting[c]) corner += v.value;

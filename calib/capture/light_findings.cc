@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/statistics/median.h"
 #include "base/text/name_list.h"
 
 namespace glint {
@@ -60,6 +61,40 @@ void AddExposures(const LightEstimate& light, std::vector<std::string>* words) {
       100 * std::abs(largest - 1)));
 }
 
+// Of its paper that is large enough to be seen, what the flash explains.
+double LitShare(const LightOfPhoto& photo) {
+  return photo.samples > 0 ? static_cast<double>(photo.inliers) / photo.samples : 1;
+}
+
+double UsualLitShare(const LightEstimate& light) {
+  std::vector<double> shares;
+  for (const LightOfPhoto& photo : light.photos) {
+    if (photo.used) shares.push_back(LitShare(photo));
+  }
+  return shares.empty() ? 1 : Median(shares);
+}
+
+bool IsLitLess(const LightEstimate& light, const LightOfPhoto& photo, double share) {
+  return LitShare(photo) < share * UsualLitShare(light);
+}
+
+void AddPartlyLit(const LightEstimate& light, std::vector<std::string>* words) {
+  constexpr double kPartly = 0.8;
+  std::vector<std::string> names;
+  double least = 1;
+  for (const LightOfPhoto& photo : light.photos) {
+    if (!photo.used || !IsLitLess(light, photo, kPartly)) continue;
+    names.push_back(photo.name);
+    least = std::min(least, LitShare(photo));
+  }
+  if (names.empty()) return;
+  words->push_back(fmt::format(
+      "{}: parts of the white paper (down to {:.0f} % is left) are not lit as in the other "
+      "photographs and are not used to locate the flash; the sample may be lit so, too: look for a "
+      "shadow, another lamp, or editing (light_residuals.png), and leave such photographs out",
+      NameList(names), 100 * least));
+}
+
 void AddWhiteBalance(const LightEstimate& light, std::vector<std::string>* words) {
   constexpr double kDrift = 0.02;
   std::vector<std::string> names;
@@ -96,7 +131,7 @@ void AddTone(const Capture& capture, const LightEstimate& light, std::vector<std
 }
 
 void AddFlash(const Capture& capture, const LightEstimate& light, std::vector<std::string>* words) {
-  constexpr double kBeside_mm = 30, kAlong_mm = 15;
+  constexpr double kBeside_mm = 30, kAlong_mm = 5, kSurely = 2;  // standard deviations
   const Eigen::Vector3d stated(capture.light_offset_mm.data());
   Eigen::Vector3d flash;
   for (int i = 0; i < 3; ++i) flash[i] = light.flash_in_camera_mm[i].value;
@@ -110,11 +145,12 @@ void AddFlash(const Capture& capture, const LightEstimate& light, std::vector<st
         "offset_mm",
         off.head<2>().norm(), stated.isZero() ? "the lens" : "the position in [light] offset_mm"));
   }
-  if (std::abs(off.z()) > kAlong_mm) {
+  if (std::abs(off.z()) > kAlong_mm + kSurely * light.flash_in_camera_mm[2].sigma) {
     words->push_back(fmt::format(
         "according to the paper, the flash is {:.0f} mm {} {}, which is implausible for a phone: "
         "measure it, and state [light] offset_mm if this is correct; otherwise exposures, zoom or "
-        "tone curve differ from those in EXIF and [radiometry], and the light's power is wrong",
+        "tone curve differ from those in EXIF and [radiometry], or another lamp was on, and the "
+        "light's power is wrong",
         std::abs(off.z()), off.z() > 0 ? "before" : "behind",
         stated.isZero() ? "the lens" : "the position in [light] offset_mm"));
   }
@@ -136,14 +172,32 @@ void AddUneven(const LightEstimate& light, std::vector<std::string>* words) {
 
 }  // namespace
 
-std::string ContradictionOf(const LightOfPhoto& photo) {
-  if (!photo.contradicts || photo.zoom == 1) return "";
+std::string ContradictionOf(const LightEstimate& light, const LightOfPhoto& photo, int flash) {
+  constexpr double kNoFlash = 0.15;  // of the exposure: a zoom of 2.6 would be as dark
+  constexpr double kHardlyLit = 0.4;
+  if (!photo.contradicts) {
+    if (!photo.used || !IsLitLess(light, photo, kHardlyLit)) return "";
+    return fmt::format(
+        "only {:.0f} % of its white paper is lit as a flash at the lens would light it (in the "
+        "other "
+        "photographs {:.0f} %): the flash did not fire, or a shadow or another lamp lies on it",
+        100 * LitShare(photo), 100 * UsualLitShare(light));
+  }
+  const double factor = photo.exif_exposure > 0 ? photo.exposure.value / photo.exif_exposure : 1;
+  const bool told = flash >= 0 && (flash & 1) == 0;
+  if (factor < kNoFlash || (told && factor < 1)) {
+    return fmt::format(
+        "its paper is {} than EXIF's exposure and the other photographs predict: the flash did not "
+        "fire{}",
+        Against(factor), told ? ", as EXIF says" : "");
+  }
+  if (photo.zoom == 1) return "";
   return fmt::format(
       "its paper is {} than EXIF's exposure and the other photographs predict, and its brightness "
       "falls off as if from {:.1f} times the distance that its corners give: it was taken with a "
       "zoom of about {:.1f} that EXIF does not report, or cropped and enlarged; photograph without "
       "zoom",
-      Against(photo.exposure.value / photo.exif_exposure), photo.zoom, photo.zoom);
+      Against(factor), photo.zoom, photo.zoom);
 }
 
 std::vector<std::string> LightFindings(const Capture& capture, const CalibSummary& summary) {
@@ -151,6 +205,7 @@ std::vector<std::string> LightFindings(const Capture& capture, const CalibSummar
   if (!summary.groups.pixel_turns.empty()) AddTurned(summary, &words);
   if (!summary.light.known) return words;
   AddExposures(summary.light, &words);
+  AddPartlyLit(summary.light, &words);
   AddWhiteBalance(summary.light, &words);
   AddTone(capture, summary.light, &words);
   AddFlash(capture, summary.light, &words);

@@ -13,7 +13,8 @@ namespace glint {
 // alone where the board did not tell the light.
 std::vector<std::string> LightFindings(const Capture& capture, const CalibSummary& summary);
 
-// Why a photograph that contradicts all others is left out; "": it stays.
-std::string ContradictionOf(const LightOfPhoto& photo);
+// Why a photograph that contradicts all others is left out; "": it stays. `flash`: EXIF's bits
+// (ExifFacts::flash).
+std::string ContradictionOf(const LightEstimate& light, const LightOfPhoto& photo, int flash);
 
 }  // namespace glint

@@ -16,6 +16,9 @@ constexpr double kAgree = 0.06;           // median deviation of those that agre
 // ten in which EXIF, encoding or [light] are wrong.
 constexpr double kInsists = 5;
 constexpr double kSignificant = 5;  // standard deviations
+// In the same unit, e² : 1: apps edit more photographs than there are flashes before or behind the
+// lens; and what says nothing for sRGB leaves gamma 2.2.
+constexpr double kUsual = 2;
 
 // ln(exposure by the paper / by EXIF), less the median over photos; 0: not used.
 std::vector<double> Deviations(const State& state, int* used) {
@@ -99,6 +102,13 @@ int LostBy(const State& b, const State& a) {
   return lost;
 }
 
+// Half of the squared distance of the flash from the lens's plane, or from where it is said to be.
+double FlashEnergy(const LightOptions& options, const State& state) {
+  const double sd_mm = state.flash_along_free ? kPrior.flash_free_mm : kPrior.flash_along_mm;
+  const double off = (state.flash_mm.z() - options.offset_mm.z()) / sd_mm;
+  return off * off / 2;
+}
+
 // Half of the squared residuals by which `solved` is better than `other`, were a block of squares
 // one sample; who explains more photographs is better beyond comparison.
 double Saved(const LightOptions& options, State solved, State other) {
@@ -113,7 +123,8 @@ double Saved(const LightOptions& options, State solved, State other) {
   const double ours = Misfit(options, solved, scale), theirs = Misfit(options, other, scale);
   if (!std::isfinite(ours) || !(ours > 0)) return -kBeyond;
   if (!std::isfinite(theirs)) return kBeyond;
-  return 0.5 * Blocks(other) * std::log(theirs / ours);
+  const double by_paper = 0.5 * Blocks(other) * std::log(theirs / ours);
+  return by_paper + FlashEnergy(options, other) - FlashEnergy(options, solved);
 }
 
 // Whether the curve rises as far as the paper shows it.
@@ -205,6 +216,10 @@ bool Insists(const LightOptions& options, const State& solved, const State& othe
   return Saved(options, solved, other) > kInsists;
 }
 
+bool Prefers(const LightOptions& options, const State& solved, const State& other) {
+  return Saved(options, solved, other) > kUsual;
+}
+
 bool FreeWhatThePaperInsistsOn(const LightProblem& problem, const LightOptions& options,
                                State* start, State* solved) {
   State with_tone = *start, with_along = *start;
@@ -219,7 +234,7 @@ bool FreeWhatThePaperInsistsOn(const LightProblem& problem, const LightOptions& 
       along.significance > kSignificant && Insists(options, along.solved, *solved);
   if (!tone_insists && !along_insists) return false;
   const bool take_tone =
-      tone_insists && (!along_insists || Saved(options, tone.solved, along.solved) > 0);
+      tone_insists && (!along_insists || Saved(options, tone.solved, along.solved) > -kUsual);
   Freedom& taken = take_tone ? tone : along;
   *start = std::move(taken.start);
   *solved = std::move(taken.solved);

@@ -20,6 +20,8 @@ void ExplainContradictions(State* solved);
 
 // Whether the paper insists on `solved` against `other`, a solution with fewer freedoms.
 bool Insists(const LightOptions& options, const State& solved, const State& other);
+// Whether it prefers `solved`, which has no more freedoms and is as likely beforehand.
+bool Prefers(const LightOptions& options, const State& solved, const State& other);
 
 // Frees, in `start`, the tone curve or the flash's place along the axis where the paper insists on
 // either, and replaces `solved`. True: it did.

@@ -15,8 +15,10 @@
 // covariance is the sandwich (JᵀJ)⁻¹ (Σ gₛgₛᵀ) (JᵀJ)⁻¹ over blocks s of 3 × 3 squares of each
 // photo, gₛ the gradient of a block's spots: errors that neighbours share (blur of the ink, JPEG, a
 // crease) count as one; to it come smooth errors of 0.1 % (light_covariance.cc), which residuals
-// do not show. Only the product of power and reflectance shows; the paper's reflectance is taken as
-// known.
+// do not show. Two curves are tried where a photograph may be stored by either (gamma 2.2, sRGB):
+// between 0.4 and 0.8 they differ by 1 to 3 % in their exponent, which would move the flash by 5 to
+// 8 mm along the axis. Only the product of power and reflectance shows; the paper's reflectance is
+// taken as known.
 #pragma once
 
 #include <Eigen/Core>
@@ -57,8 +59,10 @@ struct LightOptions {
   std::optional<Eigen::Vector3d> ambient;  // irradiance, given; nullopt: free
   double reject_sigmas = 5;                // a spot is an outlier beyond
   bool tone_known = false;                 // the encoding is linear by nature, or was measured
-  size_t spots_per_photo = 1200;           // that are solved for; all are judged by the solution
-  int min_samples = 12;                    // a photo with fewer inliers gets no exposure
+  // Samples were read with gamma 2.2 for want of anything better, and may be sRGB's.
+  bool perhaps_srgb = false;
+  size_t spots_per_photo = 1200;  // that are solved for; all are judged by the solution
+  int min_samples = 12;           // a photo with fewer inliers gets no exposure
 };
 
 struct LightOfPhoto {
@@ -89,7 +93,8 @@ struct LightEstimate {
   std::array<Estimate, 3> power_rgb;    // σ without that of the paper's reflectance
   std::array<Estimate, 3> ambient_rgb;  // irradiance; never negative
   std::array<Estimate, 3> paper_rgb;    // reflectance; σ 0 unless the power is given
-  std::optional<ToneCurve> tone;        // where the paper contradicts the encoding
+  bool srgb = false;                    // sRGB's curve explains the paper better than gamma 2.2
+  std::optional<ToneCurve> tone;        // where the paper contradicts the encoding, or sRGB's curve
   bool flash_along_free = false;        // the paper insists on a flash before or behind the lens
   Estimate smear;  // share of its light that paper beside ink loses to blur and JPEG
   Estimate gloss;  // the lobe's reflectance at normal incidence

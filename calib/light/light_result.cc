@@ -118,6 +118,7 @@ void FillRadiometry(const LightOptions& options, const State& state, const Layou
       }
     }
   }
+  estimate->srgb = state.srgb;
   estimate->flash_along_free = state.flash_along_free;
   estimate->smear = {state.smear, std::sqrt(covariance(layout.smear, layout.smear))};
   estimate->gloss.value = state.gloss * options.paper_reflectance;

@@ -46,6 +46,7 @@ struct State {
   std::vector<PhotoState> photos;
   double reference = 1;  // 1/mm²: median of cosθ/d²
   int first = 0;         // the photo of exposure 1
+  bool srgb = false;     // spots are as sRGB's curve reads them
   bool flash_along_free = false;
   bool own_flashes = false;  // each photo has a flash of its own, in its picture's frame
   bool hold_flash = false, hold_ambient = false, hold_gloss = false, hold_tone = true;

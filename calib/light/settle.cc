@@ -1,5 +1,7 @@
 #include "calib/light/settle.h"
 
+#include <utility>
+
 #include "calib/light/contradictions.h"
 #include "calib/light/thinned.h"
 #include "calib/light/turned_photos.h"
@@ -48,11 +50,52 @@ bool SettleAll(const LightProblem& problem, const LightOptions& options, State* 
   return true;
 }
 
+// Samples read with gamma 2.2, by sRGB's curve.
+void ReadAsSrgb(State* state) {
+  state->srgb = true;
+  for (PhotoState& photo : state->photos) {
+    for (Spot& spot : photo.spots) spot.seen = spot.seen.unaryExpr(&SrgbForGamma22);
+  }
+}
+
+struct Settled {
+  State start, solved;
+  bool known = false;
+
+  int freedoms() const { return !start.hold_tone + start.flash_along_free; }
+};
+
+Settled SettleFrom(const LightProblem& problem, const LightOptions& options, const State& state,
+                   int* rounds) {
+  Settled settled;
+  settled.start = Thinned(state, kSpots);
+  settled.known = SettleAll(problem, options, &settled.start, &settled.solved, rounds);
+  return settled;
+}
+
+// A curve that needs nothing else to explain the paper is preferred to one that does.
+bool IsSrgb(const LightOptions& options, const Settled& gamma, const Settled& srgb) {
+  if (!srgb.known || !gamma.known) return srgb.known;
+  if (srgb.freedoms() > gamma.freedoms()) return Insists(options, srgb.solved, gamma.solved);
+  return srgb.freedoms() < gamma.freedoms() ? !Insists(options, gamma.solved, srgb.solved)
+                                            : Prefers(options, srgb.solved, gamma.solved);
+}
+
 }  // namespace
 
 bool Settle(const LightProblem& problem, const LightOptions& options, State* state, int* rounds) {
-  State start = Thinned(*state, kSpots), solved;
-  if (!SettleAll(problem, options, &start, &solved, rounds)) return false;
+  Settled settled = SettleFrom(problem, options, *state, rounds);
+  if (options.perhaps_srgb) {
+    State read = *state;
+    ReadAsSrgb(&read);
+    Settled srgb = SettleFrom(problem, options, read, rounds);
+    if (IsSrgb(options, settled, srgb)) {
+      settled = std::move(srgb);
+      *state = std::move(read);
+    }
+  }
+  if (!settled.known) return false;
+  const State& start = settled.start;
   state->hold_tone = start.hold_tone;
   state->flash_along_free = start.flash_along_free;
   for (size_t i = 0; i < state->photos.size(); ++i) {

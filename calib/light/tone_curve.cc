@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/colour/srgb.h"
+
 namespace glint {
 namespace {
 
@@ -25,6 +27,10 @@ double LogLinear(const ToneCurve& tone, double log_stored) {
 }
 
 }  // namespace
+
+double SrgbForGamma22(double radiance) {
+  return LinearFromSrgb(std::pow(std::max(0.0, radiance), 1 / 2.2));
+}
 
 double ToneCurve::ExponentAt(double radiance) const {
   return LogStored(*this, LogLinear(*this, std::log(radiance))).second;

@@ -5,6 +5,9 @@
 
 namespace glint {
 
+// Radiance by sRGB's curve of what was read with gamma 2.2; 0 and 1 stay.
+double SrgbForGamma22(double radiance);
+
 // A value with its standard deviation; 0: held.
 struct Estimate {
   double value = 0, sigma = 0;

@@ -9,8 +9,10 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "base/colour/srgb.h"
 #include "base/formats/calibration.h"
 #include "base/formats/manifest.h"
+#include "base/linearize/response_curve.h"
 #include "tests/calib/testing/synthetic_capture.h"
 
 namespace glint {
@@ -24,12 +26,15 @@ class BoardLight : public testing::SyntheticCapture {
   static void SetUpTestSuite() {
     Make({"--megapixels", "2", "--photos", "6", "--resolution", "128", "--family", "leather",
           "--seed", "3"});
-    std::string toml = test::ReadAll(Shared() / "capture.toml");
+    LetTheEncodingBeFound(Shared());
+    truth_ = ReadCalibration(Shared() / "truth/calib/manifest.json");
+  }
+  static void LetTheEncodingBeFound(const std::filesystem::path& capture) {
+    std::string toml = test::ReadAll(capture / "capture.toml");
     const size_t at = toml.find("encoding");
     ASSERT_NE(at, std::string::npos);
     toml.replace(at, toml.find('\n', at) - at, "encoding = \"auto\"");
-    test::WriteAll(Shared() / "capture.toml", toml);
-    truth_ = ReadCalibration(Shared() / "truth/calib/manifest.json");
+    test::WriteAll(capture / "capture.toml", toml);
   }
   // The picture changed, its EXIF kept.
   void Change(int photo, const std::function<cv::Mat(const cv::Mat&)>& change) const {
@@ -160,6 +165,76 @@ TEST_F(BoardLight, AWhiteBalanceThatDriftsIsToldAndTakenOut) {
   const Eigen::Vector3d& balance = found.photos[2].white_balance_rgb;
   EXPECT_NEAR(balance[2] / balance[1], std::pow(1.03, 2.2), 0.015);
   EXPECT_EQ(found.photos[3].white_balance_rgb, Eigen::Vector3d::Ones());
+}
+
+// Read with gamma 2.2, the flash would be 7 mm behind the lens and 9 % too strong.
+TEST_F(BoardLight, PhotographsStoredBySrgbsCurveAreReadByIt) {
+  capture_ = folder_ / "srgb";
+  const test::Outcome made = test::RunProgram(
+      {testing::Program("glint-synth"), "capture", capture_.string(), "--megapixels", "2",
+       "--photos", "9", "--resolution", "128", "--seed", "42", "--encoding", "srgb"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  LetTheEncodingBeFound(capture_);
+  const Calibration truth = ReadCalibration(capture_ / "truth/calib/manifest.json");
+  const test::Outcome outcome = Calibrate();
+  const Json light = Result().metrics["light"]["board"];
+  EXPECT_NEAR(light["flash_in_camera_mm"]["value"][2].get<double>(), 0, 3);
+  EXPECT_NEAR(light["power_rgb"]["value"][1].get<double>() / truth.light_rgb[1], 1, 0.03);
+  EXPECT_EQ(light["srgb"], true);
+  EXPECT_THAT(outcome.out, HasSubstr("sRGB's tone curve explains the paper better"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("warning")));
+  const ResponseCurve curve = ReadResponseCurve(capture_ / "glint/calib/tone_curve.json");
+  for (const size_t code : {25, 120, 230}) {
+    EXPECT_NEAR(curve.linear[1][code], LinearFromSrgb(code / 255.0), 1e-5) << code;
+  }
+}
+
+// By the room's lamps, automatically exposed: as bright as the others, and of no use.
+TEST_F(BoardLight, APhotographWithoutFlashIsLeftOutByName) {
+  Change(2, [](const cv::Mat& picture) {
+    cv::Mat even(picture.size(), CV_32F), lit;
+    for (int y = 0; y < picture.rows; ++y) {
+      for (int x = 0; x < picture.cols; ++x) {
+        const double across = static_cast<double>(x) / picture.cols - 0.5;
+        const double down = static_cast<double>(y) / picture.rows - 0.5;
+        even.at<float>(y, x) = static_cast<float>(1 + 0.5 * (across * across + down * down) * 2 +
+                                                  0.35 * across - 0.15);
+      }
+    }
+    cv::cvtColor(even, even, cv::COLOR_GRAY2BGR);
+    picture.convertTo(lit, CV_32FC3);
+    cv::multiply(lit, even, lit);
+    lit.convertTo(lit, CV_8UC3);
+    return lit;
+  });
+  const test::Outcome outcome = Calibrate();
+  ExpectTheLight();
+  EXPECT_THAT(outcome.err, HasSubstr("photo_002.jpg is left out: only "));
+  EXPECT_THAT(outcome.err, HasSubstr("the flash did not fire, or a shadow or another lamp"));
+}
+
+TEST_F(BoardLight, ADarkPhotographHadNoFlashRatherThanAZoom) {
+  Change(4, [](const cv::Mat& picture) {
+    cv::Mat dark;
+    picture.convertTo(dark, CV_8UC3, std::pow(0.1, 1 / 2.2));
+    return dark;
+  });
+  const test::Outcome outcome = Calibrate();
+  ExpectTheLight();
+  EXPECT_THAT(outcome.err, HasSubstr("photo_004.jpg is left out: its paper is 90 % darker"));
+  EXPECT_THAT(outcome.err, HasSubstr("the flash did not fire"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("zoom")));
+}
+
+TEST_F(BoardLight, AShadowOnThePaperIsTold) {
+  Change(1, [](const cv::Mat& picture) {
+    cv::Mat shaded = picture.clone();
+    shaded(cv::Rect(0, 0, picture.cols, picture.rows / 3)) *= 0.7;
+    return shaded;
+  });
+  const test::Outcome outcome = Calibrate();
+  ExpectTheLight();
+  EXPECT_THAT(outcome.err, HasSubstr("photo_001.jpg: parts of the white paper"));
 }
 
 // A phone that brightens the dark parts of a picture, by what lies around them.

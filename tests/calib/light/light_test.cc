@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/camera/orientation.h"
+#include "base/colour/srgb.h"
 #include "tests/calib/testing/synthetic_photo.h"
 
 namespace glint {
@@ -265,6 +266,27 @@ TEST(EstimateLight, FindsTheToneCurveInPlaceOfAFlashElsewhere) {
   }
 }
 
+// Their exponents differ by 1 to 3 % where paper is seen, as if the flash were behind the lens.
+TEST(EstimateLight, TellsSrgbsCurveFromGamma22) {
+  LightOptions options;
+  options.perhaps_srgb = true;
+  for (const int photos : {6, 12}) {
+    LightProblem problem = MakeProblem(photos, {}, false, photos);
+    EXPECT_FALSE(EstimateLight(problem, options).srgb);
+    for (LightPhoto& photo : problem.photos) {
+      for (PaperSample& sample : photo.samples) {
+        for (double& value : sample.radiance) value = std::pow(SrgbFromLinear(value), 2.2);
+      }
+    }
+    const LightEstimate light = EstimateLight(problem, options);
+    EXPECT_TRUE(light.srgb);
+    EXPECT_FALSE(light.tone);
+    EXPECT_FALSE(light.flash_along_free);
+    ExpectTheLight(light, {});
+    EXPECT_FALSE(EstimateLight(problem).srgb);  // where the encoding was told
+  }
+}
+
 TEST(EstimateLight, BelievesAFlashBehindTheLensThatThePaperShows) {
   Truth truth;
   truth.flash_mm = {5, 60, -40};
@@ -281,6 +303,13 @@ TEST(EstimateLight, FindsAWhiteBalanceThatDrifts) {
   ExpectTheLight(light, {});
   EXPECT_NEAR(light.photos[2].colour[2] / light.photos[2].colour[1], 1.06, 0.01);
   EXPECT_LT(light.photos[3].colour.maxCoeff() / light.photos[3].colour.minCoeff(), 1.01);
+}
+
+TEST(ToneCurve, OfSrgbReadsWhatItStored) {
+  for (const double radiance : {0.0, 0.001, 0.05, 0.4, 1.0}) {
+    const double by_gamma = std::pow(SrgbFromLinear(radiance), 2.2);
+    EXPECT_NEAR(SrgbForGamma22(by_gamma), radiance, 1e-9);
+  }
 }
 
 TEST(ToneCurve, IsInvertedAndRisesFromBlackToWhite) {
