@@ -53,6 +53,11 @@ struct BoardBend {
   double HeightAt(const Eigen::Vector2d& position_in_sample_mm) const {
     return height_mm.dot(Weights(position_in_sample_mm));
   }
+  // Of the height, along x and y.
+  Eigen::Vector2d SlopesAt(const Eigen::Vector2d& position_in_sample_mm) const {
+    const Eigen::Array2d at = (position_in_sample_mm - centre_mm).array() / half_size_mm.array();
+    return (-2 * height_mm.array() * at / half_size_mm.array()).matrix();
+  }
 };
 
 struct BundleProblem {

@@ -74,8 +74,9 @@ void AddCalibOptions(OptionSet* set, CalibOptions* options) {
            "folder of calib manifests; a camera whose EXIF matches one of them takes its "
            "intrinsics from it",
            Invalidates::kNo);  // likewise
-  set->AddChoice("board-shape", &options->board_shape, {"flat", "bent"},
-                 "bent: also estimate how far the board bulges in the middle");
+  set->AddChoice("board-shape", &options->board_shape, {"auto", "flat", "bent"},
+                 "bent: also estimate how far the board bulges in the middle; auto: where the "
+                 "corners show that it does");
   set->AddRange("reject-sigmas", &options->reject_sigmas, 2, 1000,
                 "corners farther off than this many robust standard deviations are rejected");
   set->AddRange("min-reject-px", &options->min_reject_px, 0, 1000,

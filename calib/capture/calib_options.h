@@ -19,7 +19,7 @@ struct CalibOptions {
   std::vector<std::string> hold;         // distortion parameters held at 0
   std::filesystem::path fix_intrinsics;  // manifest of another calibration; empty: estimate
   std::filesystem::path library;         // see phone_library.h; empty: none
-  std::string board_shape = "flat";      // flat; bent: two unknowns, see BoardBend
+  std::string board_shape = "auto";      // flat; bent: two unknowns, see BoardBend; auto: as found
   std::string write = "none";            // none, colmap: see export_colmap.h
   double reject_sigmas = 5;              // see BundleOptions
   double min_reject_px = 0.5;

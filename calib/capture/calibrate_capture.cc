@@ -276,7 +276,10 @@ void InterpretBundle(const Capture& capture, const CalibOptions& options, Adjust
   const bool quick = options.quick_px > 0;
   const std::array<std::function<void()>, 3> parts = {
       [&] {
-        if (quick) return;
+        if (quick) {
+          trust.diagnosis = DiagnoseBend(adjusted.problem, adjusted.options, summary->bundle);
+          return;
+        }
         trust = AssessTrust(capture, adjusted.problem, adjusted.options, summary->bundle);
       },
       [&] { light = EstimateBoardLight(capture, options, *summary); },
@@ -369,9 +372,21 @@ CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, 
   return summary;
 }
 
-void SolveCapture(const Capture& capture, const CalibOptions& options,
+// Of a bend that the result has a part in; with a smaller one, a sample in the middle is turned by
+// less than half a degree at its edges.
+void TellOfBend(CalibSummary* summary) {
+  constexpr double kWorthAWord_mm = 1;
+  const Diagnosis& diagnosis = summary->trust.diagnosis;
+  if (!diagnosis.board_is_bent) return;
+  if (diagnosis.bend->height_mm.cwiseAbs().maxCoeff() < kWorthAWord_mm) return;
+  spdlog::warn("{}", diagnosis.words.front());
+  summary->board_findings.push_back(diagnosis.words.front());
+}
+
+void SolveCapture(const Capture& capture, const CalibOptions& told,
                   const std::vector<Camera>& assumed, int threads, CalibSummary* summary) {
-  constexpr int kMostRounds = 3;  // of views that the light sets right
+  constexpr int kMostRounds = 4;  // of the board's shape, and of views that the light sets right
+  CalibOptions options = told;
   BundleProblem problem;
   for (int round = 0; round <= kMostRounds; ++round) {
     summary->photo_index.clear();
@@ -379,8 +394,12 @@ void SolveCapture(const Capture& capture, const CalibOptions& options,
     for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
     InterpretBundle(capture, options, AdjustWhatIsLeft(capture, options, problem, summary), threads,
                     summary);
-    if (round == kMostRounds || !FollowLight(summary)) break;
+    if (round == kMostRounds) break;
+    const bool bent = options.board_shape == "auto" && summary->trust.diagnosis.board_is_bent;
+    if (bent) options.board_shape = "bent";
+    if (!bent && !FollowLight(summary)) break;
   }
+  TellOfBend(summary);
   ExplainMisfits(options, problem, summary);
   WarnOfUncertainty(summary->bundle);
   if (assumed.empty()) WarnOfToldFocal(problem, summary->bundle);

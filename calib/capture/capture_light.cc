@@ -50,6 +50,7 @@ bool PosesFollowTheLight(const CalibSummary& summary) { return summary.from_boar
 
 LightProblem ProblemOf(const CalibSummary& summary) {
   LightProblem problem;
+  problem.bend = summary.bundle.bend;
   for (const CameraEstimate& camera : summary.bundle.cameras) {
     problem.cameras.push_back(camera.camera);
   }

@@ -26,7 +26,8 @@ double SigmaOf(double radiance, int pixels) {
   return std::sqrt(1.25e-4 * level / pixels + 9e-6 * level * level);
 }
 
-PhotoState StateOf(const LightPhoto& photo, const Camera& camera, int* next_cluster) {
+PhotoState StateOf(const LightPhoto& photo, const Camera& camera,
+                   const std::optional<BoardBend>& bend, int* next_cluster) {
   PhotoState state;
   state.camera = photo.camera;
   state.clips = photo.clips;
@@ -35,9 +36,11 @@ PhotoState StateOf(const LightPhoto& photo, const Camera& camera, int* next_clus
   for (const PaperSample& sample : photo.samples) {
     Spot spot;
     const Eigen::Vector2d& at = sample.position_in_sample_mm;
-    spot.geometry.spot_in_camera_mm = photo.camera_from_sample * Eigen::Vector3d(at.x(), at.y(), 0);
+    const Eigen::Vector2d slopes = bend ? bend->SlopesAt(at) : Eigen::Vector2d(0, 0);
+    spot.geometry.spot_in_camera_mm = photo.camera_from_sample * BoardPoint(bend, at);
     if (spot.geometry.spot_in_camera_mm.z() <= 0) continue;
-    spot.geometry.normal_in_camera = photo.camera_from_sample.rotation.col(2);
+    spot.geometry.normal_in_camera = photo.camera_from_sample.rotation *
+                                     Eigen::Vector3d(-slopes.x(), -slopes.y(), 1).normalized();
     spot.point_px = ImageFromCamera(camera, spot.geometry.spot_in_camera_mm);
     spot.geometry.r2 = VignettingRadius2(camera, spot.point_px);
     spot.seen = sample.radiance;
@@ -139,8 +142,8 @@ State StartState(const LightProblem& problem, const LightOptions& options) {
   state.hold_vignetting.assign(problem.cameras.size(), false);
   int clusters = 0;
   for (const LightPhoto& photo : problem.photos) {
-    PhotoState& added =
-        state.photos.emplace_back(StateOf(photo, problem.cameras[photo.camera], &clusters));
+    PhotoState& added = state.photos.emplace_back(
+        StateOf(photo, problem.cameras[photo.camera], problem.bend, &clusters));
     added.used = static_cast<int>(added.spots.size()) >= options.min_samples;
   }
   return state;

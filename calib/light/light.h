@@ -1,7 +1,8 @@
 // The flash, the lens's fall-off, the exposures and the room's light from the board's paper.
 //
-// The board's white is a known plane of one material that every photograph shows. A spot X of it
-// sends to a pixel at distance r from the principal point
+// The board's white is a known plane (or two parabolas, where the board is bent) of one material
+// that every photograph shows. A spot X of it sends to a pixel at distance r from the principal
+// point
 //
 //   L = e · V(r) · q · ( cosθ/d² · (1 + g) + a ),   V(r) = 1 + v1·r² + v2·r⁴ + v3·r⁶
 //
@@ -29,6 +30,7 @@
 
 #include "base/camera/camera_model.h"
 #include "base/camera/rigid3.h"
+#include "calib/bundle/bundle.h"
 #include "calib/light/paper.h"
 #include "calib/light/tone_curve.h"
 
@@ -50,6 +52,7 @@ struct LightPhoto {
 struct LightProblem {
   std::vector<Camera> cameras;  // of the stored pictures; their vignetting is the start
   std::vector<LightPhoto> photos;
+  std::optional<BoardBend> bend;  // of the paper; none: it is flat
 };
 
 struct LightOptions {

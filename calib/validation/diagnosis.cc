@@ -87,7 +87,11 @@ std::string BendInWords(const Diagnosis& diagnosis, bool solved_for) {
       "{:.2f} ± {:.2f} mm above its top and bottom edges",
       bend.height_mm.x(), std::sqrt(bend.covariance(0, 0)), bend.height_mm.y(),
       std::sqrt(bend.covariance(1, 1)));
-  if (solved_for) return text + "; the result takes that into account";
+  if (solved_for) {
+    return text +
+           "; the result takes that into account, but the sample may be bent with it: glue both to "
+           "something flat";
+  }
   return text + fmt::format(
                     " (the residual falls from {:.3f} to {:.3f} px with it); glue it to something "
                     "flat, or give --board-shape bent",
@@ -227,6 +231,13 @@ void LookForMisprints(const BundleResult& result, Diagnosis* out) {
 }
 
 }  // namespace
+
+Diagnosis DiagnoseBend(const BundleProblem& problem, const BundleOptions& options,
+                       const BundleResult& result) {
+  Diagnosis out;
+  LookForBend(problem, options, result, &out);
+  return out;
+}
 
 Diagnosis Diagnose(const BundleProblem& problem, const BundleOptions& options,
                    const BundleResult& result) {

@@ -34,5 +34,8 @@ struct Diagnosis {
 // `result` solves `problem` under `options`.
 Diagnosis Diagnose(const BundleProblem& problem, const BundleOptions& options,
                    const BundleResult& result);
+// The bend alone.
+Diagnosis DiagnoseBend(const BundleProblem& problem, const BundleOptions& options,
+                       const BundleResult& result);
 
 }  // namespace glint

@@ -77,6 +77,51 @@ class BoardLight : public testing::SyntheticCapture {
 
 Calibration BoardLight::truth_;
 
+// What the picture of a flat board would show, did it arch in the middle along x.
+cv::Mat OfBentBoard(const cv::Mat& picture, const Camera& camera, const Rigid3& camera_from_sample,
+                    double height_mm, double half_mm) {
+  constexpr int kStep_px = 16;  // between them the displacement is linear
+  const Rigid3 sample_from_camera = Inverse(camera_from_sample);
+  cv::Mat columns((picture.rows + kStep_px - 1) / kStep_px + 1,
+                  (picture.cols + kStep_px - 1) / kStep_px + 1, CV_32F);
+  cv::Mat rows = columns.clone();
+  for (int j = 0; j < columns.rows; ++j) {
+    for (int i = 0; i < columns.cols; ++i) {
+      const Eigen::Vector2d pixel(kStep_px * i, kStep_px * j);
+      const auto ray = NormalizedFromImage(camera, pixel);
+      if (!ray) continue;
+      const Eigen::Vector3d way = sample_from_camera.rotation * ray->homogeneous();
+      const Eigen::Vector3d from = sample_from_camera.translation;
+      Eigen::Vector3d at(0, 0, 0);
+      for (int round = 0; round < 10; ++round) {
+        const double height = height_mm * (1 - at.x() * at.x() / (half_mm * half_mm));
+        at = from + (height - from.z()) / way.z() * way;
+      }
+      at.z() = 0;
+      const Eigen::Vector2d source = ImageFromCamera(camera, camera_from_sample * at);
+      columns.at<float>(j, i) = static_cast<float>(source.x() - pixel.x());
+      rows.at<float>(j, i) = static_cast<float>(source.y() - pixel.y());
+    }
+  }
+  cv::Mat from_x(picture.size(), CV_32F), from_y(picture.size(), CV_32F), bent;
+  for (int y = 0; y < picture.rows; ++y) {
+    for (int x = 0; x < picture.cols; ++x) {
+      const double u = (x + 0.5) / kStep_px, v = (y + 0.5) / kStep_px;
+      const int i = static_cast<int>(u), j = static_cast<int>(v);
+      const auto between = [&](const cv::Mat& shift) {
+        return (1 - v + j) *
+                   ((1 - u + i) * shift.at<float>(j, i) + (u - i) * shift.at<float>(j, i + 1)) +
+               (v - j) * ((1 - u + i) * shift.at<float>(j + 1, i) +
+                          (u - i) * shift.at<float>(j + 1, i + 1));
+      };
+      from_x.at<float>(y, x) = static_cast<float>(x + between(columns));
+      from_y.at<float>(y, x) = static_cast<float>(y + between(rows));
+    }
+  }
+  cv::remap(picture, bent, from_x, from_y, cv::INTER_LANCZOS4, cv::BORDER_REPLICATE);
+  return bent;
+}
+
 cv::Mat Turned(const cv::Mat& picture, cv::RotateFlags turn) {
   cv::Mat turned;
   cv::rotate(picture, turned, turn);
@@ -187,6 +232,26 @@ TEST_F(BoardLight, PhotographsStoredBySrgbsCurveAreReadByIt) {
   for (const size_t code : {25, 120, 230}) {
     EXPECT_NEAR(curve.linear[1][code], LinearFromSrgb(code / 255.0), 1e-5) << code;
   }
+}
+
+// A sheet that arches by 2 mm, as paper with a window in it does.
+TEST_F(BoardLight, ABendOfTheBoardIsFoundToldAndTakenIntoAccount) {
+  constexpr double kHeight_mm = 2, kHalf_mm = 125;
+  for (int i = 0; i < 6; ++i) {
+    const Camera& camera = truth_.cameras[static_cast<size_t>(truth_.photos[i].camera)];
+    const Rigid3& pose = truth_.photos[i].camera_from_sample;
+    Change(i, [&](const cv::Mat& picture) {
+      return OfBentBoard(picture, camera, pose, kHeight_mm, kHalf_mm);
+    });
+  }
+  const test::Outcome outcome = Calibrate();
+  ExpectTheLight();
+  const std::string words = "the board is bent: its middle is ";
+  EXPECT_THAT(outcome.err, HasSubstr(words));
+  EXPECT_THAT(outcome.err, HasSubstr("the result takes that into account"));
+  EXPECT_THAT(Calibrate("--check").out, HasSubstr(words));
+  const Calibration found = ReadCalibration(capture_ / "glint/calib/manifest.json");
+  EXPECT_NEAR(found.cameras[0].focal_length_x() / truth_.cameras[0].focal_length_x(), 1, 0.002);
 }
 
 // By the room's lamps, automatically exposed: as bright as the others, and of no use.

@@ -104,6 +104,41 @@ TEST(EstimateLight, FindsFlashFalloffExposuresAndRoomLightOfTurnedPhotos) {
   }
 }
 
+// Radiance follows the bend, the fall-off of the lens (0.5 % here) does not.
+TEST(EstimateLight, FollowsTheBendOfThePaper) {
+  LightProblem problem = MakeProblem(12, {}, false, 12);
+  const LightEstimate flat = EstimateLight(problem);
+  BoardBend bend;
+  bend.half_size_mm = {115, 90};
+  bend.height_mm = {3, 0};
+  problem.bend = bend;
+  const Vector3d flash(Truth().flash_mm);
+  for (LightPhoto& photo : problem.photos) {
+    const Rigid3 sample_from_camera = Inverse(photo.camera_from_sample);
+    const Vector3d light_mm = sample_from_camera * flash;
+    const auto shown = [&](const Vector3d& spot, const Vector3d& normal) {
+      const Vector3d way = light_mm - spot;
+      return way.dot(normal) / std::pow(way.norm(), 3);
+    };
+    for (PaperSample& sample : photo.samples) {
+      const Vector2d at = sample.position_in_sample_mm;
+      const double slope = -2 * 3 * at.x() / (115.0 * 115.0);
+      const Vector3d spot(at.x(), at.y(), 3 * (1 - at.x() * at.x() / (115.0 * 115.0)));
+      sample.radiance *=
+          shown(spot, Vector3d(-slope, 0, 1).normalized()) / shown({at.x(), at.y(), 0}, {0, 0, 1});
+    }
+  }
+  const LightEstimate bent = EstimateLight(problem);
+  ASSERT_TRUE(bent.known) << bent.problem;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(bent.flash_in_camera_mm[i].value, flat.flash_in_camera_mm[i].value, 0.5);
+    EXPECT_NEAR(bent.power_rgb[i].value / flat.power_rgb[i].value, 1, 0.01);
+  }
+  problem.bend.reset();
+  EXPECT_GT(std::abs(EstimateLight(problem).power_rgb[1].value / flat.power_rgb[1].value - 1),
+            0.01);
+}
+
 TEST(EstimateLight, TellsGlossyPaperFromTheLensesFalloff) {
   Truth truth;
   truth.gloss = 0.04;
