@@ -152,6 +152,22 @@ void ExplainMisfits(const CalibOptions& options, const BundleProblem& problem,
   }
 }
 
+// Which half of the photographs is right, geometry does not tell.
+void TellOfSplit(CalibSummary* summary) {
+  const auto& photos = summary->bundle.photos;
+  const auto rejected = std::count_if(photos.begin(), photos.end(), [](const PhotoEstimate& photo) {
+    return !photo.rejected.empty();
+  });
+  if (rejected < 2 || 2 * rejected < static_cast<std::ptrdiff_t>(photos.size())) return;
+  const std::string words = fmt::format(
+      "{} of {} photographs do not go together with the rest, so that the rest may be the wrong "
+      "ones: "
+      "an app may have cropped, straightened or enlarged some of them. Use the camera's own files",
+      rejected, photos.size());
+  spdlog::warn("{}", words);
+  summary->board_findings.push_back(words);
+}
+
 // A focal length that is known to a hundredth only is worth a word.
 void WarnOfUncertainty(const BundleResult& bundle) {
   for (const CameraEstimate& estimate : bundle.cameras) {
@@ -364,6 +380,10 @@ CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, 
     spdlog::warn("{}", word);
     summary.board_findings.push_back(word);
   }
+  if (const std::string words = ManySizesInWords(summary.photos); !words.empty()) {
+    spdlog::warn("{}", words);
+    summary.board_findings.push_back(words);
+  }
   // Only the light tells to which side pixels were turned.
   summary.groups =
       GroupCameras(capture.file, options.cameras, summary.photos, options.light == "board");
@@ -401,6 +421,7 @@ void SolveCapture(const Capture& capture, const CalibOptions& told,
   }
   TellOfBend(summary);
   ExplainMisfits(options, problem, summary);
+  TellOfSplit(summary);
   WarnOfUncertainty(summary->bundle);
   if (assumed.empty()) WarnOfToldFocal(problem, summary->bundle);
   FinishCapture(capture, options, !assumed.empty(), summary);

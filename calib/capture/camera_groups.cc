@@ -9,6 +9,7 @@
 
 #include "base/camera/orientation.h"
 #include "base/errors/errors.h"
+#include "base/text/name_list.h"
 
 namespace glint {
 namespace {
@@ -99,6 +100,26 @@ CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::
     groups.groups[at].photos.push_back(i);
   }
   return groups;
+}
+
+std::string ManySizesInWords(const std::vector<DetectedPhoto>& photos) {
+  constexpr size_t kLeast = 3;
+  std::vector<std::string> sizes;
+  for (const DetectedPhoto& photo : photos) {
+    if (photo.detection.corners.empty()) continue;
+    const auto [shorter, longer] = std::minmax(photo.width_px, photo.height_px);
+    std::string size = fmt::format("{}x{}", longer, shorter);
+    if (std::find(sizes.begin(), sizes.end(), size) == sizes.end()) sizes.push_back(size);
+  }
+  if (sizes.size() < kLeast || 2 * sizes.size() <= photos.size()) return "";
+  return fmt::format(
+      "{} photographs have {} different sizes in pixels ({}), as if each had been cropped or "
+      "resized "
+      "by "
+      "hand: the centre of the lens would be elsewhere in each. Use the camera's own files, as "
+      "they "
+      "are",
+      photos.size(), sizes.size(), NameList(sizes));
 }
 
 void LeaveOut(const std::string& reason, DetectedPhoto* photo) {

@@ -34,6 +34,10 @@ struct CameraGroups {
 CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::string& cameras,
                           const std::vector<DetectedPhoto>& photos, bool turned_pixels = true);
 
+// Where photographs have nearly as many sizes as they are: that they were cropped by hand, and what
+// to do; "": they were not.
+std::string ManySizesInWords(const std::vector<DetectedPhoto>& photos);
+
 // Takes a photograph's corners and paper from it; `reason` becomes its detection.problem.
 void LeaveOut(const std::string& reason, DetectedPhoto* photo);
 

@@ -1,5 +1,6 @@
 #include "calib/capture/camera_groups.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace glint {
@@ -43,6 +44,22 @@ TEST(GroupCameras, KeepsUprightPhotographsAloneAndOtherLensesApart) {
 TEST(GroupCameras, CanTakeStoredSizesAsTheyAre) {
   const std::vector<DetectedPhoto> photos = {PhotoOf(400, 300), PhotoOf(300, 400)};
   EXPECT_EQ(GroupCameras("capture.toml", "auto", photos, false).groups.size(), 2u);
+}
+
+TEST(ManySizes, OfPhotographsThatWereCroppedByHandAreTold) {
+  std::vector<DetectedPhoto> photos;
+  for (int i = 0; i < 6; ++i) photos.push_back(PhotoOf(400 - 7 * i, 300 - 3 * i));
+  for (DetectedPhoto& photo : photos) photo.detection.corners.resize(1);
+  EXPECT_THAT(ManySizesInWords(photos),
+              ::testing::HasSubstr("6 photographs have 6 different sizes"));
+  for (DetectedPhoto& photo : photos) photo.detection.corners.clear();  // no board: not of it
+  EXPECT_EQ(ManySizesInWords(photos), "");
+}
+
+TEST(ManySizes, OfUprightPhotographsAndTwoCamerasAreNone) {
+  std::vector<DetectedPhoto> photos = {PhotoOf(400, 300), PhotoOf(300, 400), PhotoOf(640, 480)};
+  for (DetectedPhoto& photo : photos) photo.detection.corners.resize(1);
+  EXPECT_EQ(ManySizesInWords(photos), "");
 }
 
 }  // namespace
