@@ -1,5 +1,4 @@
 #include "calib/capture/calibrate_capture.h"
-#include "calib/validation/misfit.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -33,6 +32,8 @@
 #include "calib/chart/chart_picture.h"
 #include "calib/guidance/coverage_picture.h"
 #include "calib/guidance/polar_picture.h"
+#include "calib/validation/consensus.h"
+#include "calib/validation/misfit.h"
 
 namespace glint {
 namespace {
@@ -392,6 +393,21 @@ CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, 
   return summary;
 }
 
+// Photographs that the most do not go with. A board that was printed higher than wide makes good
+// ones leave, too.
+bool LeaveOutOddPhotos(const Adjusted& adjusted, int threads, CalibSummary* summary) {
+  const std::vector<OddPhoto> odd =
+      OddPhotos(adjusted.problem, adjusted.options, summary->bundle, threads);
+  if (odd.empty()) return false;
+  if (FindBoardStretch(adjusted.problem, adjusted.options, summary->bundle).relative != 0) {
+    return false;
+  }
+  for (const OddPhoto& one : odd) {
+    LeaveOut(one.reason, &summary->photos[summary->photo_index[one.photo]]);
+  }
+  return true;
+}
+
 // Of a bend that the result has a part in; with a smaller one, a sample in the middle is turned by
 // less than half a degree at its edges.
 void TellOfBend(CalibSummary* summary) {
@@ -405,15 +421,17 @@ void TellOfBend(CalibSummary* summary) {
 
 void SolveCapture(const Capture& capture, const CalibOptions& told,
                   const std::vector<Camera>& assumed, int threads, CalibSummary* summary) {
-  constexpr int kMostRounds = 4;  // of the board's shape, and of views that the light sets right
+  // Of odd photographs, the board's shape, and views that the light sets right.
+  constexpr int kMostRounds = 5;
   CalibOptions options = told;
   BundleProblem problem;
   for (int round = 0; round <= kMostRounds; ++round) {
     summary->photo_index.clear();
     problem = MakeProblem(summary->photos, summary->groups, &summary->photo_index);
     for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
-    InterpretBundle(capture, options, AdjustWhatIsLeft(capture, options, problem, summary), threads,
-                    summary);
+    Adjusted adjusted = AdjustWhatIsLeft(capture, options, problem, summary);
+    if (round == 0 && LeaveOutOddPhotos(adjusted, threads, summary)) continue;
+    InterpretBundle(capture, options, std::move(adjusted), threads, summary);
     if (round == kMostRounds) break;
     const bool bent = options.board_shape == "auto" && summary->trust.diagnosis.board_is_bent;
     if (bent) options.board_shape = "bent";

@@ -44,7 +44,9 @@ void AddExposures(const LightEstimate& light, std::vector<std::string>* words) {
     }
     words->push_back(fmt::format(
         "{}: its paper is {} than EXIF's exposure and the other photographs predict; its own "
-        "brightness is used. Did the flash fire at another power, or was the photograph edited?",
+        "brightness is used. Did the flash fire at another power, was a lamp on, or was the "
+        "photograph "
+        "edited?",
         photo.name, Against(factor)));
   }
   double largest = 1;
@@ -56,8 +58,9 @@ void AddExposures(const LightEstimate& light, std::vector<std::string>* words) {
   if (std::abs(std::log(largest)) < kWorthAWord) return;
   words->push_back(fmt::format(
       "the paper contradicts EXIF's exposures by up to {:.0f} %; exposures estimated from the "
-      "paper are used. Possible causes are a flash with automatic power, or an app that brightens "
-      "photographs: set the flash to a fixed power, or use a lamp that is always on",
+      "paper are used. Possible causes are a flash with automatic power, room light in some of the "
+      "photographs, or an app that brightens photographs: set the flash to a fixed power, or use a "
+      "lamp that is always on, in the dark",
       100 * std::abs(largest - 1)));
 }
 
