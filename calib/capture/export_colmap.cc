@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/board/board.h"
 #include "base/camera/orientation.h"
@@ -10,6 +11,7 @@
 #include "base/files/files.h"
 #include "base/formats/calibration.h"
 #include "base/formats/manifest.h"
+#include "calib/bundle/bundle.h"
 #include "calib/colmap/colmap_camera.h"
 
 namespace glint {
@@ -25,9 +27,9 @@ class ModelBuilder {
         metrics_(ReadManifest(manifest_file, "calib").metrics),
         residuals_file_(manifest_file.parent_path() / "residuals.json") {
     residuals_ = Json::parse(ReadTextFile(residuals_file_), nullptr, false);
+    const std::optional<BoardBend> bend = Bend();
     for (const BoardCorner& corner : BoardCorners(capture.board)) {
-      corners_[corner.id].position = {corner.position_in_sample_mm.x(),
-                                      corner.position_in_sample_mm.y(), 0};
+      corners_[corner.id].position = BoardPoint(bend, corner.position_in_sample_mm);
     }
   }
 
@@ -44,6 +46,24 @@ class ModelBuilder {
   }
 
  private:
+  // Of the board, where poses were solved for with it.
+  std::optional<BoardBend> Bend() const {
+    if (!metrics_.contains("diagnosis")) return std::nullopt;
+    const Json& diagnosis = metrics_["diagnosis"];
+    if (!diagnosis.contains("board_bend")) return std::nullopt;
+    const Json& found = diagnosis["board_bend"];
+    if (!found.value("solved_for", false)) return std::nullopt;
+    const std::string where = "metrics.diagnosis.board_bend";
+    const auto pair = [&](const char* field) {
+      const std::vector<double> values = RequireNumbers(manifest_file_, found, where, field, 2);
+      return Eigen::Vector2d(values[0], values[1]);
+    };
+    BoardBend bend;
+    bend.centre_mm = pair("centre_mm");
+    bend.half_size_mm = pair("half_size_mm");
+    bend.height_mm = pair("height_mm");
+    return bend;
+  }
   static std::uint64_t PointId(int corner) { return static_cast<std::uint64_t>(corner) + 1; }
 
   int TurnsOf(const std::string& name) const {
@@ -117,7 +137,7 @@ ColmapModel ModelOfCalibration(const Capture& capture, const fs::path& manifest_
 
 fs::path ExportColmap(const Capture& capture, const fs::path& manifest_file) {
   const ColmapModel model = ModelOfCalibration(capture, manifest_file);
-  const fs::path folder = capture.work() / "colmap";
+  fs::path folder = capture.work() / "colmap";
   fs::create_directories(folder);
   WriteColmapModel(folder, model, ColmapFormat::kBinary);
   return folder;

@@ -81,6 +81,8 @@ Json DiagnosisJson(const BundleResult& result, const Diagnosis& diagnosis) {
   if (diagnosis.bend) {
     const BoardBend& bend = *diagnosis.bend;
     json["board_bend"] = {{"height_mm", {bend.height_mm.x(), bend.height_mm.y()}},
+                          {"centre_mm", {bend.centre_mm.x(), bend.centre_mm.y()}},
+                          {"half_size_mm", {bend.half_size_mm.x(), bend.half_size_mm.y()}},
                           {"sigma_mm",
                            {NumberOrNull(std::sqrt(bend.covariance(0, 0))),
                             NumberOrNull(std::sqrt(bend.covariance(1, 1)))}},

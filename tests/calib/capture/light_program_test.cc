@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -13,6 +14,7 @@
 #include "base/formats/calibration.h"
 #include "base/formats/manifest.h"
 #include "base/linearize/response_curve.h"
+#include "calib/colmap/colmap_model.h"
 #include "tests/calib/testing/synthetic_capture.h"
 
 namespace glint {
@@ -252,6 +254,14 @@ TEST_F(BoardLight, ABendOfTheBoardIsFoundToldAndTakenIntoAccount) {
   EXPECT_THAT(Calibrate("--check").out, HasSubstr(words));
   const Calibration found = ReadCalibration(capture_ / "glint/calib/manifest.json");
   EXPECT_NEAR(found.cameras[0].focal_length_x() / truth_.cameras[0].focal_length_x(), 1, 0.002);
+  const test::Outcome exported =
+      test::RunProgram({testing::Program("glint-calib"), capture_.string(), "--export", "colmap"});
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  double highest_mm = 0;
+  for (const ColmapPoint& point : ReadColmapModel(capture_ / "glint/colmap").points) {
+    highest_mm = std::max(highest_mm, point.position.z());
+  }
+  EXPECT_NEAR(highest_mm, 1.4, 0.1);  // above the outermost corners, which are 208 mm apart
 }
 
 // By the room's lamps, automatically exposed: as bright as the others, and of no use.

@@ -41,6 +41,7 @@ size_t Rejected(const BundleResult& result) {
 
 std::vector<size_t> PhotosOf(const std::vector<OddPhoto>& odd) {
   std::vector<size_t> photos;
+  photos.reserve(odd.size());
   for (const OddPhoto& one : odd) photos.push_back(one.photo);
   return photos;
 }
