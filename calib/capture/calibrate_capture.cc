@@ -117,9 +117,9 @@ Adjusted AdjustWhatIsLeft(const Capture& capture, const CalibOptions& options,
   try {
     return Adjust(capture, options, problem, summary);
   } catch (const Error& error) {
-    if (summary->left_out_by_light.empty()) throw;
+    if (summary->left_out_before.empty()) throw;
     std::string reasons;
-    for (const RejectedPhoto& photo : summary->left_out_by_light) {
+    for (const RejectedPhoto& photo : summary->left_out_before) {
       reasons += "\n  " + photo.name + ": " + photo.reason;
     }
     throw UserError(std::string(error.what()) + "\nLeft out before:" + reasons);
@@ -161,9 +161,9 @@ void TellOfSplit(CalibSummary* summary) {
   });
   if (rejected < 2 || 2 * rejected < static_cast<std::ptrdiff_t>(photos.size())) return;
   const std::string words = fmt::format(
-      "{} of {} photographs do not go together with the rest, so that the rest may be the wrong "
-      "ones: "
-      "an app may have cropped, straightened or enlarged some of them. Use the camera's own files",
+      "{} of {} photographs are inconsistent with the rest, so that the rest may be the wrong "
+      "ones: an app may have cropped, straightened or enlarged some of them. Use the camera's own "
+      "files",
       rejected, photos.size());
   spdlog::warn("{}", words);
   summary->board_findings.push_back(words);
@@ -393,7 +393,7 @@ CalibSummary DetectCapture(const Capture& capture, const CalibOptions& options, 
   return summary;
 }
 
-// Photographs that the most do not go with. A board that was printed higher than wide makes good
+// Photographs that are inconsistent with most. A board that was printed higher than wide makes good
 // ones leave, too.
 bool LeaveOutOddPhotos(const Adjusted& adjusted, int threads, CalibSummary* summary) {
   const std::vector<OddPhoto> odd =
@@ -403,9 +403,17 @@ bool LeaveOutOddPhotos(const Adjusted& adjusted, int threads, CalibSummary* summ
     return false;
   }
   for (const OddPhoto& one : odd) {
-    LeaveOut(one.reason, &summary->photos[summary->photo_index[one.photo]]);
+    DetectedPhoto& photo = summary->photos[summary->photo_index[one.photo]];
+    LeaveOut(one.reason, &photo);
+    summary->left_out_before.push_back({photo.name, one.reason});
   }
   return true;
+}
+
+// What its distortion lacks would seem to be the board's.
+bool IsLensGiven(const BundleProblem& problem) {
+  return std::any_of(problem.cameras.begin(), problem.cameras.end(),
+                     [](const BundleCamera& camera) { return camera.known.has_value(); });
 }
 
 // Of a bend that the result has a part in; with a smaller one, a sample in the middle is turned by
@@ -413,7 +421,7 @@ bool LeaveOutOddPhotos(const Adjusted& adjusted, int threads, CalibSummary* summ
 void TellOfBend(CalibSummary* summary) {
   constexpr double kWorthAWord_mm = 1;
   const Diagnosis& diagnosis = summary->trust.diagnosis;
-  if (!diagnosis.board_is_bent) return;
+  if (!diagnosis.board_is_bent || !summary->bundle.bend) return;
   if (diagnosis.bend->height_mm.cwiseAbs().maxCoeff() < kWorthAWord_mm) return;
   spdlog::warn("{}", diagnosis.words.front());
   summary->board_findings.push_back(diagnosis.words.front());
@@ -430,10 +438,15 @@ void SolveCapture(const Capture& capture, const CalibOptions& told,
     problem = MakeProblem(summary->photos, summary->groups, &summary->photo_index);
     for (size_t i = 0; i < assumed.size(); ++i) problem.cameras[i].known = assumed[i];
     Adjusted adjusted = AdjustWhatIsLeft(capture, options, problem, summary);
-    if (round == 0 && LeaveOutOddPhotos(adjusted, threads, summary)) continue;
+    const bool lens_is_free = !IsLensGiven(problem);
+    if (round == 0 && lens_is_free && options.quick_px == 0 &&
+        LeaveOutOddPhotos(adjusted, threads, summary)) {
+      continue;
+    }
     InterpretBundle(capture, options, std::move(adjusted), threads, summary);
     if (round == kMostRounds) break;
-    const bool bent = options.board_shape == "auto" && summary->trust.diagnosis.board_is_bent;
+    const bool bent =
+        options.board_shape == "auto" && lens_is_free && summary->trust.diagnosis.board_is_bent;
     if (bent) options.board_shape = "bent";
     if (!bent && !FollowLight(summary)) break;
   }

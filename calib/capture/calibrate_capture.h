@@ -40,10 +40,10 @@ struct CalibSummary {
   std::vector<RejectedPhoto> rejected;
   Json poses;           // of COLMAP: what is known of its model and the sample's plane; else null
   LightEstimate light;  // photos as calibration.photos; known: the board told it
-  std::vector<std::string> light_findings;       // see light_findings.h
-  std::vector<RejectedPhoto> left_out_by_light;  // so far
-  std::vector<std::string> board_findings;       // see board_side.h
-  PowerEstimate power;                           // otherwise; photo_power as calibration.photos
+  std::vector<std::string> light_findings;     // see light_findings.h
+  std::vector<RejectedPhoto> left_out_before;  // so far
+  std::vector<std::string> board_findings;     // see board_side.h
+  PowerEstimate power;                         // otherwise; photo_power as calibration.photos
   std::string power_source;      // "capture.toml", "board", "board, light at the lens" or "guess"
   SampleRegistration placement;  // of the sample above or below the board; see place_sample.h
   LampStrengths lamps;           // of a fixed camera; photos as calibration.photos

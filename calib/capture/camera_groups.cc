@@ -105,13 +105,15 @@ CameraGroups GroupCameras(const std::filesystem::path& capture_file, const std::
 std::string ManySizesInWords(const std::vector<DetectedPhoto>& photos) {
   constexpr size_t kLeast = 3;
   std::vector<std::string> sizes;
+  size_t count = 0;
   for (const DetectedPhoto& photo : photos) {
     if (photo.detection.corners.empty()) continue;
+    ++count;
     const auto [shorter, longer] = std::minmax(photo.width_px, photo.height_px);
     std::string size = fmt::format("{}x{}", longer, shorter);
     if (std::find(sizes.begin(), sizes.end(), size) == sizes.end()) sizes.push_back(size);
   }
-  if (sizes.size() < kLeast || 2 * sizes.size() <= photos.size()) return "";
+  if (sizes.size() < kLeast || 2 * sizes.size() <= count) return "";
   return fmt::format(
       "{} photographs have {} different sizes in pixels ({}), as if each had been cropped or "
       "resized "
@@ -119,7 +121,7 @@ std::string ManySizesInWords(const std::vector<DetectedPhoto>& photos) {
       "hand: the centre of the lens would be elsewhere in each. Use the camera's own files, as "
       "they "
       "are",
-      photos.size(), sizes.size(), NameList(sizes));
+      count, sizes.size(), NameList(sizes));
 }
 
 void LeaveOut(const std::string& reason, DetectedPhoto* photo) {

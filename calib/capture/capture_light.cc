@@ -162,6 +162,12 @@ void TakeEstimate(const Capture& capture, CalibSummary* summary) {
   if (ToneCurveOf(capture, *summary)) calibration.tone_curve = "tone_curve.json";
 }
 
+// By EXIF; of a lamp that is always on, all are.
+bool ReportedOff(const DetectedPhoto& photo) {
+  const int flash = photo.measures.file.exif.flash;
+  return flash >= 0 && (flash & 1) == 0;
+}
+
 // The paper's assumption: the light at the lens, or where capture.toml puts it; all photographs'
 // exposures as EXIF says; no fall-off.
 void FillSimpleLight(const Capture& capture, const CalibOptions& options, CalibSummary* summary) {
@@ -206,6 +212,9 @@ LightEstimate EstimateBoardLight(const Capture& capture, const CalibOptions& opt
 
 bool FollowLight(CalibSummary* summary) {
   const std::vector<size_t> flash = summary->FlashPhotos();
+  const auto off = std::count_if(flash.begin(), flash.end(),
+                                 [&](size_t i) { return ReportedOff(summary->photos[i]); });
+  const bool others_fired = 2 * off < static_cast<std::ptrdiff_t>(flash.size());
   bool changed = false;
   for (size_t k = 0; k < summary->light.photos.size(); ++k) {
     const LightOfPhoto& photo = summary->light.photos[k];
@@ -217,10 +226,10 @@ bool FollowLight(CalibSummary* summary) {
       changed = true;
     }
     const std::string reason =
-        ContradictionOf(summary->light, photo, summary->photos[i].measures.file.exif.flash);
+        ContradictionOf(summary->light, photo, others_fired && ReportedOff(summary->photos[i]));
     if (reason.empty()) continue;
     LeaveOut(reason, &summary->photos[i]);
-    summary->left_out_by_light.push_back({photo.name, reason});
+    summary->left_out_before.push_back({photo.name, reason});
     changed = true;
   }
   return changed;

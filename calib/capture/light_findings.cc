@@ -64,9 +64,10 @@ void AddExposures(const LightEstimate& light, std::vector<std::string>* words) {
       100 * std::abs(largest - 1)));
 }
 
-// Of its paper that is large enough to be seen, what the flash explains.
+// Of its paper that has not clipped, what the flash explains.
 double LitShare(const LightOfPhoto& photo) {
-  return photo.samples > 0 ? static_cast<double>(photo.inliers) / photo.samples : 1;
+  const int judged = photo.inliers + photo.unlit;
+  return judged > 0 ? static_cast<double>(photo.inliers) / judged : 1;
 }
 
 double UsualLitShare(const LightEstimate& light) {
@@ -120,14 +121,15 @@ void AddWhiteBalance(const LightEstimate& light, std::vector<std::string>* words
 void AddTone(const Capture& capture, const LightEstimate& light, std::vector<std::string>* words) {
   if (!light.tone) return;
   const bool automatic = capture.encoding == "auto";
+  const std::string read =
+      automatic && light.srgb ? "auto\", here sRGB's" : capture.encoding + "\"";
   words->push_back(fmt::format(
       "the paper's brightness contradicts the tone curve that the photographs are read with "
-      "([radiometry] encoding = \"{}\"): radiance is stored with an exponent of {:.2f} at the "
+      "([radiometry] encoding = \"{}): radiance is stored with an exponent of {:.2f} at the "
       "brightest paper and {:.2f} at the darkest. {} The curve below the darkest paper cannot be "
       "determined: switch HDR and scene modes off, photograph RAW, or measure the curve with glint "
       "response",
-      capture.encoding, light.tone->ExponentAt(light.tone->highest),
-      light.tone->ExponentAt(light.tone->lowest),
+      read, light.tone->ExponentAt(light.tone->highest), light.tone->ExponentAt(light.tone->lowest),
       automatic ? "The curve estimated from the paper is used."
                 : "The light is estimated with the curve from the paper; with encoding = "
                   "\"auto\" the photographs are read with it, too."));
@@ -175,7 +177,7 @@ void AddUneven(const LightEstimate& light, std::vector<std::string>* words) {
 
 }  // namespace
 
-std::string ContradictionOf(const LightEstimate& light, const LightOfPhoto& photo, int flash) {
+std::string ContradictionOf(const LightEstimate& light, const LightOfPhoto& photo, bool flash_off) {
   constexpr double kNoFlash = 0.15;  // of the exposure: a zoom of 2.6 would be as dark
   constexpr double kHardlyLit = 0.4;
   if (!photo.contradicts) {
@@ -187,12 +189,11 @@ std::string ContradictionOf(const LightEstimate& light, const LightOfPhoto& phot
         100 * LitShare(photo), 100 * UsualLitShare(light));
   }
   const double factor = photo.exif_exposure > 0 ? photo.exposure.value / photo.exif_exposure : 1;
-  const bool told = flash >= 0 && (flash & 1) == 0;
-  if (factor < kNoFlash || (told && factor < 1)) {
+  if (factor < kNoFlash || (flash_off && factor < 1)) {
     return fmt::format(
         "its paper is {} than EXIF's exposure and the other photographs predict: the flash did not "
         "fire{}",
-        Against(factor), told ? ", as EXIF says" : "");
+        Against(factor), flash_off ? ", as EXIF reports" : "");
   }
   if (photo.zoom == 1) return "";
   return fmt::format(

@@ -13,8 +13,8 @@ namespace glint {
 // alone where the board did not tell the light.
 std::vector<std::string> LightFindings(const Capture& capture, const CalibSummary& summary);
 
-// Why a photograph that contradicts all others is left out; "": it stays. `flash`: EXIF's bits
-// (ExifFacts::flash).
-std::string ContradictionOf(const LightEstimate& light, const LightOfPhoto& photo, int flash);
+// Why a photograph that contradicts all others is left out; "": it stays. `flash_off`: EXIF
+// reports that no flash fired, though it did in most of the others.
+std::string ContradictionOf(const LightEstimate& light, const LightOfPhoto& photo, bool flash_off);
 
 }  // namespace glint

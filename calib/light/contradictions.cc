@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "base/colour/srgb.h"
 #include "base/statistics/median.h"
 
 namespace glint::light {
@@ -102,11 +103,40 @@ int LostBy(const State& b, const State& a) {
   return lost;
 }
 
-// Half of the squared distance of the flash from the lens's plane, or from where it is said to be.
+// Negative logarithm, but for a constant, of the prior probability of the flash's distance from the
+// lens's plane, or from where it is said to be. (Misfit() has its square too, among thousands.)
 double FlashEnergy(const LightOptions& options, const State& state) {
   const double sd_mm = state.flash_along_free ? kPrior.flash_free_mm : kPrior.flash_along_mm;
   const double off = (state.flash_mm.z() - options.offset_mm.z()) / sd_mm;
-  return off * off / 2;
+  return off * off / 2 + std::log(sd_mm);
+}
+
+// d ln T/d ln L, T what sRGB's curve makes of L by gamma 2.2, where it made `radiance`.
+double StretchBySrgb(double radiance) {
+  constexpr double kStep = 1.01;
+  const double stored = SrgbFromLinear(std::clamp(radiance, 1e-3, 0.97));
+  return std::log(SrgbForGamma22(std::pow(stored * kStep, 2.2)) /
+                  SrgbForGamma22(std::pow(stored / kStep, 2.2))) /
+         (2 * 2.2 * std::log(kStep));
+}
+
+// As one curve compresses radiance it compresses residuals: these are compared as gamma 2.2 has
+// them.
+void MeasureByGamma22(State* state) {
+  if (!state->srgb) return;
+  double sum = 0, count = 0;
+  for (PhotoState& photo : state->photos) {
+    for (Spot& spot : photo.spots) {
+      for (int c = 0; c < 3; ++c) {
+        const double stretch = StretchBySrgb(spot.seen[c]);
+        spot.sigma[c] *= stretch;
+        if (!photo.used || !spot.inlier) continue;
+        sum += std::log(stretch);
+        ++count;
+      }
+    }
+  }
+  if (count > 0) state->scale /= std::exp(sum / count);
 }
 
 // Half of the squared residuals by which `solved` is better than `other`, were a block of squares
@@ -118,6 +148,10 @@ double Saved(const LightOptions& options, State solved, State other) {
   for (size_t i = 0; i < solved.photos.size(); ++i) {
     const bool both = solved.photos[i].used && other.photos[i].used;
     solved.photos[i].used = other.photos[i].used = both;
+  }
+  if (solved.srgb != other.srgb) {
+    MeasureByGamma22(&solved);
+    MeasureByGamma22(&other);
   }
   const double scale = std::min(solved.scale, other.scale);
   const double ours = Misfit(options, solved, scale), theirs = Misfit(options, other, scale);

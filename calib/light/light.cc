@@ -16,7 +16,6 @@ namespace glint {
 namespace light {
 namespace {
 
-constexpr double kBrightest = 0.9;  // predicted radiance beyond which a sample may have clipped
 constexpr int kMostRounds = 6;
 
 // Photon noise of a small sensor (8000 electrons), averaged over the disc, and 0.3 % of what no
@@ -103,9 +102,8 @@ bool Fits(const LightOptions& options, const State& state, const PhotoState& pho
           const Spot& spot) {
   constexpr double kAlwaysFine = 0.005;  // relative: what quantisation alone may do
   const auto predicted = state.Prediction(photo, spot);
-  if (predicted.empty()) return false;
+  if (predicted.empty() || (photo.clips && MayClip(predicted))) return false;
   for (int c = 0; c < 3; ++c) {
-    if (photo.clips && predicted[c] > kBrightest) return false;
     const double limit =
         std::max(options.reject_sigmas * state.scale * spot.sigma[c], kAlwaysFine * predicted[c]);
     if (!(std::abs(spot.seen[c] - predicted[c]) <= limit)) return false;
@@ -150,6 +148,12 @@ State StartState(const LightProblem& problem, const LightOptions& options) {
 }
 
 }  // namespace
+
+bool MayClip(const std::vector<double>& predicted) {
+  constexpr double kBrightest = 0.9;
+  return std::any_of(predicted.begin(), predicted.end(),
+                     [](double radiance) { return radiance > kBrightest; });
+}
 
 void Reweigh(State* state) {
   std::vector<double> sizes;

@@ -80,6 +80,7 @@ struct LightOfPhoto {
   bool contradicts = false;
   double zoom = 1;
   int samples = 0, inliers = 0;
+  int unlit = 0;  // of those that are no inliers: darker or brighter than predicted, unclipped
   double rms_percent = 0;  // of the inliers' residuals, relative to what is predicted
   struct Spot {
     Eigen::Vector2d point_px;  // in the stored picture

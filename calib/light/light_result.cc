@@ -62,6 +62,7 @@ void FillPhotos(const LightProblem& problem, const State& state, const Layout& l
       }
       if (shown.inlier) squares += shown.relative.squaredNorm() / 3;
       of.inliers += shown.inlier;
+      of.unlit += !shown.inlier && !(photo.clips && MayClip(predicted));
       of.spots.push_back(shown);
     }
     if (photo.used) {

@@ -83,6 +83,9 @@ struct Layout {
 };
 Layout LayoutOf(const State& state);
 
+// Whether a spot of that radiance is so bright that pixels of it may have clipped.
+bool MayClip(const std::vector<double>& predicted);
+
 // Residuals' scale from the inliers' median; new weights from the prediction.
 void Reweigh(State* state);
 

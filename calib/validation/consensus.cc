@@ -21,17 +21,21 @@ size_t Accepted(const BundleResult& result) {
                     [](const PhotoEstimate& photo) { return photo.rejected.empty(); }));
 }
 
+std::optional<BundleResult> Solve(const BundleProblem& problem, const BundleOptions& options) {
+  try {
+    return AdjustBundle(problem, options);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
 using Pair = std::pair<size_t, size_t>;
 
 std::optional<BundleResult> SolveWithout(BundleProblem problem, const BundleOptions& options,
                                          const Pair& pair) {
   problem.photos.erase(problem.photos.begin() + static_cast<std::ptrdiff_t>(pair.second));
   problem.photos.erase(problem.photos.begin() + static_cast<std::ptrdiff_t>(pair.first));
-  try {
-    return AdjustBundle(problem, options);
-  } catch (const Error&) {
-    return std::nullopt;
-  }
+  return Solve(problem, options);
 }
 
 // The solution without those two whose absence leaves the least residuals of all others; none where
@@ -73,12 +77,12 @@ std::vector<OddPhoto> OddPhotos(const BundleProblem& problem, const BundleOption
     known.bend = best->bend;
     poses.bend = false;
   }
-  const BundleResult all = AdjustBundle(known, poses);
+  const std::optional<BundleResult> all = Solve(known, poses);
   std::vector<OddPhoto> odd;
-  for (size_t i = 0; i < count; ++i) {
-    if (all.photos[i].rejected.empty()) continue;
-    const auto view = ExplainByOtherView(all, all.photos[i]);
-    odd.push_back({i, all.photos[i].rejected + (view ? "; " + InWords(*view) : "")});
+  for (size_t i = 0; all && i < count; ++i) {
+    if (all->photos[i].rejected.empty()) continue;
+    const auto view = ExplainByOtherView(*all, all->photos[i]);
+    odd.push_back({i, all->photos[i].rejected + (view ? "; " + InWords(*view) : "")});
   }
   return odd;
 }

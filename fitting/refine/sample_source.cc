@@ -45,21 +45,24 @@ void SampleSource::Correct(ViewCorrections corrections) { corrections_ = std::mo
 
 // Larger maps have heights for blocks of texels: initial maps are no finer (fit's --finest-size).
 HidingRelief SampleSource::ReliefOfMaps(int threads) {
-  constexpr int kMostSide = 512;
-  const int stride = (std::max(plane().width, plane().height) + kMostSide - 1) / kMostSide;
+  constexpr int kMostSide = 512, kSlopesSide = 256;
+  const int longest = std::max(plane().width, plane().height);
+  const int stride = (longest + kMostSide - 1) / kMostSide;
   SamplePlane coarse = plane();
   coarse.width = std::max(1, coarse.width / stride);
   coarse.height = std::max(1, coarse.height / stride);
   const SvbrdfMaps maps =
       ResampledSvbrdf(maps_file_, coarse.width, coarse.height).Read(0, coarse.height);
   HidingRelief relief{Horizon(IntegrateNormals(maps, coarse, 0, {}, threads), coarse), 0};
-  const double slope_sd = ReliefSlopeSd(Every(stride, threads).photographs, threads);
+  const double slope_sd =
+      ReliefSlopeSd(Every(std::max(1, longest / kSlopesSide), threads).photographs, threads);
   relief.finer_slope_sd =
       std::sqrt(std::max(0.0, slope_sd * slope_sd - relief.horizon.slope_variance()));
   return relief;
 }
 
 void SampleSource::MaskShadows(int threads) {
+  if (Views().photographs.size() < kFewestForShadows) return;
   const HidingRelief relief = ReliefOfMaps(threads);
   const size_t width = static_cast<size_t>(plane().width);
   std::vector<std::vector<bool>> shadows(

@@ -59,8 +59,8 @@ double Horizon::HiddenShare(double x_mm, double y_mm, const Vec3d& light_in_samp
     const double error_mm = HeightError_texel(k) * step_mm, ray_mm = here_mm + k * rise_mm;
     if (highest_mm_ < ray_mm + nearest * error_mm) break;
     const double at_row = row + k * rows, at_column = column + k * columns;
-    if (at_row < 0 || at_row > field_.height - 1) break;
-    if (at_column < 0 || at_column > field_.width - 1) break;
+    if (at_row < -0.5 || at_row > field_.height - 0.5) break;
+    if (at_column < -0.5 || at_column > field_.width - 0.5) break;
     nearest = std::max(nearest, (field_.Lookup(at_row, at_column) - ray_mm) / error_mm);
   }
   return nearest > -kSurelyLit ? std::erfc(-nearest / std::numbers::sqrt2) / 2 : 0;

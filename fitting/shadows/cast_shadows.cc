@@ -14,7 +14,6 @@
 namespace glint {
 namespace {
 
-constexpr size_t kFewest = 8;         // photographs that tell a shadow from relief
 constexpr double kIndirect = 0.2;     // of what a texel would receive, that it does in shadow
 constexpr double kLeastScale = 0.05;  // of the residuals of a matte texel, by its albedo
 constexpr double kGrazing = 0.05;     // cosine; a texel turned farther away is dark by itself
@@ -46,8 +45,8 @@ class MatteTexel {
   // False where too few photographs show it.
   bool Solve(size_t texel) {
     Look(texel);
-    if (seen_.size() < kFewest) return false;
-    const size_t high = std::max(kFewest, seen_.size() / 2);
+    if (seen_.size() < kFewestForShadows) return false;
+    const size_t high = std::max(kFewestForShadows, seen_.size() / 2);
     weights_.assign(seen_.size(), 1.0f);
     for (const size_t count : {high, seen_.size()}) {
       for (int round = 0; round < kRounds; ++round) {
@@ -168,7 +167,7 @@ double ShadowedShare(double elevation_tangent, double relief_slope_sd) {
 }
 
 double ReliefSlopeSd(const PhotographSet& set, int threads) {
-  if (set.photographs.size() < kFewest) return 0;
+  if (set.photographs.size() < kFewestForShadows) return 0;
   const size_t texels = static_cast<size_t>(set.plane.width) * set.plane.height;
   const size_t count = std::min(texels, kMostForSlopes);
   const std::vector<size_t> order = HighestFirst(set);
@@ -193,7 +192,7 @@ double ReliefSlopeSd(const PhotographSet& set, int threads) {
 }
 
 void MaskCastShadows(const HidingRelief& relief, int threads, PhotographSet* set) {
-  if (set->photographs.size() < kFewest) return;
+  if (set->photographs.size() < kFewestForShadows) return;
   const std::vector<size_t> order = HighestFirst(*set);
   std::vector<double> by_finer;
   for (const Photograph& photograph : set->photographs) {

@@ -12,12 +12,16 @@
 // the light, by the heights of the initial maps (Horizon) or by what is too fine for those: how
 // often a Gaussian surface hides a light that is so low (Smith, "Geometrical shadowing of a random
 // rough surface", IEEE Trans. Antennas Propag. 1967). A level sample casts none, whatever is dark.
+// A slope that is turned away from the light hides itself and leaves, too: it would say no more
+// than the heights do.
 #pragma once
 
 #include "fitting/photographs/photographs.h"
 #include "fitting/relief/horizon.h"
 
 namespace glint {
+
+inline constexpr size_t kFewestForShadows = 8;  // photographs that tell a shadow from relief
 
 // Standard deviation of a slope along one axis over the sample's texels, from at most 16,384 of
 // them; 0 where they have fewer than eight photographs. Of photographs of all rows.

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "base/formats/calibration.h"
+#include "base/formats/manifest.h"
 #include "base/images/image.h"
 #include "calib/colmap/colmap_camera.h"
 #include "calib/colmap/colmap_model.h"
@@ -224,6 +225,11 @@ TEST_F(CalibProgram, OnePhotographTakesItsFocalLengthFromElsewhereAndSaysSo) {
   ASSERT_EQ(calibration.photos.size(), 1u);
   const double diagonal_px = std::hypot(640, 480);
   EXPECT_NEAR(calibration.cameras[0].focal_length_x(), 26 / std::hypot(36, 24) * diagonal_px, 1e-3);
+  // Distortion that the assumed lens lacks is not the board's.
+  const Json diagnosis = ReadManifest(capture / "glint/calib/manifest.json").metrics["diagnosis"];
+  if (diagnosis.contains("board_bend")) {
+    EXPECT_EQ(diagnosis["board_bend"]["solved_for"], false);
+  }
 }
 
 TEST_F(CalibProgram, OnePhotographWithoutABoardIsTakenFromStraightAbove) {

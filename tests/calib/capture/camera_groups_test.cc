@@ -48,6 +48,7 @@ TEST(GroupCameras, CanTakeStoredSizesAsTheyAre) {
 
 TEST(ManySizes, OfPhotographsThatWereCroppedByHandAreTold) {
   std::vector<DetectedPhoto> photos;
+  photos.reserve(6);
   for (int i = 0; i < 6; ++i) photos.push_back(PhotoOf(400 - 7 * i, 300 - 3 * i));
   for (DetectedPhoto& photo : photos) photo.detection.corners.resize(1);
   EXPECT_THAT(ManySizesInWords(photos),

@@ -305,19 +305,23 @@ TEST(EstimateLight, FindsTheToneCurveInPlaceOfAFlashElsewhere) {
 TEST(EstimateLight, TellsSrgbsCurveFromGamma22) {
   LightOptions options;
   options.perhaps_srgb = true;
-  for (const int photos : {6, 12}) {
-    LightProblem problem = MakeProblem(photos, {}, false, photos);
-    EXPECT_FALSE(EstimateLight(problem, options).srgb);
+  for (const double exposed : {1.0, 0.3}) {
+    const int photos = 12;
+    Truth truth;
+    truth.power *= exposed;
+    truth.ambient *= exposed;
+    LightProblem problem = MakeProblem(photos, truth, false, photos);
+    EXPECT_FALSE(EstimateLight(problem, options).srgb) << exposed;
     for (LightPhoto& photo : problem.photos) {
       for (PaperSample& sample : photo.samples) {
         for (double& value : sample.radiance) value = std::pow(SrgbFromLinear(value), 2.2);
       }
     }
     const LightEstimate light = EstimateLight(problem, options);
-    EXPECT_TRUE(light.srgb);
+    EXPECT_TRUE(light.srgb) << exposed;
     EXPECT_FALSE(light.tone);
     EXPECT_FALSE(light.flash_along_free);
-    ExpectTheLight(light, {});
+    ExpectTheLight(light, truth);
     EXPECT_FALSE(EstimateLight(problem).srgb);  // where the encoding was told
   }
 }

@@ -105,6 +105,13 @@ TEST(Horizon, LevelSampleHidesNothingThatIsNotAtGrazingAngle) {
   EXPECT_EQ(horizon.slope_variance(), 0);
 }
 
+// Of heights that are coarser than the texels, the first centre lies inside the first texels.
+TEST(Horizon, HidesTexelsOutsideTheOutermostCentresToo) {
+  const Horizon horizon(Wall(40), Plane());
+  const double above_mm = Plane().y_mm(0) + 0.4 * kTexel_mm;
+  EXPECT_GT(horizon.HiddenShare(Plane().x_mm(36), above_mm, Light(0, 30)), 0.99);
+}
+
 TEST(Horizon, SlopesAreThoseOfTheHeights) {
   HeightField field = Level();
   for (int row = 0; row < kHeight; ++row) {
