@@ -416,22 +416,24 @@ bool IsLensGiven(const BundleProblem& problem) {
                      [](const BundleCamera& camera) { return camera.known.has_value(); });
 }
 
-// Of a bend that the result has a part in; with a smaller one, a sample in the middle is turned by
-// less than half a degree at its edges.
+// Of a bend that the result takes into account. A sample of 100 mm that arches as a sheet of 250 mm
+// does is turned by 0.4° at its edges where the sheet's middle is 1 mm high; less is worth no word.
 void TellOfBend(CalibSummary* summary) {
   constexpr double kWorthAWord_mm = 1;
   const Diagnosis& diagnosis = summary->trust.diagnosis;
   if (!diagnosis.board_is_bent || !summary->bundle.bend) return;
   if (diagnosis.bend->height_mm.cwiseAbs().maxCoeff() < kWorthAWord_mm) return;
-  spdlog::warn("{}", diagnosis.words.front());
-  summary->board_findings.push_back(diagnosis.words.front());
+  const std::string words =
+      diagnosis.words.front() + ", but the sample may be bent with it: glue both to something flat";
+  spdlog::warn("{}", words);
+  summary->board_findings.push_back(words);
 }
 
-void SolveCapture(const Capture& capture, const CalibOptions& told,
+void SolveCapture(const Capture& capture, const CalibOptions& given,
                   const std::vector<Camera>& assumed, int threads, CalibSummary* summary) {
   // Of odd photographs, the board's shape, and views that the light sets right.
   constexpr int kMostRounds = 5;
-  CalibOptions options = told;
+  CalibOptions options = given;  // with the board's shape as it is found
   BundleProblem problem;
   for (int round = 0; round <= kMostRounds; ++round) {
     summary->photo_index.clear();

@@ -87,11 +87,7 @@ std::string BendInWords(const Diagnosis& diagnosis, bool solved_for) {
       "{:.2f} ± {:.2f} mm above its top and bottom edges",
       bend.height_mm.x(), std::sqrt(bend.covariance(0, 0)), bend.height_mm.y(),
       std::sqrt(bend.covariance(1, 1)));
-  if (solved_for) {
-    return text +
-           "; the result takes that into account, but the sample may be bent with it: glue both to "
-           "something flat";
-  }
+  if (solved_for) return text + "; the result takes that into account";
   return text + fmt::format(
                     " (the residual falls from {:.3f} to {:.3f} px with it); glue it to something "
                     "flat, or give --board-shape bent",
