@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <numbers>
 
 #include "base/model/model_constant.h"
 
@@ -63,6 +64,9 @@ inline constexpr double kLongestStep_px = 2, kLeastGradient = 1e-3;
 inline constexpr int kHeightPasses = 3, kHomographyPasses = 2;
 inline constexpr int kAllPairsUpTo = 12, kPeakReach_px = 2;
 inline constexpr std::array<int, 5> kPairPartners = {1, 2, 3, 5, 8};
+inline constexpr int kMovesSide_px = 256, kTurnsEachWay = 5, kMoveSweeps = 2, kPartsOfTexture = 4;
+inline constexpr double kTurnStep_rad = std::numbers::pi / 180, kWellExplained = 0.5;
+inline constexpr int kCommonMotionSteps = 10;
 inline constexpr int kDetailLevels = 3;
 inline constexpr int kRobustIterations = 30;
 inline constexpr double kRobustTolerance = 1e-7;
@@ -149,6 +153,15 @@ inline constexpr ModelConstant kSolverRows[] = {
     Row("kAllPairsUpTo, kPeakReach_px", {kAllPairsUpTo, kPeakReach_px}, "views; pixels",
         "of pairs: all of so few, and about a peak"),
     Row("kPairPartners", {kPairPartners}, "views further on", "of each view of more"),
+    Row("kMovesSide_px, kMoveSweeps, kPartsOfTexture",
+        {kMovesSide_px, kMoveSweeps, kPartsOfTexture}, "pixels; rounds; a side",
+        "of the pictures by which motions of the sample are found; over all photographs; parts in "
+        "which its texture is looked for"),
+    Row("kTurnsEachWay, kTurnStep_rad, kWellExplained",
+        {kTurnsEachWay, kTurnStep_rad, kWellExplained}, "turns; rad; share",
+        "that are tried of a photograph of which less is explained"),
+    Row("kCommonMotionSteps", {kCommonMotionSteps}, "steps",
+        "to what most photographs' shifts have in common"),
     Row("kDetailLevels", {kDetailLevels}, "levels", "of the pictures' pyramid"),
     Row("kRobustIterations, kRobustTolerance", {kRobustIterations, kRobustTolerance},
         "iterations; of the cost", "of registration's fits"),

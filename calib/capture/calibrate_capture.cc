@@ -314,6 +314,11 @@ void FinishCapture(const Capture& capture, const CalibOptions& options, bool ass
                    CalibSummary* summary) {
   FillPhotos(capture, summary);
   FillLight(capture, options, summary);
+  if (const std::string words = MovesInWords(summary->placement, summary->calibration);
+      !words.empty()) {
+    spdlog::warn("{}", words);
+    summary->board_findings.push_back(words);
+  }
   PlaceSample(summary->placement, &summary->calibration);
   summary->guidance = Judge(GuidanceInputOf(capture, *summary, assumed_intrinsics));
 }
@@ -450,7 +455,9 @@ void SolveCapture(const Capture& capture, const CalibOptions& given,
     const bool bent =
         options.board_shape == "auto" && lens_is_free && summary->trust.diagnosis.board_is_bent;
     if (bent) options.board_shape = "bent";
-    if (!bent && !FollowLight(summary)) break;
+    const bool other_samples = LeaveOutOtherSamples(summary);
+    // Indices of the light's photographs are those before.
+    if (!bent && !other_samples && !FollowLight(summary)) break;
   }
   TellOfBend(summary);
   ExplainMisfits(options, problem, summary);

@@ -23,7 +23,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 20;
+inline constexpr int kCalibVersion = 21;
 
 struct RejectedPhoto {
   std::string name, reason;

@@ -9,6 +9,7 @@
 
 #include "base/model/registration.h"
 #include "base/parallel/parallel.h"
+#include "calib/capture/camera_groups.h"
 #include "calib/capture/pose_source.h"
 
 namespace glint {
@@ -97,8 +98,31 @@ void FillPriors(const Capture& capture, const CalibOptions& options, Registratio
                      constants::kMeasuredHeightShare * std::abs(problem->height_mm));
 }
 
+double Degrees(double radians) { return radians * 180 / std::numbers::pi; }
+
+// "a.jpg", "a.jpg and b.jpg", "a.jpg, b.jpg and 3 more".
+std::string NamesInWords(const std::vector<std::string>& names) {
+  if (names.size() == 1) return names[0];
+  if (names.size() == 2) return names[0] + " and " + names[1];
+  if (names.size() == 3) return fmt::format("{}, {} and {}", names[0], names[1], names[2]);
+  return fmt::format("{}, {} and {} more", names[0], names[1], names.size() - 2);
+}
+
+Json MovesMetrics(const CalibSummary& summary) {
+  Json moved = Json::array();
+  const std::vector<SampleMove>& moves = summary.placement.moves;
+  for (size_t i = 0; i < moves.size(); ++i) {
+    if (moves[i].none()) continue;
+    moved.push_back({{"photo", summary.calibration.photos[i].photo},
+                     {"right_mm", moves[i].shift_mm.x()},
+                     {"up_mm", moves[i].shift_mm.y()},
+                     {"turn_deg", Degrees(moves[i].turn_rad)}});
+  }
+  return moved;
+}
+
 double Tilt_deg(const PlaneValues& plane) {
-  return std::atan(std::hypot(plane[1], plane[2])) * 180 / std::numbers::pi;
+  return Degrees(std::atan(std::hypot(plane[1], plane[2])));
 }
 
 }  // namespace
@@ -111,6 +135,7 @@ SampleRegistration FindSamplePlane(const Capture& capture, const CalibOptions& o
   problem.sample_width_mm = capture.sample_size_mm[0];
   problem.sample_height_mm = capture.sample_size_mm[1];
   problem.margin = kSampleMargin;
+  problem.may_have_moved = true;
   const std::vector<CalibratedPhoto>& photos = calibration.photos;
   const double pixel_mm = Longest_mm(capture) / constants::kRegistrationSide_px;
   const cv::Size size(
@@ -125,11 +150,60 @@ SampleRegistration FindSamplePlane(const Capture& capture, const CalibOptions& o
   return photos.size() < 2 ? Unregistered(problem) : RegisterSample(problem, threads);
 }
 
+bool LeaveOutOtherSamples(CalibSummary* summary) {
+  const std::vector<int>& textures = summary->placement.textures;
+  const std::vector<size_t> flash = summary->FlashPhotos();
+  std::vector<std::string> same;
+  for (size_t k = 0; k < textures.size(); ++k) {
+    if (textures[k] == 0) same.push_back(summary->photos[flash[k]].name);
+  }
+  bool changed = false;
+  for (size_t k = 0; k < textures.size(); ++k) {
+    if (textures[k] != 1) continue;
+    DetectedPhoto& photo = summary->photos[flash[k]];
+    const std::string reason = fmt::format(
+        "shows another sample than {}: nothing of its texture is in them, wherever it is looked "
+        "for. Photograph each sample as a capture of its own",
+        NamesInWords(same));
+    LeaveOut(reason, &photo);
+    summary->left_out_before.push_back({photo.name, reason});
+    changed = true;
+  }
+  return changed;
+}
+
+std::string MovesInWords(const SampleRegistration& registration, const Calibration& calibration) {
+  std::vector<std::string> names;
+  double longest_mm = 0, largest_rad = 0;
+  for (size_t i = 0; i < registration.moves.size(); ++i) {
+    const SampleMove& move = registration.moves[i];
+    if (move.none()) continue;
+    names.push_back(calibration.photos[i].photo);
+    longest_mm = std::max(longest_mm, move.shift_mm.norm());
+    largest_rad = std::max(largest_rad, std::abs(move.turn_rad));
+  }
+  if (names.empty()) return "";
+  constexpr double kWorthAWord_mm = 0.05, kWorthAWord_rad = 0.005;
+  std::vector<std::string> how;
+  if (longest_mm >= kWorthAWord_mm) how.push_back(fmt::format("lies up to {:.1f} mm", longest_mm));
+  if (largest_rad >= kWorthAWord_rad) {
+    how.push_back(fmt::format("is turned by {:.1f}°", Degrees(largest_rad)));
+  }
+  return fmt::format(
+      "the sample was moved between photographs: in {} it {} from where the others have it. Each "
+      "is "
+      "used with the sample's place in it; fix the sample to the board with double-sided tape",
+      NamesInWords(names), fmt::join(how, " and "));
+}
+
 void PlaceSample(const SampleRegistration& registration, Calibration* calibration) {
   const Rigid3 board_from_sample = AssumedFromSample(registration.plane);
   calibration->board_from_sample = board_from_sample;
   for (size_t i = 0; i < calibration->photos.size(); ++i) {
     CalibratedPhoto& photo = calibration->photos[i];
+    if (!registration.moves.empty()) {
+      photo.camera_from_sample = photo.camera_from_sample * registration.moves[i].Motion();
+    }
     photo.camera_from_sample = photo.camera_from_sample * board_from_sample;
     photo.registration = registration.homographies[i];
   }
@@ -143,6 +217,7 @@ Json PlacementMetrics(const CalibSummary& summary) {
           {"slope", {placement.plane[1], placement.plane[2]}},
           {"slope_sd", {sigma(1), sigma(2)}},
           {"tilt_deg", Tilt_deg(placement.plane)},
+          {"moved", MovesMetrics(summary)},
           {"told_by_texture", placement.told},
           {"windows", placement.windows},
           {"measured", placement.measured},

@@ -14,6 +14,11 @@ SampleRegistration FindSamplePlane(const Capture& capture, const CalibOptions& o
                                    const Calibration& calibration,
                                    const std::vector<DetectedPhoto>& detected, int threads);
 
+// Leaves out photographs of another sample than most show. Returns whether it did.
+bool LeaveOutOtherSamples(CalibSummary* summary);
+// "the sample was moved …"; "" where it was not.
+std::string MovesInWords(const SampleRegistration& registration, const Calibration& calibration);
+
 // Moves the calibration's poses into the sample's frame: the sample lies at z = 0 from here on.
 void PlaceSample(const SampleRegistration& registration, Calibration* calibration);
 

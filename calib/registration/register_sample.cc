@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/model/registration.h"
 #include "base/model/solver.h"
@@ -10,6 +11,7 @@
 #include "calib/registration/detail_pictures.h"
 #include "calib/registration/factor_analysis.h"
 #include "calib/registration/place_problem.h"
+#include "calib/registration/sample_moves.h"
 #include "calib/registration/window_shifts.h"
 
 namespace glint {
@@ -31,22 +33,33 @@ constexpr double kJudged = 1.0 / 4;
 
 class Registration {
  public:
-  Registration(const RegistrationProblem& problem, int threads)
-      : problem_(problem),
-        pictures_(problem, constants::kCoarseDetail),
-        fine_(problem, constants::kFineDetail),
+  Registration(RegistrationProblem problem, int threads)
+      : problem_(std::move(problem)),
+        pictures_(problem_, constants::kCoarseDetail),
+        fine_(problem_, constants::kFineDetail),
         threads_(threads) {}
+
+  bool fixed() const {
+    return pictures_.views() < 2 || (problem_.height_sd_mm <= 0 && problem_.homography_sd_mm <= 0);
+  }
+
+  void FindCoarsePlane() {
+    if (!fixed()) coarse_ = CoarsePlane(problem_, fine_, threads_);
+  }
+
+  SampleMoves Moves() const {
+    return fixed() ? SampleMoves{} : FindMoves(problem_, pictures_, coarse_);
+  }
 
   SampleRegistration Register() {
     SampleRegistration result = Unregistered(problem_);
-    const bool fixed = problem_.height_sd_mm <= 0 && problem_.homography_sd_mm <= 0;
-    if (pictures_.views() < 2 || fixed) return result;
+    if (fixed()) return result;
     places_.unit_mm = 0.5 * std::max(problem_.sample_width_mm, problem_.sample_height_mm);
     places_.homographies.resize(problem_.views.size());
     places_.plane[0] = problem_.height_mm;
     spreads_.fill(problem_.homography_sd_mm / places_.unit_mm);
     result.displaced_before_mm = Displaced_mm(&result);
-    places_.plane = CoarsePlane(problem_, fine_, threads_);
+    places_.plane = coarse_;
     const double reach_mm = constants::kNeedsPairs * 2 * places_.unit_mm;
     const bool few = FactorsOf(pictures_.views()) == 0;
     const bool loose = problem_.homography_sd_mm > reach_mm;
@@ -161,12 +174,61 @@ class Registration {
     return *middle * pictures_.PixelSide_mm(pictures_.OwnSize());
   }
 
-  const RegistrationProblem& problem_;
+  const RegistrationProblem problem_;
   const DetailPictures pictures_, fine_;
   const int threads_;
+  PlaneValues coarse_{0, 0, 0};
   SamplePlaces places_;
   HomographySpreads spreads_{};
 };
+
+}  // namespace
+
+namespace {
+
+// What a homography does, as a motion.
+SampleMove MotionOf(const Eigen::Matrix3d& homography) {
+  return {0.5 * (homography(1, 0) - homography(0, 1)), homography.topRightCorner<2, 1>()};
+}
+
+SampleMove MeanOf(const std::vector<SampleMove>& moves, const std::vector<size_t>& views) {
+  SampleMove mean;
+  for (const size_t view : views) {
+    mean.turn_rad += moves[view].turn_rad / static_cast<double>(views.size());
+    mean.shift_mm += moves[view].shift_mm / static_cast<double>(views.size());
+  }
+  return mean;
+}
+
+// Improves motions by where each view is displaced against the others once they are undone; those
+// of views that were moved together are one.
+std::vector<SampleMove> FineMoves(const RegistrationProblem& problem, std::vector<SampleMove> moves,
+                                  int threads) {
+  RegistrationProblem loose = WithoutMoves(problem, moves);
+  loose.homography_sd_mm =
+      constants::kImportedPlaceSd * std::max(problem.sample_width_mm, problem.sample_height_mm);
+  Registration registration(std::move(loose), threads);
+  registration.FindCoarsePlane();
+  const std::vector<Eigen::Matrix3d> left = registration.Register().homographies;
+  const std::vector<std::vector<size_t>> together = MovedTogether(problem, moves);
+  std::vector<SampleMove> fine = moves;
+  SampleMove unmoved;
+  for (size_t i = 0; i < moves.size(); ++i) {
+    const SampleMove motion = MotionOf(left[i]);
+    fine[i].turn_rad += motion.turn_rad;
+    fine[i].shift_mm += Eigen::Rotation2Dd(moves[i].turn_rad) * motion.shift_mm;
+  }
+  for (size_t i = 0; i < moves.size(); ++i) {
+    if (moves[i].none()) unmoved = MeanOf(fine, together[i]);
+  }
+  for (size_t i = 0; i < moves.size(); ++i) {
+    if (moves[i].none()) continue;
+    const SampleMove mean = MeanOf(fine, together[i]);
+    const double turn_rad = mean.turn_rad - unmoved.turn_rad;
+    moves[i] = {turn_rad, mean.shift_mm - Eigen::Rotation2Dd(turn_rad) * unmoved.shift_mm};
+  }
+  return moves;
+}
 
 }  // namespace
 
@@ -183,7 +245,24 @@ SampleRegistration Unregistered(const RegistrationProblem& problem) {
 
 SampleRegistration RegisterSample(const RegistrationProblem& problem, int threads) {
   if (problem.views.empty()) return Unregistered(problem);
-  return Registration(problem, threads).Register();
+  Registration registration(problem, threads);
+  registration.FindCoarsePlane();
+  const SampleMoves found = problem.may_have_moved ? registration.Moves() : SampleMoves{};
+  SampleRegistration result;
+  if (found.moves.empty()) {
+    result = registration.Register();
+  } else {
+    std::vector<SampleMove> moves = found.moves;
+    for (int pass = 0; pass < constants::kMoveSweeps; ++pass) {
+      moves = FineMoves(problem, std::move(moves), threads);
+    }
+    Registration without(WithoutMoves(problem, moves), threads);
+    without.FindCoarsePlane();
+    result = without.Register();
+    result.moves = moves;
+  }
+  result.textures = found.textures;
+  return result;
 }
 
 }  // namespace glint

@@ -43,6 +43,8 @@ struct RegistrationProblem {
   bool often_as_said = true;
   // Displacement of a photograph's corners beside the plane; 0: none.
   double homography_sd_mm = 0;
+  // Whether somebody may have touched the sample between photographs (sample_moves.h).
+  bool may_have_moved = false;
 };
 
 struct SampleRegistration {
@@ -51,6 +53,12 @@ struct SampleRegistration {
   // By view: the sample's point p is shown where a flat sample in that plane would have the point
   // homography · (p, 1), millimetres.
   std::vector<Eigen::Matrix3d> homographies;
+
+  // By view, in the assumed plane and before all else; empty where the sample was not moved.
+  std::vector<SampleMove> moves;
+  // By view: 0 shows the texture of most, 1 another one, −1: cannot be told. Empty where all show
+  // one.
+  std::vector<int> textures;
 
   bool told = false;  // by the photographs, not the prior alone
   // Windows of pairs of views in which the texture's displacement could be measured, and how many

@@ -18,6 +18,20 @@ namespace glint {
 // Height in millimetres, then the slopes along x and y.
 using PlaneValues = std::array<double, 3>;
 
+// A motion of the sample in its plane: its point p lies at turn · p + shift.
+struct SampleMove {
+  double turn_rad = 0;  // counter-clockwise as seen from above
+  Eigen::Vector2d shift_mm{0, 0};
+
+  bool none() const { return turn_rad == 0 && shift_mm.isZero(0); }
+  Rigid3 Motion() const {
+    Rigid3 motion;
+    motion.rotation.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(turn_rad).toRotationMatrix();
+    motion.translation << shift_mm, 0;
+    return motion;
+  }
+};
+
 // A homography as what it adds to the identity, (x, y, 1) in units of `unit_mm`:
 // ((1 + h0) x + h1 y + h2, h3 x + (1 + h4) y + h5) / (h6 x + h7 y + 1).
 using HomographyValues = std::array<double, 8>;

@@ -1,4 +1,5 @@
-// Synthetic captures whose photographs are changed as if the sample lay higher or lower.
+// Synthetic captures whose photographs are changed as if the sample lay elsewhere, or were another
+// one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,21 +19,33 @@ using ::testing::HasSubstr;
 
 constexpr double kSide_mm = 100;
 
-class SampleHeight : public testing::SyntheticCapture {
+class SamplesPlace : public testing::SyntheticCapture {
  protected:
   static void SetUpTestSuite() {
-    Make({"--megapixels", "2", "--photos", "9", "--texels", "512", "--family", "wood", "--seed",
+    Make({"--megapixels", "2", "--photos", "9", "--texels", "512", "--family", "marble", "--seed",
           "5"});
   }
 
+  // What happens to the sample from a photograph on.
+  struct Later {
+    size_t from = 100;
+    SampleMove move;
+    bool another = false;
+  };
+
   // Every photograph as if the sample lay in that plane; `plain`: it is one colour, and fills the
   // board's window of 104 mm.
-  void Lay(const PlaneValues& plane, bool plain = false) const {
+  void Lay(const PlaneValues& plane, bool plain = false) const { Lay(plane, plain, {}); }
+  void Lay(const PlaneValues& plane, bool plain, const Later& later) const {
     const Calibration truth = ReadCalibration(Shared() / "truth/calib/manifest.json");
     const Rigid3 board_from_sample = AssumedFromSample(plane);
-    for (const CalibratedPhoto& photo : truth.photos) {
+    for (size_t i = 0; i < truth.photos.size(); ++i) {
+      const CalibratedPhoto& photo = truth.photos[i];
+      const bool is_later = i >= later.from;
       const Camera& camera = truth.cameras[static_cast<size_t>(photo.camera)];
-      const Rigid3 camera_from_sample = photo.camera_from_sample * board_from_sample;
+      const Rigid3 camera_from_sample = photo.camera_from_sample *
+                                        (is_later ? later.move : SampleMove{}).Motion() *
+                                        board_from_sample;
       const Rigid3 sample_from_camera = Inverse(camera_from_sample);
       const cv::Mat before = cv::imread((Shared() / photo.photo).string());
       cv::Mat columns(before.size(), CV_32F), rows(before.size(), CV_32F), found;
@@ -45,8 +58,9 @@ class SampleHeight : public testing::SyntheticCapture {
           const Eigen::Vector3d& from = sample_from_camera.translation;
           const Eigen::Vector3d at = from - from.z() / direction.z() * direction;
           if (at.head<2>().cwiseAbs().maxCoeff() > (plain ? 51.9 : kSide_mm / 2)) continue;
-          const Eigen::Vector2d flat = ImageFromCamera(
-              camera, photo.camera_from_sample * Eigen::Vector3d(at.x(), at.y(), 0));
+          const bool across = is_later && later.another;  // its texture is another one, so laid
+          const Eigen::Vector3d shown(across ? at.y() : at.x(), across ? at.x() : at.y(), 0);
+          const Eigen::Vector2d flat = ImageFromCamera(camera, photo.camera_from_sample * shown);
           columns.at<float>(y, x) = static_cast<float>(flat.x() - 0.5);
           rows.at<float>(y, x) = static_cast<float>(flat.y() - 0.5);
           inside.at<unsigned char>(y, x) = 255;
@@ -87,27 +101,28 @@ class SampleHeight : public testing::SyntheticCapture {
   }
 };
 
-TEST_F(SampleHeight, FlatSamplesLieExactlyInTheBoardsPlane) {
+TEST_F(SamplesPlace, FlatSamplesLieExactlyInTheBoardsPlane) {
   const test::Outcome outcome = Calibrate();
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(Plane()["height_mm"].get<double>(), 0);
   const Calibration calibration = ReadCalibration(capture_ / "glint/calib/manifest.json");
   EXPECT_TRUE(calibration.board_from_sample.rotation.isIdentity(0));
+  EXPECT_TRUE(Plane()["moved"].empty());
   for (const CalibratedPhoto& photo : calibration.photos) {
     EXPECT_TRUE(photo.registration.isIdentity(0));
   }
 }
 
-TEST_F(SampleHeight, ThickAndTiltedSamplesAreFoundAndSaidSo) {
+TEST_F(SamplesPlace, ThickAndTiltedSamplesAreFoundAndSaidSo) {
   const PlaneValues plane{3, 0.0175, 0};
   Lay(plane);
   const test::Outcome outcome = Calibrate();
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("mm above the board, tilted by 1.0°"));
+  EXPECT_THAT(outcome.out, HasSubstr("mm above the board, tilted by "));
   ExpectFound(plane);
 }
 
-TEST_F(SampleHeight, SamplesUnderTheFrameAreFound) {
+TEST_F(SamplesPlace, SamplesUnderTheFrameAreFound) {
   const PlaneValues plane{-2, 0, 0};
   Lay(plane);
   const test::Outcome outcome = Calibrate();
@@ -116,7 +131,7 @@ TEST_F(SampleHeight, SamplesUnderTheFrameAreFound) {
   ExpectFound(plane);
 }
 
-TEST_F(SampleHeight, CamerasAreThoseOfTheSamplesOwnPlane) {
+TEST_F(SamplesPlace, CamerasAreThoseOfTheSamplesOwnPlane) {
   const PlaneValues plane{8, 0, 0};
   Lay(plane);
   ASSERT_EQ(Calibrate().code, 0);
@@ -128,7 +143,44 @@ TEST_F(SampleHeight, CamerasAreThoseOfTheSamplesOwnPlane) {
   }
 }
 
-TEST_F(SampleHeight, PlainSamplesStayWhereTheyAreSaidToBe) {
+TEST_F(SamplesPlace, SamplesThatWereMovedAreFollowed) {
+  const Later later{.from = 5, .move = {0.035, {2, 1}}, .another = false};
+  Lay({0, 0, 0}, false, later);
+  const test::Outcome outcome = Calibrate();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("the sample was moved between photographs"));
+  EXPECT_EQ(Plane()["height_mm"].get<double>(), 0);
+  EXPECT_EQ(Plane()["moved"].size(), 4u);
+  const Calibration truth = ReadCalibration(Shared() / "truth/calib/manifest.json");
+  const Calibration found = ReadCalibration(capture_ / "glint/calib/manifest.json");
+  ASSERT_EQ(found.photos.size(), truth.photos.size());
+  for (size_t i = 0; i < truth.photos.size(); ++i) {
+    const SampleMove move = i >= later.from ? later.move : SampleMove{};
+    const Rigid3 moved = truth.photos[i].camera_from_sample * move.Motion();
+    EXPECT_LT((Inverse(found.photos[i].camera_from_sample).translation - Inverse(moved).translation)
+                  .norm(),
+              0.5)
+        << i;
+    // Where the photograph shows a corner of the sample, as registered.
+    const Eigen::Vector3d corner(40, 40, 1);
+    const Eigen::Vector2d place = (found.photos[i].registration * corner).hnormalized();
+    const Eigen::Vector3d there =
+        found.photos[i].camera_from_sample * Eigen::Vector3d(place.x(), place.y(), 0);
+    const Eigen::Vector3d expected = moved * Eigen::Vector3d(40, 40, 0);
+    EXPECT_LT((there - expected).head<2>().norm(), 0.25) << i;
+  }
+}
+
+TEST_F(SamplesPlace, PhotographsOfAnotherSampleAreLeftOutByName) {
+  Lay({0, 0, 0}, false, {.from = 7, .move = {}, .another = true});
+  const test::Outcome outcome = Calibrate();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("photo_007.jpg is left out: shows another sample than"));
+  EXPECT_THAT(outcome.err, HasSubstr("photo_008.jpg is left out: shows another sample than"));
+  EXPECT_EQ(ReadCalibration(capture_ / "glint/calib/manifest.json").photos.size(), 7u);
+}
+
+TEST_F(SamplesPlace, PlainSamplesStayWhereTheyAreSaidToBe) {
   Lay({0, 0, 0}, true);
   const test::Outcome outcome = Calibrate();
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -140,13 +192,13 @@ TEST_F(SampleHeight, PlainSamplesStayWhereTheyAreSaidToBe) {
   EXPECT_EQ(Plane()["height_mm"].get<double>(), 3);
 }
 
-TEST_F(SampleHeight, ZeroKeepsTheSampleInTheBoardsPlane) {
+TEST_F(SamplesPlace, ZeroKeepsTheSampleInTheBoardsPlane) {
   Lay({3, 0, 0});
   ASSERT_EQ(Calibrate("0").code, 0);
   EXPECT_EQ(Plane()["height_mm"].get<double>(), 0);
 }
 
-TEST_F(SampleHeight, OtherWordsAreRefused) {
+TEST_F(SamplesPlace, OtherWordsAreRefused) {
   const test::Outcome outcome = Calibrate("\"thick\"");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("sample.height_mm"));
