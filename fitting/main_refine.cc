@@ -1,6 +1,8 @@
 // glint-refine: the fitted maps, refined texel by texel.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -51,6 +53,21 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined, in
                  {"manifest", stage.manifest_file().string()},
                  {"metrics", refined.metrics}};
   return result;
+}
+
+void WarnOfOddViews(const RefineStageResult& refined) {
+  const Json& odd = refined.metrics["odd_views"];
+  for (const Json& view : refined.metrics["views"]) {
+    if (std::find(odd.begin(), odd.end(), view["name"]) == odd.end()) continue;
+    spdlog::warn(
+        "the maps explain {} much worse than the other photographs (residuals of {:.2g} in log "
+        "radiance; {:.2g} in the mean of all): was something on the sample, did a shadow fall on "
+        "it, "
+        "was it moved, or is the photograph edited? Compare it with its rendering on the report's "
+        "page, and leave it out with [photos] left_out",
+        view["photo"].get<std::string>(), view["log_l1"].get<double>(),
+        refined.metrics["log_l1"].get<double>());
+  }
 }
 
 // What every result of refinement depends on.
@@ -158,6 +175,7 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, RefineSta
   const RefineStageResult result = RunRefineStage(sources.views_manifest, sources.start, *options,
                                                   folders, common.threads, &stage);
   RemoveParts(sources.work);
+  WarnOfOddViews(result);
   return Summarise(stage, result, options->join);
 }
 

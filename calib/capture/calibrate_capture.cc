@@ -434,6 +434,13 @@ void TellOfBend(CalibSummary* summary) {
   summary->board_findings.push_back(words);
 }
 
+void TellOfMisfit(CalibSummary* summary) {
+  const std::string words = MisfitInWords(summary->trust.validation);
+  if (words.empty()) return;
+  spdlog::warn("{}", words);
+  summary->board_findings.push_back(words);
+}
+
 void SolveCapture(const Capture& capture, const CalibOptions& given,
                   const std::vector<Camera>& assumed, int threads, CalibSummary* summary) {
   // Of odd photographs, the board's shape, and views that the light sets right.
@@ -460,6 +467,7 @@ void SolveCapture(const Capture& capture, const CalibOptions& given,
     if (!bent && !other_samples && !FollowLight(summary)) break;
   }
   TellOfBend(summary);
+  TellOfMisfit(summary);
   ExplainMisfits(options, problem, summary);
   TellOfSplit(summary);
   WarnOfUncertainty(summary->bundle);

@@ -176,6 +176,22 @@ void AddUneven(const LightEstimate& light, std::vector<std::string>* words) {
       light.rms_percent));
 }
 
+// The paper is taken for neutral. Phones' flashes and white balances leave it so to a tenth.
+void AddTint(const LightEstimate& light, std::vector<std::string>* words) {
+  constexpr double kTinted = 1.2;
+  const auto [least, most] =
+      std::minmax_element(light.power_rgb.begin(), light.power_rgb.end(),
+                          [](const Estimate& a, const Estimate& b) { return a.value < b.value; });
+  if (light.paper_rgb[0].sigma > 0 || !(most->value > kTinted * least->value)) return;
+  words->push_back(fmt::format(
+      "the white paper is not white in the photographs (red, green and blue as {:.2f} : 1 : "
+      "{:.2f}): "
+      "a cast of the white balance is corrected, but if the paper itself is tinted, the maps' "
+      "colours are wrong by as much, and too bright if it is grey: print the board on white paper",
+      light.power_rgb[0].value / light.power_rgb[1].value,
+      light.power_rgb[2].value / light.power_rgb[1].value));
+}
+
 }  // namespace
 
 std::string ContradictionOf(const LightEstimate& light, const LightOfPhoto& photo, bool flash_off) {
@@ -215,6 +231,7 @@ std::vector<std::string> LightFindings(const Capture& capture, const CalibSummar
   AddTone(capture, summary.light, &words);
   AddFlash(capture, summary.light, &words);
   AddUneven(summary.light, &words);
+  AddTint(summary.light, &words);
   return words;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/model/registration.h"
 #include "base/parallel/parallel.h"
+#include "base/text/name_list.h"
 #include "calib/capture/camera_groups.h"
 #include "calib/capture/pose_source.h"
 
@@ -100,14 +101,6 @@ void FillPriors(const Capture& capture, const CalibOptions& options, Registratio
 
 double Degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
-// "a.jpg", "a.jpg and b.jpg", "a.jpg, b.jpg and 3 more".
-std::string NamesInWords(const std::vector<std::string>& names) {
-  if (names.size() == 1) return names[0];
-  if (names.size() == 2) return names[0] + " and " + names[1];
-  if (names.size() == 3) return fmt::format("{}, {} and {}", names[0], names[1], names[2]);
-  return fmt::format("{}, {} and {} more", names[0], names[1], names.size() - 2);
-}
-
 Json MovesMetrics(const CalibSummary& summary) {
   Json moved = Json::array();
   const std::vector<SampleMove>& moves = summary.placement.moves;
@@ -164,7 +157,7 @@ bool LeaveOutOtherSamples(CalibSummary* summary) {
     const std::string reason = fmt::format(
         "shows another sample than {}: nothing of its texture is in them, wherever it is looked "
         "for. Photograph each sample as a capture of its own",
-        NamesInWords(same));
+        NameList(same));
     LeaveOut(reason, &photo);
     summary->left_out_before.push_back({photo.name, reason});
     changed = true;
@@ -193,7 +186,7 @@ std::string MovesInWords(const SampleRegistration& registration, const Calibrati
       "the sample was moved between photographs: in {} it {} from where the others have it. Each "
       "is "
       "used with the sample's place in it; fix the sample to the board with double-sided tape",
-      NamesInWords(names), fmt::join(how, " and "));
+      NameList(names), fmt::join(how, " and "));
 }
 
 void PlaceSample(const SampleRegistration& registration, Calibration* calibration) {

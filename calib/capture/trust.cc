@@ -166,6 +166,20 @@ Trust AssessTrust(const Capture& capture, const BundleProblem& problem,
   return trust;
 }
 
+std::string MisfitInWords(const CrossValidation& validation) {
+  constexpr double kWorthAWord_px = 0.25;  // a quarter of a texel where texels are pixels
+  for (const CameraDifference& camera : validation.cameras) {
+    if (camera.rms_px < kWorthAWord_px || camera.trusted()) continue;
+    return fmt::format(
+        "calibrations from every other photograph differ by {:.2f} px where noise predicts {:.3f}: "
+        "focal length, distances and height may be wrong by more than is stated. Optical "
+        "stabilisation, a focus that changes, or a moving camera does that: lock focus, switch "
+        "stabilisation off where that is possible, hold still",
+        camera.rms_px, camera.predicted_px);
+  }
+  return "";
+}
+
 void WriteTrustPictures(const BundleResult& result, const Trust& trust, Stage* stage) {
   for (size_t c = 0; c < result.cameras.size(); ++c) {
     const int camera = static_cast<int>(c);

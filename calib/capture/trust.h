@@ -33,6 +33,9 @@ struct Trust {
 Trust AssessTrust(const Capture& capture, const BundleProblem& problem,
                   const BundleOptions& options, const BundleResult& result);
 
+// What neither noise nor a photograph of its own explains; "": nothing that moves a texel.
+std::string MisfitInWords(const CrossValidation& validation);
+
 // projection_camera0.png, odd_even_camera0.png, residuals_by_photo_camera0.png …,
 // residuals_by_place.png.
 void WriteTrustPictures(const BundleResult& result, const Trust& trust, Stage* stage);

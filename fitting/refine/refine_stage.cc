@@ -17,6 +17,7 @@
 #include "fitting/refine/estimate_sample.h"
 #include "fitting/refine/held_out_exposures.h"
 #include "fitting/refine/light_power.h"
+#include "fitting/refine/odd_views.h"
 #include "fitting/refine/refine_metrics.h"
 #include "fitting/refine/refine_rows.h"
 #include "fitting/refine/residual_model.h"
@@ -73,6 +74,15 @@ Json Metrics(const RefineSummary& summary, const std::vector<RectifiedView>& vie
   metrics["log_l1"] = usable > 0 ? sum / usable : 0.0;
   metrics["views"] = losses;
   return metrics;
+}
+
+// Lamps that a fixed camera saw differ in what they show.
+Json OddViewsOf(const RefineSummary& summary, const RectifiedSet& set,
+                const std::vector<RectifiedView>& views) {
+  Json odd = Json::array();
+  if (set.fixed_camera) return odd;
+  for (const size_t i : OddViews(summary.view_loss)) odd.push_back(views[i].name);
+  return odd;
 }
 
 // What each view is to be corrected by: what was found before refinement and, beside it, the views'
@@ -435,6 +445,7 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
                  {"metals", start.metals},
                  {"method", "refined"}};
   result.metrics = Metrics(result.summary, sample.views);
+  result.metrics["odd_views"] = OddViewsOf(result.summary, sample.set, sample.views);
   result.metrics["light_power"] = {{"factor", sample.power()}};
   result.metrics["narrow_lobe"] = JsonOf(convention.lobes);
   AddCorrections(Corrections(result.correction, result.summary), sample.views, &result.data);

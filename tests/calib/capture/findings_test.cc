@@ -1,4 +1,4 @@
-// Why a photograph is left out by what the board's paper says, and when it is not.
+// What the paper and the corners contradict, in words.
 #include "calib/capture/light_findings.h"
 
 #include <gmock/gmock.h>
@@ -61,6 +61,36 @@ TEST_F(Contradiction, AMissingFlashIsNamed) {
   Contradict(0.5);
   EXPECT_EQ(Reason(), "");
   EXPECT_THAT(Reason(true), HasSubstr("the flash did not fire, as EXIF reports"));
+}
+
+std::vector<std::string> FindingsUnder(const std::array<double, 3>& power_rgb) {
+  CalibSummary summary;
+  summary.light.known = true;
+  for (size_t c = 0; c < 3; ++c) summary.light.power_rgb[c].value = power_rgb[c];
+  return LightFindings({}, summary);
+}
+
+TEST(LightFindings, TintedPaperIsNamedAndAFaintCastIsNot) {
+  EXPECT_TRUE(FindingsUnder({1e5, 0.95e5, 0.9e5}).empty());
+  const std::vector<std::string> words = FindingsUnder({1.33e5, 1e5, 0.66e5});
+  ASSERT_EQ(words.size(), 1u);
+  EXPECT_THAT(words[0], HasSubstr("red, green and blue as 1.33 : 1 : 0.66"));
+  EXPECT_THAT(words[0], HasSubstr("white paper"));
+}
+
+TEST(Misfit, IsNamedWhereItMovesTexels) {
+  CrossValidation validation;
+  EXPECT_EQ(MisfitInWords(validation), "");
+  CameraDifference& camera = validation.cameras.emplace_back();
+  camera.rms_px = 0.47;
+  camera.predicted_px = 0.034;
+  EXPECT_THAT(MisfitInWords(validation), HasSubstr("differ by 0.47 px where noise predicts 0.034"));
+  EXPECT_THAT(MisfitInWords(validation), HasSubstr("stabilisation"));
+  camera.predicted_px = 0.4;  // noise explains it
+  EXPECT_EQ(MisfitInWords(validation), "");
+  camera.rms_px = 0.15;
+  camera.predicted_px = 0.01;  // no texel is moved
+  EXPECT_EQ(MisfitInWords(validation), "");
 }
 
 }  // namespace
