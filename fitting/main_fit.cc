@@ -1,5 +1,6 @@
 // glint-fit: maps from rectified views, in the latent space or texel by texel.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "base/formats/capture.h"
 #include "base/formats/rectified_set.h"
@@ -27,6 +28,18 @@ ProgramResult Summarise(const Stage& stage, const FitStageOptions& options,
   return result;
 }
 
+void WarnOfLeftOut(const FitStageResult& done) {
+  for (const LeftOutView& view : done.left_out) {
+    spdlog::warn(
+        "{} is left out: no maps explain it together with the other photographs (residuals of "
+        "{:.2g} in log radiance; without it {:.2g}): was something on the sample, did a shadow "
+        "fall "
+        "on it, was it exchanged, or is the photograph edited? --views uses what it names in any "
+        "case",
+        view.photo, view.log_l1, done.fit.final_loss);
+  }
+}
+
 ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, FitStageOptions* options,
                   const CommonOptions& common) {
   const Capture capture = ReadCapture(folder);
@@ -38,7 +51,9 @@ ProgramResult Run(const std::filesystem::path& folder, OptionSet* set, FitStageO
   Stage stage(capture.work() / "fit", {"fit", kFitVersion}, *set, common, inputs);
   if (stage.UpToDate()) return stage.UpToDateResult();
   RequireMemoryForStage("fit", capture, SizeOfMaps(capture), common.threads);
-  return Summarise(stage, *options, RunFitStage(views_manifest, *options, common.threads, &stage));
+  const FitStageResult done = RunFitStage(views_manifest, *options, common.threads, &stage);
+  WarnOfLeftOut(done);
+  return Summarise(stage, *options, done);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "fitting/latent/levels.h"
 #include "fitting/latent/light_power.h"
 #include "fitting/latent/spread_views.h"
+#include "fitting/photographs/odd_views.h"
 #include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/weights/find_model.h"
 
@@ -302,59 +303,102 @@ std::vector<fs::path> FitInputs(const FitStageOptions& options) {
   return inputs;
 }
 
+namespace {
+
+// What was fitted to which views.
+struct Fitted {
+  Initial initial;
+  FitResult fit;
+  std::vector<RectifiedView> views;
+};
+
+FitResult FitFrom(const Initial& initial, const PhotographSet& photographs,
+                  const FitStageOptions& options, const FitOptions& fit_options) {
+  if (options.method == "initial") return KeepStart(photographs, initial.maps, fit_options.threads);
+  std::unique_ptr<Progress> bar;
+  const FitProgress progress = [&](int done, int total, double loss) {
+    if (bar == nullptr) bar = std::make_unique<Progress>("fit", total);
+    bar->Set(done, "log-L1 " + std::to_string(loss));
+  };
+  if (!IsLatent(options)) return FitClassic(photographs, initial.maps, fit_options, progress);
+  const Autoencoder network =
+      AsUserError([&] { return Autoencoder::Load(FindModel(kAutoencoderModel, options.weights)); });
+  FitResult fit = FitLatent(photographs, initial.maps, network, fit_options, progress);
+  fit.maps = WithDetail(fit.maps, initial.maps);
+  return fit;
+}
+
+Fitted FitTo(const RectifiedSet& set, std::vector<RectifiedView> views,
+             const FitStageOptions& options, const FitOptions& fit_options) {
+  const int threads = fit_options.threads;
+  const Size fitted = FittedSize(set.plane, options, fit_options);
+  const Size shown = ShownSize(set.plane, options, fit_options);
+  PhotographSet photographs = Load(set, views, fitted, shown, threads);
+  const EstimatorConditions conditions{options.metals == "rare", set.light_power_known};
+  Initial initial = InitialMaps(
+      options, Downsampled(photographs, shown.first, shown.second, threads), conditions, threads);
+  photographs = WithPower(Downsampled(photographs, fitted.first, fitted.second, threads),
+                          initial.power.factor);
+  FitResult fit = FitFrom(initial, photographs, options, fit_options);
+  fit.light_scale *= initial.power.factor;
+  return {std::move(initial), std::move(fit), std::move(views)};
+}
+
+std::vector<LeftOutView> OddViewsOf(const Fitted& fitted, const RectifiedSet& set,
+                                    const FitStageOptions& options) {
+  std::vector<LeftOutView> odd;
+  if (set.fixed_camera || !IsLatent(options) || !options.views.empty()) return odd;
+  for (const size_t i : OddViews(fitted.fit.view_loss, kOddOfFitted)) {
+    odd.push_back({fitted.views[i].name, fitted.views[i].photo, fitted.fit.view_loss[i]});
+  }
+  return odd;
+}
+
+Json JsonOf(const std::vector<LeftOutView>& left_out) {
+  Json json = Json::array();
+  for (const LeftOutView& view : left_out) {
+    json.push_back({{"name", view.name}, {"photo", view.photo}, {"log_l1", view.log_l1}});
+  }
+  return json;
+}
+
+}  // namespace
+
 FitStageResult RunFitStage(const fs::path& rectify_manifest, const FitStageOptions& options,
                            int threads, Stage* stage) {
   const RectifiedSet set = ReadRectifiedSet(rectify_manifest);
-  const std::vector<RectifiedView> views = SelectViews(set, options.views, options.exclude);
+  std::vector<RectifiedView> views = SelectViews(set, options.views, options.exclude);
   const FitOptions fit_options = FitOptionsOf(options, threads);
   if (const std::string wrong = fit_options.Check(); !wrong.empty())
     throw UserError("fit: " + wrong);
-  const Size fitted = FittedSize(set.plane, options, fit_options);
-  const Size shown = ShownSize(set.plane, options, fit_options);
-  // Sixteen of a fixed camera's lights give as good initial maps as all; refinement uses all.
-  const std::vector<RectifiedView> shown_views =
-      set.fixed_camera ? SpreadViews(views, kMostLights) : views;
-  PhotographSet photographs = Load(set, shown_views, fitted, shown, threads);
-
   const auto began = std::chrono::steady_clock::now();
-  const EstimatorConditions conditions{options.metals == "rare", set.light_power_known};
-  const auto [start, deviations, power] = InitialMaps(
-      options, Downsampled(photographs, shown.first, shown.second, threads), conditions, threads);
-  photographs =
-      WithPower(Downsampled(photographs, fitted.first, fitted.second, threads), power.factor);
+  // Sixteen of a fixed camera's lights give as good initial maps as all; refinement uses all.
+  Fitted fitted =
+      FitTo(set, set.fixed_camera ? SpreadViews(views, kMostLights) : views, options, fit_options);
   FitStageResult result;
-  {
-    std::unique_ptr<Progress> bar;
-    const FitProgress progress = [&](int done, int total, double loss) {
-      if (bar == nullptr) bar = std::make_unique<Progress>("fit", total);
-      bar->Set(done, "log-L1 " + std::to_string(loss));
-    };
-    if (options.method == "initial") {
-      result.fit = KeepStart(photographs, start, threads);
-    } else if (IsLatent(options)) {
-      const Autoencoder network = AsUserError(
-          [&] { return Autoencoder::Load(FindModel(kAutoencoderModel, options.weights)); });
-      result.fit = FitLatent(photographs, start, network, fit_options, progress);
-      result.fit.maps = WithDetail(result.fit.maps, start);
-    } else {
-      result.fit = FitClassic(photographs, start, fit_options, progress);
-    }
+  result.left_out = OddViewsOf(fitted, set, options);
+  for (const LeftOutView& odd : result.left_out) {
+    std::erase_if(views, [&](const RectifiedView& view) { return view.name == odd.name; });
   }
-  result.fit.light_scale *= power.factor;
+  if (!result.left_out.empty()) fitted = FitTo(set, views, options, fit_options);
+  result.fit = std::move(fitted.fit);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   result.width = set.plane.width;
   result.height = set.plane.height;
   result.data = Data(result.fit, set, options, views);
-  result.metrics = Metrics(result.fit, shown_views);
+  result.metrics = Metrics(result.fit, fitted.views);
+  result.metrics["left_out"] = JsonOf(result.left_out);
+  const Initial& initial = fitted.initial;
   if (Estimates(options) && !set.light_power_known) {
-    result.metrics["light_power"] = {
-        {"factor", power.factor}, {"log_l1", power.log_l1}, {"log_l1_as_given", power.as_given}};
+    result.metrics["light_power"] = {{"factor", initial.power.factor},
+                                     {"log_l1", initial.power.log_l1},
+                                     {"log_l1_as_given", initial.power.as_given}};
   }
   WriteAtSize(stage->Output("svbrdf.exr"), result.fit.maps, set);
-  if (!deviations.empty()) {
+  if (!initial.deviations.empty()) {
     WriteDeviations(stage->Output("confidence.exr"),
-                    DeviationsOfFit(deviations, start, result.fit.maps), set.plane.width,
-                    set.plane.height, set.convention);
+                    DeviationsOfFit(initial.deviations, initial.maps, result.fit.maps),
+                    set.plane.width, set.plane.height, set.convention);
   }
   stage->Commit(result.data, result.metrics);
   return result;

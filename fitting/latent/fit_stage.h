@@ -11,7 +11,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kFitVersion = 12;
+inline constexpr int kFitVersion = 13;
 
 struct FitStageOptions {
   // latent: in the learned space; classic: texel by texel; initial: no fitting
@@ -48,9 +48,16 @@ void ResolveFitOptions(const std::filesystem::path& rectify_manifest, FitStageOp
 // UserError when one is missing.
 std::vector<std::filesystem::path> FitInputs(const FitStageOptions& options);
 
+// A view to which no map was found that explains it as it does the others.
+struct LeftOutView {
+  std::string name, photo;
+  double log_l1 = 0;
+};
+
 struct FitStageResult {
   Json data, metrics;
-  FitResult fit;
+  FitResult fit;                      // to those that are left
+  std::vector<LeftOutView> left_out;  // of photographs that the user did not choose one by one
   int width = 0, height = 0;
   double seconds = 0;  // for a person only
 };

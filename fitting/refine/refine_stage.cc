@@ -14,10 +14,10 @@
 #include "base/programs/progress.h"
 #include "base/reflectance/brdf.h"
 #include "base/reflectance/material_kinds.h"
+#include "fitting/photographs/odd_views.h"
 #include "fitting/refine/estimate_sample.h"
 #include "fitting/refine/held_out_exposures.h"
 #include "fitting/refine/light_power.h"
-#include "fitting/refine/odd_views.h"
 #include "fitting/refine/refine_metrics.h"
 #include "fitting/refine/refine_rows.h"
 #include "fitting/refine/residual_model.h"
@@ -81,7 +81,7 @@ Json OddViewsOf(const RefineSummary& summary, const RectifiedSet& set,
                 const std::vector<RectifiedView>& views) {
   Json odd = Json::array();
   if (set.fixed_camera) return odd;
-  for (const size_t i : OddViews(summary.view_loss)) odd.push_back(views[i].name);
+  for (const size_t i : OddViews(summary.view_loss, kOddOfRefined)) odd.push_back(views[i].name);
   return odd;
 }
 

@@ -128,5 +128,62 @@ TEST(ResolveFitOptions, TheManifestHasNoNumberThatStandsForAnother) {
   EXPECT_EQ(echo.at("code-prior"), 0);
 }
 
+// Of the photographs' views, the manifest's path.
+fs::path WriteRectified(const fs::path& folder, const PhotographSet& photographs) {
+  RectifiedSet set;
+  set.light_power_known = true;
+  set.plane = photographs.plane;
+  set.convention = photographs.convention;
+  CommonOptions common;
+  common.threads = 1;
+  Stage stage(folder, {"rectify", 1}, OptionSet(), common, {});
+  for (size_t i = 0; i < photographs.photographs.size(); ++i) {
+    const Photograph& photograph = photographs.photographs[i];
+    RectifiedView view;
+    view.name = "view_00" + std::to_string(i);
+    view.file = view.name + ".exr";
+    view.photo = view.name + ".png";
+    view.view = photograph.view;
+    view.ldr = photograph.ldr;
+    set.views.push_back(view);
+    RectifiedImage image;
+    image.width = set.plane.width;
+    image.height = set.plane.height;
+    image.rgb = photograph.rgb;
+    image.mask = photograph.mask;
+    WriteRectifiedImage(stage.Output(view.file), image, set, view);
+  }
+  stage.Commit(ToJson(set), Json::object());
+  return folder / "manifest.json";
+}
+
+TEST(RunFitStage, LeavesOutAPhotographThatNoMapsExplainWithTheOthers) {
+  const test::TemporaryFolder folder;
+  PhotographSet photographs = test::PhotographMaps(test::UniformMaps(32, 0.5f, 0.04f, 0.4f), 7);
+  FitStageOptions options;
+  options.iterations = 60;
+  options.fine_iterations = 20;
+  const auto fit = [&](const std::string& name, const FitStageOptions& chosen) {
+    const fs::path manifest = WriteRectified(folder / name, photographs);
+    FitStageOptions resolved = chosen;
+    ResolveFitOptions(manifest, &resolved);
+    CommonOptions common;
+    Stage stage(folder / (name + "_fit"), {"fit", kFitVersion}, OptionSet(), common, {manifest});
+    return RunFitStage(manifest, resolved, 2, &stage);
+  };
+  const FitStageResult good = fit("good", options);
+  EXPECT_TRUE(good.left_out.empty());
+  EXPECT_EQ(good.data["views"].size(), 7u);
+  for (float& value : photographs.photographs[3].rgb) value *= 0.2f;  // a shadow lies on it
+  const FitStageResult odd = fit("odd", options);
+  ASSERT_EQ(odd.left_out.size(), 1u);
+  EXPECT_EQ(odd.left_out[0].name, "view_003");
+  EXPECT_EQ(odd.data["views"].size(), 6u);
+  EXPECT_EQ(odd.metrics["views"].size(), 6u);
+  EXPECT_LT(odd.fit.final_loss, 1.2 * good.fit.final_loss);
+  options.views = {"view_000", "view_001", "view_002", "view_003", "view_004"};  // one by one
+  EXPECT_EQ(fit("chosen", options).data["views"].size(), 5u);
+}
+
 }  // namespace
 }  // namespace glint
