@@ -314,8 +314,9 @@ void FinishCapture(const Capture& capture, const CalibOptions& options, bool ass
                    CalibSummary* summary) {
   FillPhotos(capture, summary);
   FillLight(capture, options, summary);
-  if (const std::string words = MovesInWords(summary->placement, summary->calibration);
-      !words.empty()) {
+  for (const std::string& words :
+       {OtherSamplesInWords(*summary), MovesInWords(summary->placement, summary->calibration)}) {
+    if (words.empty()) continue;
     spdlog::warn("{}", words);
     summary->board_findings.push_back(words);
   }

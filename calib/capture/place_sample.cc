@@ -114,6 +114,16 @@ Json MovesMetrics(const CalibSummary& summary) {
   return moved;
 }
 
+// Names of the photographs of that texture.
+std::vector<std::string> Showing(int texture, const CalibSummary& summary) {
+  const std::vector<size_t> flash = summary.FlashPhotos();
+  std::vector<std::string> names;
+  for (size_t k = 0; k < summary.placement.textures.size(); ++k) {
+    if (summary.placement.textures[k] == texture) names.push_back(summary.photos[flash[k]].name);
+  }
+  return names;
+}
+
 double Tilt_deg(const PlaneValues& plane) {
   return Degrees(std::atan(std::hypot(plane[1], plane[2])));
 }
@@ -144,25 +154,28 @@ SampleRegistration FindSamplePlane(const Capture& capture, const CalibOptions& o
 }
 
 bool LeaveOutOtherSamples(CalibSummary* summary) {
-  const std::vector<int>& textures = summary->placement.textures;
   const std::vector<size_t> flash = summary->FlashPhotos();
-  std::vector<std::string> same;
-  for (size_t k = 0; k < textures.size(); ++k) {
-    if (textures[k] == 0) same.push_back(summary->photos[flash[k]].name);
-  }
+  const std::string reason = "shows another sample than " + NameList(Showing(0, *summary)) +
+                             ": nothing of its texture is in them, wherever it is looked for. "
+                             "Photograph each sample as a capture of its own";
   bool changed = false;
-  for (size_t k = 0; k < textures.size(); ++k) {
-    if (textures[k] != 1) continue;
+  for (size_t k = 0; k < summary->placement.textures.size(); ++k) {
+    if (summary->placement.textures[k] != 1) continue;
     DetectedPhoto& photo = summary->photos[flash[k]];
-    const std::string reason = fmt::format(
-        "shows another sample than {}: nothing of its texture is in them, wherever it is looked "
-        "for. Photograph each sample as a capture of its own",
-        NameList(same));
     LeaveOut(reason, &photo);
     summary->left_out_before.push_back({photo.name, reason});
     changed = true;
   }
   return changed;
+}
+
+std::string OtherSamplesInWords(const CalibSummary& summary) {
+  const std::vector<std::string> others = Showing(1, summary);
+  if (others.empty()) return "";
+  return fmt::format(
+      "another sample than in {} is seen in {}: nothing of its texture is in the former. Name them "
+      "in [photos] left_out, and photograph each sample as a capture of its own",
+      NameList(Showing(0, summary)), NameList(others));
 }
 
 std::string MovesInWords(const SampleRegistration& registration, const Calibration& calibration) {

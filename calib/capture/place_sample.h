@@ -16,6 +16,8 @@ SampleRegistration FindSamplePlane(const Capture& capture, const CalibOptions& o
 
 // Leaves out photographs of another sample than most show. Returns whether it did.
 bool LeaveOutOtherSamples(CalibSummary* summary);
+// The same in words, of photographs that stay; "" where all show one sample.
+std::string OtherSamplesInWords(const CalibSummary& summary);
 // "the sample was moved …"; "" where it was not.
 std::string MovesInWords(const SampleRegistration& registration, const Calibration& calibration);
 
