@@ -208,6 +208,7 @@ class Mover {
 
   std::vector<ViewShift> Shifts(const std::vector<int>& views) const {
     std::vector<ViewShift> shifts;
+    shifts.reserve(views.size());
     for (const int view : views) {
       shifts.push_back({moves_[Index(view)].shift_mm, -Direction(view), Sd_mm(view)});
     }
