@@ -159,7 +159,7 @@ inline constexpr ModelConstant kSolverRows[] = {
         "which its texture is looked for"),
     Row("kTurnsEachWay, kTurnStep_rad, kWellExplained",
         {kTurnsEachWay, kTurnStep_rad, kWellExplained}, "turns; rad; share",
-        "that are tried of a photograph of which less is explained"),
+        "that are tried of a photograph of which less is explained; of others one each way"),
     Row("kCommonMotionSteps", {kCommonMotionSteps}, "steps",
         "to what most photographs' shifts have in common"),
     Row("kDetailLevels", {kDetailLevels}, "levels", "of the pictures' pyramid"),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "base/model/registration.h"
 #include "base/model/solver.h"
@@ -105,20 +106,31 @@ class Mover {
     return {pictures, Reach_px()};
   }
 
+  // Of the turns about none, a step each way where so much is explained without.
+  std::pair<double, TextureShift> BestTurn(int view, const CommonTexture& texture,
+                                           double explained) {
+    const int each_way = explained < constants::kWellExplained ? constants::kTurnsEachWay : 1;
+    std::pair<double, TextureShift> best;
+    for (int turn = -each_way; turn <= each_way; ++turn) {
+      if (turn == 0) continue;
+      const double turn_rad = turn * constants::kTurnStep_rad;
+      const TextureShift shift = texture.Compare(Seen(view, {turn_rad, {0, 0}}));
+      if (shift.explained > best.second.explained) best = {turn_rad, shift};
+    }
+    return best;
+  }
+
   // Moves the view to where the others explain it best. Whether they do at all.
   bool Place(int view, const std::vector<int>& others, bool search_turns) {
     const CommonTexture texture = TextureOf(view, others);
     SampleMove from = moves_[Index(view)];
     TextureShift shift = texture.Compare(details_[Index(view)]);
-    for (int turn = -constants::kTurnsEachWay; search_turns && turn <= constants::kTurnsEachWay;
-         ++turn) {
-      if (shift.explained >= constants::kWellExplained) break;
-      if (turn == 0) continue;
-      const SampleMove turned{turn * constants::kTurnStep_rad, {0, 0}};
-      const TextureShift other = texture.Compare(Seen(view, turned));
-      if (1 - other.explained >= constants::kMoveExplains * (1 - shift.explained)) continue;
-      shift = other;
-      from = turned;
+    if (search_turns) {
+      const auto [turn_rad, turned] = BestTurn(view, texture, shift.explained);
+      if (1 - turned.explained < constants::kMoveExplains * (1 - shift.explained)) {
+        shift = turned;
+        from = {turn_rad, {0, 0}};
+      }
     }
     explained_[Index(view)] = shift.explained;
     if (shift.explained < constants::kLeastExplained) return false;
