@@ -18,13 +18,13 @@ struct SampleMoves {
 };
 
 // `plane`: as far as it is known (coarse_plane.h). From the view that is nearest to the vertical
-// on, the next one is each time brought to those before: at every shift, and at several turns where
-// none is right, as much of its texture is explained as their factors can (common_texture.h).
-// Relief that is lit from another side seems to be moved; it seems so in proportion to the camera's
-// direction, like a height, and less the better a texture is explained. What is left beyond
-// that, and leaves less than constants::kMoveExplains of what no motion leaves, is a motion.
-// Nothing is found of fewer than four views, which any displacement explains. `threads` does not
-// affect the result.
+// on, the next one is each time brought to those before: at the shift, and the turn, at which they
+// explain most of its texture (common_texture.h). Relief that is lit from another side seems to be
+// moved; it seems so in proportion to the camera's direction, like a height (common_motion.h), and
+// less the better its texture is explained. What is left beyond constants::kMove_sd of that, is
+// longer than constants::kLeastMove, and leaves less than constants::kMoveExplains of what no
+// motion leaves, is a motion. Nothing is found of fewer than four views, which any displacement
+// explains.
 SampleMoves FindMoves(const RegistrationProblem& problem, const DetailPictures& pictures,
                       const PlaneValues& plane);
 
