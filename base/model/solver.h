@@ -65,6 +65,7 @@ inline constexpr int kHeightPasses = 3, kHomographyPasses = 2;
 inline constexpr int kAllPairsUpTo = 12, kPeakReach_px = 2;
 inline constexpr std::array<int, 5> kPairPartners = {1, 2, 3, 5, 8};
 inline constexpr int kMovesSide_px = 256, kTurnsEachWay = 5, kMoveSweeps = 2, kPartsOfTexture = 4;
+inline constexpr int kMostTextures = 3, kTurnSearches = 3;
 inline constexpr double kTurnStep_rad = std::numbers::pi / 180, kWellExplained = 0.5;
 inline constexpr int kCommonMotionSteps = 10;
 inline constexpr int kDetailLevels = 3;
@@ -157,6 +158,9 @@ inline constexpr ModelConstant kSolverRows[] = {
         {kMovesSide_px, kMoveSweeps, kPartsOfTexture}, "pixels; rounds; a side",
         "of the pictures by which motions of the sample are found; over all photographs; parts in "
         "which its texture is looked for"),
+    Row("kMostTextures, kTurnSearches", {kMostTextures, kTurnSearches}, "groups; photographs",
+        "of photographs that explain each other, and that may fail before turns are no longer "
+        "tried: samples without texture take no time"),
     Row("kTurnsEachWay, kTurnStep_rad, kWellExplained",
         {kTurnsEachWay, kTurnStep_rad, kWellExplained}, "turns; rad; share",
         "that are tried of a photograph of which less is explained; of others one each way"),

@@ -463,9 +463,8 @@ void SolveCapture(const Capture& capture, const CalibOptions& given,
     const bool bent =
         options.board_shape == "auto" && lens_is_free && summary->trust.diagnosis.board_is_bent;
     if (bent) options.board_shape = "bent";
-    const bool other_samples = LeaveOutOtherSamples(summary);
-    // Indices of the light's photographs are those before.
-    if (!bent && !other_samples && !FollowLight(summary)) break;
+    // Each by the indices of this round, what the light says first.
+    if (!bent && !FollowLight(summary) && !LeaveOutOtherSamples(summary)) break;
   }
   TellOfBend(summary);
   TellOfMisfit(summary);

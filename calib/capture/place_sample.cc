@@ -155,9 +155,10 @@ SampleRegistration FindSamplePlane(const Capture& capture, const CalibOptions& o
 
 bool LeaveOutOtherSamples(CalibSummary* summary) {
   const std::vector<size_t> flash = summary->FlashPhotos();
-  const std::string reason = "shows another sample than " + NameList(Showing(0, *summary)) +
-                             ": nothing of its texture is in them, wherever it is looked for. "
-                             "Photograph each sample as a capture of its own";
+  const std::string reason =
+      "shows another sample than " + NameList(Showing(0, *summary)) +
+      ": nothing of its texture is in them, or it was turned by more than 5° or moved by more "
+      "than a tenth of its side. Photograph each sample as a capture of its own";
   bool changed = false;
   for (size_t k = 0; k < summary->placement.textures.size(); ++k) {
     if (summary->placement.textures[k] != 1) continue;
@@ -173,7 +174,8 @@ std::string OtherSamplesInWords(const CalibSummary& summary) {
   const std::vector<std::string> others = Showing(1, summary);
   if (others.empty()) return "";
   return fmt::format(
-      "another sample than in {} is seen in {}: nothing of its texture is in the former. Name them "
+      "another sample than in {} is seen in {}: nothing of its texture is in the former, or it was "
+      "turned by more than 5° or moved by more than a tenth of its side. Name them "
       "in [photos] left_out, and photograph each sample as a capture of its own",
       NameList(Showing(0, summary)), NameList(others));
 }

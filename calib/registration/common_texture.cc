@@ -37,10 +37,10 @@ cv::Point Climb(const cv::Mat& surface, int most) {
   }
 }
 
-// Of the parabola through three values, from the middle one on.
+// Of the parabola through three values, from the middle one on; the middle one may lie at the edge.
 double PeakBetween(double before, double here, double after) {
   const double bend = before - 2 * here + after;
-  return bend < 0 ? 0.5 * (before - after) / bend : 0;
+  return bend < 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0;
 }
 
 }  // namespace

@@ -202,7 +202,8 @@ SampleMove MeanOf(const std::vector<SampleMove>& moves, const std::vector<size_t
 
 // Improves motions by where each view is displaced against the others once they are undone; those
 // of views that were moved together are one.
-std::vector<SampleMove> FineMoves(const RegistrationProblem& problem, std::vector<SampleMove> moves,
+std::vector<SampleMove> FineMoves(const RegistrationProblem& problem,
+                                  const std::vector<int>& textures, std::vector<SampleMove> moves,
                                   int threads) {
   RegistrationProblem loose = WithoutMoves(problem, moves);
   loose.homography_sd_mm =
@@ -210,7 +211,12 @@ std::vector<SampleMove> FineMoves(const RegistrationProblem& problem, std::vecto
   Registration registration(std::move(loose), threads);
   registration.FindCoarsePlane();
   const std::vector<Eigen::Matrix3d> left = registration.Register().homographies;
-  const std::vector<std::vector<size_t>> together = MovedTogether(problem, moves);
+  std::vector<std::vector<size_t>> together = MovedTogether(problem, moves);
+  if (!textures.empty()) {  // of another one nothing is known here
+    for (auto& views : together) {
+      std::erase_if(views, [&](size_t view) { return textures[view] != 0; });
+    }
+  }
   std::vector<SampleMove> fine = moves;
   SampleMove unmoved;
   for (size_t i = 0; i < moves.size(); ++i) {
@@ -219,7 +225,7 @@ std::vector<SampleMove> FineMoves(const RegistrationProblem& problem, std::vecto
     fine[i].shift_mm += Eigen::Rotation2Dd(moves[i].turn_rad) * motion.shift_mm;
   }
   for (size_t i = 0; i < moves.size(); ++i) {
-    if (moves[i].none()) unmoved = MeanOf(fine, together[i]);
+    if (moves[i].none() && !together[i].empty()) unmoved = MeanOf(fine, together[i]);
   }
   for (size_t i = 0; i < moves.size(); ++i) {
     if (moves[i].none()) continue;
@@ -254,7 +260,7 @@ SampleRegistration RegisterSample(const RegistrationProblem& problem, int thread
   } else {
     std::vector<SampleMove> moves = found.moves;
     for (int pass = 0; pass < constants::kMoveSweeps; ++pass) {
-      moves = FineMoves(problem, std::move(moves), threads);
+      moves = FineMoves(problem, found.textures, std::move(moves), threads);
     }
     Registration without(WithoutMoves(problem, moves), threads);
     without.FindCoarsePlane();

@@ -47,7 +47,8 @@ class Mover {
 
   SampleMoves Find() {
     std::vector<std::vector<int>> groups;
-    for (;;) {
+    // Of a sample without texture every view would be a group.
+    while (std::ssize(groups) < constants::kMostTextures) {
       std::vector<int> views = Grow();
       if (views.empty()) break;
       for (const int view : views) group_[Index(view)] = static_cast<int>(groups.size());
@@ -150,13 +151,17 @@ class Mover {
     }
     std::vector<double> apart(moves_.size());
     for (const int view : left) apart[Index(view)] = Direction(view).norm();
+    int failed = 0;
     while (!left.empty()) {
       const auto next = std::min_element(left.begin(), left.end(), [&](int a, int b) {
         return apart[Index(a)] < apart[Index(b)];
       });
       const int view = *next;
       left.erase(next);
-      if (!in.empty() && !Place(view, in, true)) continue;
+      if (!in.empty() && !Place(view, in, failed < constants::kTurnSearches)) {
+        ++failed;
+        continue;
+      }
       if (in.size() == 1) explained_[Index(in[0])] = explained_[Index(view)];  // of a pair, alike
       for (const int other : left) {
         const double distance = (Direction(other) - Direction(view)).norm();
@@ -227,16 +232,29 @@ class Mover {
     return shifts;
   }
 
+  // That of most views, each counted by how near it is to where most of them are.
+  double CommonTurn(const std::vector<int>& views, const std::vector<ViewShift>& shifts,
+                    const CommonMotion& common) const {
+    double most = 0, turn_rad = 0;
+    for (const int view : views) {
+      const double candidate = moves_[Index(view)].turn_rad;
+      double weight = 0;
+      for (size_t i = 0; i < views.size(); ++i) {
+        if (moves_[Index(views[i])].turn_rad != candidate) continue;
+        weight += 1 / (1 + common.Off_mm(shifts[i]).squaredNorm() / std::pow(shifts[i].sd_mm, 2));
+      }
+      if (weight <= most) continue;
+      most = weight;
+      turn_rad = candidate;
+    }
+    return turn_rad;
+  }
+
   // By view of the group: against where most of it is.
   std::vector<SampleMove> Off(const std::vector<int>& views) const {
     const std::vector<ViewShift> shifts = Shifts(views);
     const CommonMotion common = FindCommonMotion(shifts, constants::kFeignedHeight * longest_mm_);
-    std::vector<double> off_sds(views.size());
-    for (size_t i = 0; i < views.size(); ++i) {
-      off_sds[i] = common.Off_mm(shifts[i]).norm() / shifts[i].sd_mm;
-    }
-    const auto in_place = std::min_element(off_sds.begin(), off_sds.end()) - off_sds.begin();
-    const double common_turn = moves_[Index(views[Index(static_cast<int>(in_place))])].turn_rad;
+    const double common_turn = CommonTurn(views, shifts, common);
     std::vector<SampleMove> off;
     for (size_t i = 0; i < views.size(); ++i) {
       const double turn = moves_[Index(views[i])].turn_rad - common_turn;
@@ -289,7 +307,7 @@ class Mover {
     bool several = false;
     for (size_t group = 0; group < groups.size(); ++group) {
       const std::vector<int>& views = groups[group];
-      const bool alone = group > 0 && views.size() == 1;
+      const bool alone = group > 0 && views.size() == 1 && 2 * groups[0].size() > moves_.size();
       const bool certain = alone || std::all_of(views.begin(), views.end(), [&](int view) {
                              return explained_[Index(view)] >= constants::kCertainTexture;
                            });

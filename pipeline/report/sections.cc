@@ -59,6 +59,15 @@ bool Used(const ReportInput& input, const RectifiedView& view) {
          input.used_views.end();
 }
 
+// By fit, since no maps explain it together with the others.
+bool LeftOut(const ReportInput& input, const RectifiedView& view) {
+  if (!input.Has("fit")) return false;
+  const Json& metrics = input.manifests.at("fit").metrics;
+  if (!metrics.contains("left_out")) return false;
+  return std::any_of(metrics["left_out"].begin(), metrics["left_out"].end(),
+                     [&](const Json& one) { return one.value("name", "") == view.name; });
+}
+
 // Where large photographs are compared at a smaller size: which.
 std::string ComparedAt(const ReportInput& input) {
   const SamplePlane &whole = input.set.plane, &shown = input.shown.plane;
@@ -230,7 +239,8 @@ std::string ViewsSection(const ReportInput& input, const std::vector<ShownView>&
                      {"rmse", error.rmse},
                      {"usable_texels", error.texels}});
     views.back().update(ToJson(shown[i].looks));
-    if (error.texels > 0) {
+    const bool left_out = !used && LeftOut(input, view);
+    if (error.texels > 0 && !left_out) {
       Mean& mean = means[used ? 0 : 1];
       mean.log_l1 += error.log_l1;
       mean.rmse += error.rmse;
@@ -239,10 +249,13 @@ std::string ViewsSection(const ReportInput& input, const std::vector<ShownView>&
     }
     const Json& entry = views.back();
     rows += "<tr><td>" + HtmlText(view.name) + "<br><code>" + HtmlText(view.photo) + "</code>" +
-            (used ? "" : "<br><span class=\"kept\">held out</span>") + "</td>" + shown[i].cells +
-            "<td class=\"number\">" + FigureHtml(entry["log_l1"], trace.Field("log_l1")) +
-            "</td><td class=\"number\">" + FigureHtml(entry["rmse"], trace.Field("rmse")) +
-            "</td>" + LooksCells(entry, trace) + "</tr>\n";
+            (used       ? ""
+             : left_out ? "<br><span class=\"kept\">left out</span>"
+                        : "<br><span class=\"kept\">held out</span>") +
+            "</td>" + shown[i].cells + "<td class=\"number\">" +
+            FigureHtml(entry["log_l1"], trace.Field("log_l1")) + "</td><td class=\"number\">" +
+            FigureHtml(entry["rmse"], trace.Field("rmse")) + "</td>" + LooksCells(entry, trace) +
+            "</tr>\n";
   }
   (*own_metrics)["views"] = views;
   for (const int i : {0, 1}) {
