@@ -182,10 +182,6 @@ class Registration {
   HomographySpreads spreads_{};
 };
 
-}  // namespace
-
-namespace {
-
 // What a homography does, as a motion.
 SampleMove MotionOf(const Eigen::Matrix3d& homography) {
   return {0.5 * (homography(1, 0) - homography(0, 1)), homography.topRightCorner<2, 1>()};
