@@ -96,6 +96,7 @@ CalibratedPhoto ReadPhoto(const std::filesystem::path& file, const Json& json,
   photo.rms_px = RequireNumber(file, json, name, "rms_px");
   photo.corners = RequireCount(file, json, name, "corners");
   photo.inliers = RequireCount(file, json, name, "inliers");
+  photo.blur_px = PositiveNumberIfAny(file, json, name, "blur_px").value_or(0);
   return photo;
 }
 
@@ -131,6 +132,7 @@ Json ToJson(const Calibration& calibration) {
                               {"rms_px", photo.rms_px},
                               {"corners", photo.corners},
                               {"inliers", photo.inliers}});
+    if (photo.blur_px > 0) data["photos"].back()["blur_px"] = photo.blur_px;
     if (photo.exposure > 0) data["photos"].back()["exposure"] = photo.exposure;
     if (photo.white_balance_rgb != Eigen::Vector3d::Ones()) {
       data["photos"].back()["white_balance_rgb"] = List(photo.white_balance_rgb);

@@ -24,6 +24,9 @@ struct CalibratedPhoto {
   Eigen::Vector3d white_balance_rgb{1, 1, 1};
   double rms_px = 0;  // reprojection error of its inlier corners
   int corners = 0, inliers = 0;
+  // Standard deviation by which lens, focus and pixel spread a point, as the edges at the board's
+  // corners show it; 0: not known.
+  double blur_px = 0;
   // The sample's point (x, y) is shown where the pose puts the plane's point registration ·
   // (x, y, 1), millimetres: what pose and lens leave of its place.
   Eigen::Matrix3d registration = Eigen::Matrix3d::Identity();

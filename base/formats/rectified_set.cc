@@ -48,6 +48,7 @@ RectifiedView ReadView(const std::filesystem::path& file, const Json& json, size
   view.view.ambient_rgb = RequireVec(file, json, name, "ambient_rgb");
   view.view.exposure = RequireNumber(file, json, name, "exposure");
   view.pixels_per_texel = PositiveNumberIfAny(file, json, name, "pixels_per_texel");
+  view.blur_px = PositiveNumberIfAny(file, json, name, "blur_px");
   for (const auto& [field, z] :
        {std::pair<const char*, double>{"camera_in_sample_mm", view.view.camera_in_sample_mm[2]},
         {"light_in_sample_mm", view.view.light_in_sample_mm[2]}}) {
@@ -115,6 +116,7 @@ Json ToJson(const RectifiedSet& set) {
     if (view.pixels_per_texel) {
       data["views"].back()["pixels_per_texel"] = *view.pixels_per_texel;
     }
+    if (view.blur_px) data["views"].back()["blur_px"] = *view.blur_px;
   }
   return data;
 }

@@ -22,6 +22,9 @@ struct RectifiedView {
   // Side of a texel at the sample's centre in the photograph, which was resampled; not known of
   // imported pictures and of a fixed camera's whose pixels are the texels.
   std::optional<double> pixels_per_texel;
+  // Standard deviation by which lens, focus and pixel spread a point of the photograph, in its
+  // pixels, where calibration measured it; resampling comes on top.
+  std::optional<double> blur_px;
 };
 
 struct RectifiedSet {

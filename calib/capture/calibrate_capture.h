@@ -23,7 +23,7 @@
 
 namespace glint {
 
-inline constexpr int kCalibVersion = 21;
+inline constexpr int kCalibVersion = 22;
 
 struct RejectedPhoto {
   std::string name, reason;

@@ -150,6 +150,7 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     Warn(files[i], counts);
     // Not of pixels that became texels: how sharp a picture was made is its maker's.
     if (!resample.pixels_as_they_are) view.pixels_per_texel = counts.pixels_per_texel;
+    if (calibrated.blur_px > 0) view.blur_px = calibrated.blur_px;
     exposures.push_back(photo.exposure);
     Json metrics = {{"name", view.name}};
     metrics.update(ToJson(counts));

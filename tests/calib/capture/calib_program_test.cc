@@ -134,6 +134,7 @@ TEST_F(CalibProgram, CalibratesTheSameForAnyThreadCountAndPlace) {
   EXPECT_EQ(calibration.photos[0].light_in_camera_mm, Eigen::Vector3d(12, 0, 0));
   EXPECT_TRUE(calibration.light_power_known);
   for (int i = 0; i < 6; ++i) {
+    EXPECT_NEAR(calibration.photos[i].blur_px, 0.75, 0.08);  // of a lens of .7, and the pixel
     const Rigid3 truth = LookAt(230 + 5 * i, 6 + 6 * i, 100 * i, 20 * i);
     const Eigen::Vector3d position = Inverse(truth).translation;
     EXPECT_LT((Inverse(calibration.photos[i].camera_from_sample).translation - position).norm(),

@@ -70,6 +70,7 @@ class RectifyStage : public testing::Test {
       photo.photo = "photos/p" + std::to_string(i) + ".png";
       photo.camera_from_sample = poses_[static_cast<size_t>(i)];
       photo.light_in_camera_mm = {5, 0, 0};
+      if (light_known) photo.blur_px = 0.8 + 0.1 * i;
       calibration.photos.push_back(photo);
       inputs.push_back(PhotoFile(i));
     }
@@ -106,6 +107,7 @@ TEST_F(RectifyStage, ViewsShowThePlaneAsItWasPainted) {
   EXPECT_EQ(set.convention, ReflectanceConvention::Photograph());
   EXPECT_FALSE(set.light_power_known);
   EXPECT_FALSE(set.light_sd_mm.has_value());
+  EXPECT_FALSE(set.views[0].blur_px.has_value());
   for (size_t v = 0; v < 3; ++v) {
     EXPECT_EQ(set.views[v].photo, "photos/p" + std::to_string(v) + ".png");
     EXPECT_TRUE(set.views[v].ldr);
@@ -135,6 +137,8 @@ TEST_F(RectifyStage, KeepsAKnownLight) {
   const RectifiedSet set = ReadRectifiedSet(Views() / "manifest.json");
   EXPECT_TRUE(set.light_power_known);
   EXPECT_EQ(set.light_sd_mm, 0.5);
+  for (size_t v = 0; v < 3; ++v)
+    EXPECT_NEAR(*set.views[v].blur_px, 0.8 + 0.1 * static_cast<double>(v), 1e-12);
   EXPECT_EQ(set.views[1].view.light_rgb, (Vec3d{7, 8, 9}));
 }
 
