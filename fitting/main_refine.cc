@@ -13,6 +13,7 @@
 #include "base/formats/rectified_set.h"
 #include "base/programs/cost_model.h"
 #include "base/programs/program.h"
+#include "base/text/name_list.h"
 #include "fitting/refine/refine_stage.h"
 
 namespace glint {
@@ -47,6 +48,15 @@ ProgramResult Summarise(const Stage& stage, const RefineStageResult& refined, in
   for (const Json& view : refined.metrics["views"]) {
     result.text += fmt::format("  {}  {:<28} loss {:.3g}\n", view["name"].get<std::string>(),
                                view["photo"].get<std::string>(), view["log_l1"].get<double>());
+  }
+  std::vector<std::string> blurred;
+  for (const Json& view : refined.metrics["blurred_views"]) {
+    blurred.push_back(fmt::format("{} (counts for {:.0f} %)", view["photo"].get<std::string>(),
+                                  100 * view["weight"].get<double>()));
+  }
+  if (!blurred.empty()) {
+    result.text +=
+        "  blurred more than the others, whose finer detail was added: " + NameList(blurred) + "\n";
   }
   result.json = {{"stage", "refine"},
                  {"up_to_date", false},

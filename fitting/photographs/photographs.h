@@ -18,6 +18,8 @@ struct Photograph {
   std::vector<float> rgb;       // planar, 3·H·W, linear Rec.709
   std::vector<float> mask;      // H·W, 0 … 1; 0: the values may be anything
   double pixels_per_texel = 0;  // side of a texel in the picture that this was; 0: not known
+  double blur_px = 0;           // of that picture, before it was resampled; 0: not known
+  double hidden_variance = 0;   // of log radiance: detail that its blur hides and others show
 };
 
 struct PhotographSet {

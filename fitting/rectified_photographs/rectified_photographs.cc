@@ -22,7 +22,7 @@ PhotographSet RectifiedPhotographs::WithoutPixels() const {
   photographs.light_power_known = set_.light_power_known;
   for (const RectifiedView& view : views_) {
     photographs.photographs.push_back(
-        {view.view, view.ldr, {}, {}, view.pixels_per_texel.value_or(0)});
+        {view.view, view.ldr, {}, {}, view.pixels_per_texel.value_or(0), view.blur_px.value_or(0)});
   }
   return photographs;
 }
@@ -31,8 +31,12 @@ Photograph RectifiedPhotographs::ReadRows(size_t photograph, int first_row, int 
   const RectifiedView& view = views_[photograph];
   RectifiedImage image = readers_[photograph].Read(first_row, rows);
   AdmitClippedTexels(view, &image);
-  return {view.view, view.ldr, std::move(image.rgb), std::move(image.mask),
-          view.pixels_per_texel.value_or(0)};
+  return {view.view,
+          view.ldr,
+          std::move(image.rgb),
+          std::move(image.mask),
+          view.pixels_per_texel.value_or(0),
+          view.blur_px.value_or(0)};
 }
 
 PhotographSet RectifiedPhotographs::Rows(int first_row, int rows, int threads) {

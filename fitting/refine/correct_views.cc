@@ -60,7 +60,8 @@ RefineProblem ProblemOf(const PhotographSet& set) {
   problem.environment = set.environment;
   problem.systematic_sd = set.systematic_sd;
   for (const Photograph& p : set.photographs) {
-    problem.views.push_back({p.view, p.ldr, p.rgb, p.mask, p.pixels_per_texel});
+    problem.views.push_back(
+        {p.view, p.ldr, p.rgb, p.mask, p.pixels_per_texel, p.blur_px, p.hidden_variance});
   }
   return problem;
 }

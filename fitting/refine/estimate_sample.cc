@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -10,6 +11,7 @@
 #include "base/model/solver.h"
 #include "fitting/refine/gather.h"
 #include "fitting/refine/refine_worker.h"
+#include "fitting/refine/view_sharpness.h"
 #include "fitting/texel/texel_parameters.h"
 
 namespace glint {
@@ -84,16 +86,18 @@ BatchGram GramOf(const BatchObservations& observed, std::span<const TexelValues>
   return gram;
 }
 
+// `weights`: by view observed.
 ViewDifferences DifferencesOf(const BatchResiduals& residuals, const BatchObservations& observed,
-                              int lane) {
+                              std::span<const double> weights, int lane) {
   ViewDifferences differences;
   for (int view = 0; view < observed.views(); ++view) {
     std::optional<std::array<float, 3>>& of = differences.emplace_back();
     if (!observed.sees(view, lane)) continue;
     of.emplace();
+    const double unit = std::sqrt(weights[static_cast<size_t>(view)]);
     for (int c = 0; c < 3; ++c) {
       (*of)[static_cast<size_t>(c)] =
-          static_cast<float>(residuals.at(view, c, BatchResiduals::kDifference, lane));
+          static_cast<float>(unit * residuals.at(view, c, BatchResiduals::kDifference, lane));
     }
   }
   return differences;
@@ -128,6 +132,7 @@ class Estimator {
 
  private:
   void SetViews(const ViewDeviations& deviations);
+  void Weigh(double residual_variance);
   void Solve(std::span<const SampleTask> tasks, const SampleRequest& request, RefineWorker* worker,
              std::span<SampledTexel> solved);
   void Describe(std::span<const SampleTask> tasks, const SampleRequest& request,
@@ -167,22 +172,27 @@ void Estimator::Run() {
                        std::span<const int> views, int worker,
                        std::span<ViewDifferences> differences) {
     RefineWorker* w = workers_[static_cast<size_t>(worker)].get();
+    std::vector<double> weights;
+    for (const int v : views) weights.push_back(problem_.views[static_cast<size_t>(v)].weight);
     for (size_t first = 0; first < texels.size(); first += kBatch) {
       const size_t count = std::min<size_t>(kBatch, texels.size() - first);
       const BatchObservations& observed =
           gathered_.Of(texels.subspan(first, count), views, &w->observed);
       GramOf(observed, values.subspan(first, count), w, &w->residuals);
       for (size_t i = 0; i < count; ++i) {
-        differences[first + i] = DifferencesOf(w->residuals, observed, static_cast<int>(i));
+        differences[first + i] =
+            DifferencesOf(w->residuals, observed, weights, static_cast<int>(i));
       }
     }
   };
   solver.deviate = [&](const ViewDeviations& deviations) { SetViews(deviations); };
+  solver.weigh = [&](double variance) { Weigh(variance); };
   solver.reflect = [&](const SpecularLobes& lobes) {
     for (const auto& worker : workers_) worker->batches.SetLobes(lobes);
   };
   if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);
   SetViews(model_.deviations());
+  Weigh(model_.residuals().variance());
   model_.Estimate(by_colour_ ? &*by_colour_ : nullptr, solver, threads_);
 }
 
@@ -253,6 +263,15 @@ void Estimator::SetViews(const ViewDeviations& deviations) {
       set(v, further, &nudged_[i]);
     }
   }
+  gathered_.Forget();
+}
+
+void Estimator::Weigh(double residual_variance) {
+  const bool alike = std::all_of(problem_.views.begin(), problem_.views.end(),
+                                 [](const RefineView& view) { return view.hidden_variance == 0; });
+  if (alike) return;
+  WeighViews(residual_variance, &problem_);
+  for (RefineProblem& nudged : nudged_) WeighViews(residual_variance, &nudged);
   gathered_.Forget();
 }
 

@@ -52,7 +52,7 @@ void GatherObservations(const RefineProblem& problem, const SvbrdfMaps& maps,
     for (size_t i = 0; i < texels.size(); ++i) {
       Seen seen;
       if (!See(view, maps.texels(), texels[i], &seen)) continue;
-      observations->Set(static_cast<int>(i), at, seen.radiance, seen.clipped);
+      observations->Set(static_cast<int>(i), at, seen.radiance, seen.clipped, view.weight);
     }
     observations->Complete(at, BatchView(view.view, problem.convention.falloff));
   }

@@ -22,8 +22,8 @@
 
 namespace glint {
 
-// log(R + 0.01) − log(I + 0.01) of one texel, by view and channel; nothing: the view does not show
-// it.
+// log(R + 0.01) − log(I + 0.01) of one texel, by view and channel, times the square root of the
+// view's weight; nothing: the view does not show it.
 using ViewDifferences = std::vector<std::optional<std::array<float, 3>>>;
 
 // Squared residuals g² (texel/batch_kernel.h) of each texel, summed over views and channels.

@@ -11,6 +11,7 @@
 #include "fitting/refine/gather.h"
 #include "fitting/refine/neighbours.h"
 #include "fitting/refine/point_spread.h"
+#include "fitting/refine/view_sharpness.h"
 #include "fitting/render/render_environment.h"
 #include "fitting/render/render_lit.h"
 #include "fitting/texel/texel_parameters.h"
@@ -18,8 +19,9 @@
 namespace glint {
 namespace {
 
-RefineProblem WithViews(RefineProblem problem, const std::vector<View>& views) {
-  for (size_t v = 0; v < views.size(); ++v) problem.views[v].view = views[v];
+RefineProblem WithViews(RefineProblem problem, const SampleEstimate& estimate) {
+  for (size_t v = 0; v < estimate.found.size(); ++v) problem.views[v].view = estimate.found[v];
+  WeighViews(estimate.model.residuals().variance(), &problem);
   return problem;
 }
 
@@ -27,7 +29,7 @@ RefineProblem WithViews(RefineProblem problem, const std::vector<View>& views) {
 int BlurredRows(const RefineProblem& problem, const RefineOptions& options) {
   int most = 0;
   for (const RefineView& view : problem.views) {
-    most = std::max(most, 2 * PointSpread(view.pixels_per_texel, options.point_spread_px).reach());
+    most = std::max(most, 2 * constants::kDeblurSteps * SpreadOf(view, options).reach());
   }
   return most;
 }
@@ -56,7 +58,7 @@ PartRefiner::PartRefiner(const SampleEstimate& estimate, const RefineProblem& sa
     : all_views_(said.views.size()),
       part_(said, start, estimate.substances, threads),
       model_(estimate.model.On(part_)),
-      problem_(WithViews(said, estimate.found)),
+      problem_(WithViews(said, estimate)),
       blurred_rows_(BlurredRows(said, options)),
       deblurred_(said.views.size()),
       start_(start),
@@ -105,7 +107,7 @@ void PartRefiner::Deblur() {
   const int width = start_.width, height = start_.height;
   ForEachPiece(static_cast<int>(problem_.views.size()), threads_, [&](int v) {
     RefineView& view = problem_.views[static_cast<size_t>(v)];
-    const PointSpread spread(view.pixels_per_texel, options_.point_spread_px);
+    const PointSpread spread = SpreadOf(view, options_);
     if (spread.none()) return;
     std::vector<float> rendering(3 * start_.texels());
     RenderLit(now_.maps, problem_.plane, view.view, problem_.convention, rendering.data());

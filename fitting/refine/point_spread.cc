@@ -53,8 +53,11 @@ std::vector<Taps> TapsOf(const std::vector<float>& gaussian, int count) {
 PointSpread::PointSpread(double pixels_per_texel, double spread_px) {
   if (!(pixels_per_texel > 0) || !(spread_px > 0)) return;
   const double spread = spread_px / pixels_per_texel;
-  variance_ =
-      std::clamp(spread * spread - constants::kTexelVariance, 0.0, constants::kMostBlurVariance);
+  *this = PointSpread(spread * spread - constants::kTexelVariance);
+}
+
+PointSpread::PointSpread(double variance)
+    : variance_(std::clamp(variance, 0.0, constants::kMostBlurVariance)) {
   if (variance_ > 0) taps_ = GaussianTaps(variance_);
 }
 
@@ -84,9 +87,18 @@ std::vector<float> Deblurred(const PointSpread& spread, std::span<const float> p
     // It may be brighter than it shows.
     if (clips(y)) residuals[i] = std::max(residuals[i], 0.0f);
   }
-  residuals = spread.Blurred(residuals, width, height);
+  std::vector<float> missing = spread.Blurred(residuals, width, height);
+  for (int step = 1; step < constants::kDeblurSteps; ++step) {
+    const std::vector<float> explained = spread.Blurred(missing, width, height);
+    std::vector<float> left(residuals.size());
+    for (size_t i = 0; i < left.size(); ++i) {
+      left[i] = mask[i % mask.size()] >= 0.5f ? residuals[i] - explained[i] : 0.0f;
+    }
+    left = spread.Blurred(left, width, height);
+    for (size_t i = 0; i < missing.size(); ++i) missing[i] += left[i];
+  }
   for (size_t i = 0; i < residuals.size(); ++i) {
-    const float sharp = (rendering[i] + kOffset) * std::exp(residuals[i]) - kOffset;
+    const float sharp = (rendering[i] + kOffset) * std::exp(missing[i]) - kOffset;
     rendering[i] = clips(photograph[i]) ? photograph[i] : std::max(sharp, 0.0f);
   }
   return rendering;

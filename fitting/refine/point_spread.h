@@ -4,10 +4,10 @@
 // The likelihood compares log(y + 0.01) with log(B R + 0.01), y the photograph, R the rendering of
 // all texels and B the blur. Texels are solved one by one from a photograph without blur that has
 // the same residuals as far as B passes them: with the maps as they are now,
-//   log(s + 0.01) = log(R + 0.01) + Bᵀ(log(y + 0.01) − log(B R + 0.01)),
-// a step of Landweber's iteration (American Journal of Mathematics 73, 1951) whose fixed point is
-// the likelihood's; few steps keep noise out of what B hardly passes. B is a Gaussian, the same for
-// the whole view, and its own transpose.
+//   log(s + 0.01) = log(R + 0.01) + e,   e ← e + Bᵀ(log(y + 0.01) − log(B R + 0.01) − B e) from 0,
+// kDeblurSteps steps of Landweber's iteration (American Journal of Mathematics 73, 1951) whose
+// fixed point is the likelihood's; few steps keep noise out of what B hardly passes. B is a
+// Gaussian, the same for the whole view, and its own transpose.
 #pragma once
 
 #include <span>
@@ -20,6 +20,7 @@ class PointSpread {
   // Of a photograph with `pixels_per_texel` pixels along a texel's side (0: not known, none), whose
   // points are spread with a standard deviation of `spread_px` pixels.
   PointSpread(double pixels_per_texel, double spread_px);
+  explicit PointSpread(double variance);  // texels²
 
   // Of the Gaussian along each axis, texels², beyond what a texel averages of itself.
   double variance() const { return variance_; }

@@ -45,6 +45,10 @@ struct RefineView {
   std::span<const float> rgb;   // planar, 3·H·W, linear
   std::span<const float> mask;  // H·W; texels of less than ½ are left out
   double pixels_per_texel = 0;  // side of a texel in the picture that this was; 0: not known
+  double blur_px = 0;           // of that picture, before it was resampled; 0: not known
+  // Of log radiance: variance of the detail that its blur hides and sharper views show, and what
+  // its squared residuals therefore weigh (view_sharpness.h).
+  double hidden_variance = 0, weight = 1;
   // What is solved from; empty: rgb. Refinement itself sets it where the picture is blurred
   // (point_spread.h).
   std::span<const float> deblurred = {};
@@ -100,8 +104,9 @@ struct RefineOptions {
   bool lobe_tails = false;  // look for shorter ones than GGX's too, likewise
   double prior = constants::kPriorWeight;  // factor on the priors' weight; 0: none
   // Standard deviation by which lens, pixel, demosaicking and resampling spread a point of the
-  // picture, pixels (point_spread.h). 0: not at all.
+  // picture, pixels (point_spread.h), of views whose blur is not known, or of all. 0: not at all.
   double point_spread_px = constants::kPointSpread_px;
+  bool measured_blur = true;                      // views whose blur is known have that
   double robust_scale = constants::kRobustScale;  // residuals (log units) beyond it count linearly
 
   // Empty: all is well; otherwise what is wrong.

@@ -24,6 +24,7 @@
 #include "fitting/refine/row_reader.h"
 #include "fitting/refine/sample_source.h"
 #include "fitting/refine/substances.h"
+#include "fitting/refine/view_sharpness.h"
 #include "fitting/view_correction/corrections_json.h"
 #include "fitting/view_correction/shared_light.h"
 
@@ -83,6 +84,23 @@ Json OddViewsOf(const RefineSummary& summary, const RectifiedSet& set,
   if (set.fixed_camera) return odd;
   for (const size_t i : OddViews(summary.view_loss, kOddOfRefined)) odd.push_back(views[i].name);
   return odd;
+}
+
+// Views whose blur hides detail that sharper ones show.
+Json BlurredViewsOf(const PhotographSet& said, double residual_sigma,
+                    const std::vector<RectifiedView>& views) {
+  RefineProblem problem = ProblemOf(said);
+  WeighViews(residual_sigma * residual_sigma, &problem);
+  Json blurred = Json::array();
+  for (size_t v = 0; v < views.size(); ++v) {
+    const RefineView& view = problem.views[v];
+    if (view.hidden_variance == 0) continue;
+    blurred.push_back({{"name", views[v].name},
+                       {"photo", views[v].photo},
+                       {"hidden_detail", std::sqrt(view.hidden_variance)},
+                       {"weight", view.weight}});
+  }
+  return blurred;
 }
 
 // What each view is to be corrected by: what was found before refinement and, beside it, the views'
@@ -260,7 +278,11 @@ struct Sample {
  private:
   SampleEstimate EstimateCorrected(int threads) {
     if (correction.taken) source.Correct(correction.corrections);
-    if (set.fixed_camera) source.MaskShadows(threads);
+    if (set.fixed_camera) {
+      source.MaskShadows(threads);
+    } else {
+      source.CompareSharpness(options, threads);
+    }
     return EstimateFrom(options, threads, &source);
   }
 };
@@ -446,6 +468,8 @@ RefineStageResult RunRefineStage(const fs::path& rectify_manifest, const RefineS
                  {"method", "refined"}};
   result.metrics = Metrics(result.summary, sample.views);
   result.metrics["odd_views"] = OddViewsOf(result.summary, sample.set, sample.views);
+  result.metrics["blurred_views"] =
+      BlurredViewsOf(sample.source.Views(), result.summary.residual_sigma, sample.views);
   result.metrics["light_power"] = {{"factor", sample.power()}};
   result.metrics["narrow_lobe"] = JsonOf(convention.lobes);
   AddCorrections(Corrections(result.correction, result.summary), sample.views, &result.data);

@@ -41,8 +41,13 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
   set->AddRange(
       "point-spread", &refine->point_spread_px, 0, 100,
       "standard deviation of the photographs' point-spread function in pixels (lens, pixel, "
-      "demosaicking and resampling together); where texels are finer than that, renderings of the "
-      "maps are blurred before they are compared with the photographs; 0: no blur");
+      "demosaicking and resampling together) whose blur was not measured; where texels are finer "
+      "than that, renderings of the maps are blurred before they are compared with the "
+      "photographs; 0: no blur");
+  set->Add(
+      "measured-blur", &refine->measured_blur,
+      "take each photograph's blur as calibration measured it at the board's corners, where it "
+      "did; else --point-spread is that of all photographs");
   set->AddRange(
       "robust-scale", &refine->robust_scale, 1e-3, 100,
       "log-radiance residuals larger than this are penalised linearly instead of quadratically");

@@ -272,6 +272,7 @@ void SampleModel::Fit(Sampling* sampling) {
     if (finds_views_) UpdateDeviations(*sampling);
     if (learns_normals_) UpdateNormalSpreads(*sampling);
     UpdateResiduals(*sampling);
+    sampling->solver->weigh(residuals_.variance());
   }
 }
 

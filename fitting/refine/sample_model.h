@@ -65,6 +65,8 @@ struct SampleSolver {
       predict;
   // From now on views deviate so from what is said of them.
   std::function<void(const ViewDeviations& deviations)> deviate;
+  // From now on residuals have this variance, beside what views hide.
+  std::function<void(double variance)> weigh;
   // From now on the sample has these specular lobes.
   std::function<void(const SpecularLobes& lobes)> reflect;
 };

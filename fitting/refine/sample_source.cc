@@ -13,6 +13,8 @@ namespace {
 
 // Of which texels are picked at a time.
 constexpr int kRowsAtOnce = 256;
+// By which photographs' sharpness is compared.
+constexpr int kRowsCompared = 256;
 
 RectifiedSet WithModelOf(RectifiedSet set, const std::filesystem::path& maps_file) {
   ReflectanceConvention of_maps;
@@ -20,6 +22,16 @@ RectifiedSet WithModelOf(RectifiedSet set, const std::filesystem::path& maps_fil
   set.convention.diffuse_weight = of_maps.diffuse_weight;
   set.convention.lobes = of_maps.lobes;
   return set;
+}
+
+// To rows from the `above`-th on, which lie on `plane`.
+void Cut(int above, int rows, const SamplePlane& plane, PhotographSet* set) {
+  if (rows == set->plane.height) return;
+  for (Photograph& p : set->photographs) {
+    p.rgb = CutRows(p.rgb, set->plane.width, set->plane.height, above, rows);
+    p.mask = CutRows(p.mask, set->plane.width, set->plane.height, above, rows);
+  }
+  set->plane = plane;
 }
 
 }  // namespace
@@ -42,6 +54,18 @@ RefineProblem SampleSource::Part::Problem() const {
 }
 
 void SampleSource::Correct(ViewCorrections corrections) { corrections_ = std::move(corrections); }
+
+void SampleSource::CompareSharpness(const RefineOptions& options, int threads) {
+  const int rows = std::min(kRowsCompared, plane().height);
+  shared_detail_ =
+      SharedDetail(CorrectedRows((plane().height - rows) / 2, rows, threads), options, threads);
+}
+
+PhotographSet SampleSource::Views() const {
+  PhotographSet set = photographs_.WithoutPixels();
+  shared_detail_.Describe(&set);
+  return set;
+}
 
 // Larger maps have heights for blocks of texels: initial maps are no finer (fit's --finest-size).
 HidingRelief SampleSource::ReliefOfMaps(int threads) {
@@ -84,7 +108,7 @@ void SampleSource::MaskShadows(int threads) {
 }
 
 PhotographSet SampleSource::PhotographRows(int first_row, int rows, int threads) {
-  PhotographSet set = CorrectedRows(first_row, rows, threads);
+  PhotographSet set = SharpenedRows(first_row, rows, threads);
   const size_t first = static_cast<size_t>(first_row) * static_cast<size_t>(plane().width);
   ForEachPiece(static_cast<int>(shadows_.size()), threads, [&](int piece) {
     const auto view = static_cast<size_t>(piece);
@@ -96,6 +120,15 @@ PhotographSet SampleSource::PhotographRows(int first_row, int rows, int threads)
   return set;
 }
 
+PhotographSet SampleSource::SharpenedRows(int first_row, int rows, int threads) {
+  const int above = std::min(first_row, shared_detail_.RowsAbout());
+  const int below = std::min(plane().height - first_row - rows, shared_detail_.RowsAbout());
+  PhotographSet set = CorrectedRows(first_row - above, above + rows + below, threads);
+  shared_detail_.AddTo(&set, threads);
+  Cut(above, rows, plane().Rows(first_row, rows), &set);
+  return set;
+}
+
 PhotographSet SampleSource::CorrectedRows(int first_row, int rows, int threads) {
   if (corrections_.views.empty()) return photographs_.Rows(first_row, rows, threads);
   const int reached = RowsReached(corrections_);
@@ -103,12 +136,7 @@ PhotographSet SampleSource::CorrectedRows(int first_row, int rows, int threads) 
   const int below = std::min(plane().height - first_row - rows, reached);
   PhotographSet set = Corrected(photographs_.Rows(first_row - above, above + rows + below, threads),
                                 corrections_, threads);
-  if (above + below == 0) return set;
-  for (Photograph& p : set.photographs) {
-    p.rgb = CutRows(p.rgb, set.plane.width, set.plane.height, above, rows);
-    p.mask = CutRows(p.mask, set.plane.width, set.plane.height, above, rows);
-  }
-  set.plane = plane().Rows(first_row, rows);
+  Cut(above, rows, plane().Rows(first_row, rows), &set);
   return set;
 }
 

@@ -11,6 +11,7 @@
 #include "base/reflectance/svbrdf_maps.h"
 #include "fitting/rectified_photographs/rectified_photographs.h"
 #include "fitting/refine/refine.h"
+#include "fitting/refine/shared_detail.h"
 #include "fitting/shadows/cast_shadows.h"
 #include "fitting/view_correction/view_correction.h"
 
@@ -39,8 +40,12 @@ class SampleSource {
   // the initial maps have it, hides from the light (cast_shadows.h). For lights that were moved.
   void MaskShadows(int threads);
 
+  // From now on Rows() and Every() give photographs with the detail that sharper ones show, as the
+  // sample's middle rows tell it; all that is given says what their blurs hide.
+  void CompareSharpness(const RefineOptions& options, int threads);
+
   // With views alone, as said.
-  PhotographSet Views() const { return photographs_.WithoutPixels(); }
+  PhotographSet Views() const;
   const SamplePlane& plane() const { return photographs_.plane(); }
   Part Rows(int first_row, int rows, int threads);
   // The texel in the middle of every stride × stride.
@@ -52,12 +57,14 @@ class SampleSource {
   PhotographSet PhotographRows(int first_row, int rows, int threads);
   PhotographSet CorrectedRows(int first_row, int rows, int threads);
   HidingRelief ReliefOfMaps(int threads);
+  PhotographSet SharpenedRows(int first_row, int rows, int threads);
 
   std::filesystem::path maps_file_;
   ResampledSvbrdf maps_;
   std::optional<ResampledDeviations> deviations_;
   RectifiedPhotographs photographs_;
   ViewCorrections corrections_;  // no views: none
+  SharedDetail shared_detail_;
   // By photograph, of all texels: those in shadow. Empty: none.
   std::vector<std::vector<bool>> shadows_;
 };

@@ -77,13 +77,14 @@ void BatchObservations::Place(int lane, double x_mm, double y_mm) {
 }
 
 // Radiances wait in the place of their inverses.
-void BatchObservations::Set(int lane, int v, const float radiance[3], const bool clipped[3]) {
+void BatchObservations::Set(int lane, int v, const float radiance[3], const bool clipped[3],
+                            double weight) {
   BatchRow* planes = view(v);
   for (int i = 0; i < 3; ++i) {
     planes[kInverseTarget + i][lane] = radiance[i] + static_cast<float>(kLogOffset);
     planes[kCeiling + i][lane] = clipped[i] ? 0.0f : kNoCeiling;
   }
-  planes[kWeight][lane] = 1.0f;
+  planes[kWeight][lane] = static_cast<float>(weight);
   ++seen_[static_cast<size_t>(lane)];
 }
 

@@ -79,8 +79,9 @@ class BatchObservations {
   // From here on of so many views, none of which sees anything.
   void Clear(int views);
   void Place(int lane, double x_mm, double y_mm);
-  // `radiance` linear, ≥ 0; `clipped`: the sensor's limit was reached in that channel.
-  void Set(int lane, int view, const float radiance[3], const bool clipped[3]);
+  // `radiance` linear, ≥ 0; `clipped`: the sensor's limit was reached in that channel; `weight` >
+  // 0.
+  void Set(int lane, int view, const float radiance[3], const bool clipped[3], double weight = 1);
   // Once for each view, after all of its radiances are set and before CopyLane(): what follows from
   // where each lane is.
   void Complete(int view, const BatchView& geometry);

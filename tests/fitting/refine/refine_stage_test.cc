@@ -8,6 +8,7 @@
 #include "base/formats/rectified_set.h"
 #include "base/formats/svbrdf_file.h"
 #include "base/images/image.h"
+#include "fitting/refine/point_spread.h"
 #include "fitting/refine/sample_source.h"
 #include "fitting/render/render_environment.h"
 #include "fitting/view_correction/corrections_json.h"
@@ -30,8 +31,15 @@ struct SaidOfLights {
   std::optional<double> sd_mm;
 };
 
+// A photograph that lies out of focus by so much more than the others.
+struct OutOfFocus {
+  size_t view = 0;
+  double variance = 0;  // texels²
+};
+
 void WriteCapture(const fs::path& folder, int views = 3,
-                  const EnvironmentLighting& environment = {}, const SaidOfLights& said = {}) {
+                  const EnvironmentLighting& environment = {}, const SaidOfLights& said = {},
+                  const OutOfFocus& blurred = {}) {
   test::WriteAll(folder / "capture.toml",
                  "[sample]\nsize_mm = [2, 2]\n[photos]\nfiles = [\"photos/*.png\"]\n");
   test::WriteAll(folder / "photos/0.png", "refine reads rectified views only");
@@ -60,10 +68,18 @@ void WriteCapture(const fs::path& folder, int views = 3,
       view.view = scene.views[i];
       for (double& power : view.view.light_rgb) power /= 2.0;
       view.view.light_in_sample_mm[0] += said.aside_mm;
-      set.views.push_back(view);
       RectifiedImage image;
       image.width = image.height = kSize;
       image.rgb = scene.photographs[i];
+      if (blurred.variance > 0) {
+        view.pixels_per_texel = 2;
+        view.blur_px = 0.6;
+        if (i == blurred.view) {
+          view.blur_px = std::hypot(0.6, 2 * std::sqrt(blurred.variance));
+          image.rgb = PointSpread(blurred.variance).Blurred(image.rgb, kSize, kSize);
+        }
+      }
+      set.views.push_back(view);
       image.mask = scene.masks[i];
       WriteRectifiedImage(stage.Output(view.file), image, set, view);
     }
@@ -362,6 +378,27 @@ TEST(RefineStage, BadInputEndsWith2AndKeepsTheEarlierResult) {
   refused({}, "view_001.exr");
   fs::remove(folder.path() / "glint/fit/manifest.json");
   refused({}, "fit/manifest.json");
+}
+
+double ReliefError(const fs::path& folder) {
+  return test::MeanSquare(ReadSvbrdf(folder / "glint/refine/svbrdf.exr"),
+                          test::QuarteredMaps(kSize, 1), kNormalX, kNormalY);
+}
+
+TEST(RefineStage, APhotographOutOfFocusIsNamedAndDoesLittleHarm) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path(), 7, {}, {.sd_mm = 0.01}, {.view = 4, .variance = 1.0});
+  const test::Outcome outcome = Refine(folder.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE((outcome.out + outcome.err).find("photos/4.png (counts for"), std::string::npos);
+  const Manifest manifest = ReadManifest(folder.path() / "glint/refine/manifest.json", "refine");
+  const Json& blurred = manifest.metrics["blurred_views"];
+  ASSERT_EQ(blurred.size(), 1u) << blurred;
+  EXPECT_EQ(blurred[0]["name"], "view_004");
+  EXPECT_LT(blurred[0]["weight"], 0.5);
+  const double error = ReliefError(folder.path());
+  ASSERT_EQ(Refine(folder.path(), {"--no-measured-blur"}).code, 0);
+  EXPECT_LT(error, 0.25 * ReliefError(folder.path()));
 }
 
 TEST(RefineStage, StartsFromMapsOfAnotherProgram) {

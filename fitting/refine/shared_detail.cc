@@ -1,0 +1,271 @@
+#include "fitting/refine/shared_detail.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/model/photographs.h"
+#include "base/parallel/parallel.h"
+#include "base/reflectance/log_radiance.h"
+#include "fitting/refine/correct_views.h"
+#include "fitting/refine/log_picture.h"
+#include "fitting/refine/relative_blur.h"
+#include "fitting/refine/view_sharpness.h"
+
+namespace glint {
+namespace {
+
+constexpr int kBlock = 16;  // texels; windows are three of them wide
+constexpr size_t kMostSharper = 8;
+
+std::vector<float> Difference(std::vector<float> a, const std::vector<float>& b) {
+  for (size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
+  return a;
+}
+
+// Of a sharper photograph: what both show, luminance without what is coarse, and what the blurred
+// one lacks, by channel.
+struct Source {
+  std::vector<float> shown, lacking;
+};
+
+Source SourceOf(const LogPicture& picture, double to_blurred, double to_aim) {
+  const std::vector<float> as_blurred = picture.Blurred(to_blurred);
+  return {picture.DetailOf(Luminance(as_blurred)), Difference(picture.Blurred(to_aim), as_blurred)};
+}
+
+// Blocks of the whole sample of which rows [first_row, first_row + height) are at hand.
+struct Blocks {
+  explicit Blocks(const SamplePlane& plane)
+      : width(plane.width),
+        height(plane.height),
+        first_row(plane.whole.first_row),
+        first(first_row / kBlock),
+        across((width + kBlock - 1) / kBlock),
+        down((first_row + height + kBlock - 1) / kBlock - first) {}
+  int width, height, first_row;
+  int first;  // row of blocks
+  int across, down;
+};
+
+// Upper triangles of the sums of products of n + 1 planes, the last one the blurred photograph's.
+std::vector<Eigen::MatrixXd> ProductsOf(const Blocks& blocks,
+                                        const std::vector<const float*>& planes, int threads) {
+  const auto n = static_cast<Eigen::Index>(planes.size());
+  std::vector<Eigen::MatrixXd> products(static_cast<size_t>(blocks.across * blocks.down),
+                                        Eigen::MatrixXd::Zero(n, n));
+  ForEachPiece(blocks.down, threads, [&](int block_row) {
+    const int from = std::max(0, (blocks.first + block_row) * kBlock - blocks.first_row);
+    const int to =
+        std::min(blocks.height, (blocks.first + block_row + 1) * kBlock - blocks.first_row);
+    for (int block = 0; block < blocks.across; ++block) {
+      Eigen::MatrixXd& sums = products[static_cast<size_t>(block_row * blocks.across + block)];
+      const int left = block * kBlock, right = std::min(blocks.width, left + kBlock);
+      for (int row = from; row < to; ++row) {
+        const size_t at = static_cast<size_t>(row) * static_cast<size_t>(blocks.width);
+        for (Eigen::Index i = 0; i < n; ++i) {
+          for (Eigen::Index j = i; j < n; ++j) {
+            const float *a = planes[static_cast<size_t>(i)] + at,
+                        *b = planes[static_cast<size_t>(j)] + at;
+            float sum = 0;
+            for (int column = left; column < right; ++column) sum += a[column] * b[column];
+            sums(i, j) += static_cast<double>(sum);
+          }
+        }
+      }
+    }
+  });
+  for (Eigen::MatrixXd& sums : products) {
+    sums.triangularView<Eigen::StrictlyLower>() = sums.transpose();
+  }
+  return products;
+}
+
+struct Combination {
+  std::vector<Eigen::VectorXf> by_block;  // coefficients a
+  double explained = 0;                   // share of the blurred photograph's coarser detail
+};
+
+Combination CombinationOf(const Blocks& blocks, const std::vector<Eigen::MatrixXd>& products) {
+  Combination found;
+  const Eigen::Index n = products[0].rows() - 1;
+  // What noise feigns of shown detail.
+  const double noise = constants::kSensorNoise * constants::kSensorNoise * 9 * kBlock * kBlock;
+  double left = 0, all = 0;
+  for (int row = 0; row < blocks.down; ++row) {
+    for (int column = 0; column < blocks.across; ++column) {
+      Eigen::MatrixXd window = Eigen::MatrixXd::Zero(n + 1, n + 1);
+      for (int r = std::max(0, row - 1); r <= std::min(blocks.down - 1, row + 1); ++r) {
+        for (int c = std::max(0, column - 1); c <= std::min(blocks.across - 1, column + 1); ++c) {
+          window += products[static_cast<size_t>(r * blocks.across + c)];
+        }
+      }
+      Eigen::MatrixXd normal = window.topLeftCorner(n, n);
+      normal.diagonal().array() += noise;
+      const Eigen::VectorXd a = normal.llt().solve(window.topRightCorner(n, 1));
+      const Eigen::MatrixXd& own = products[static_cast<size_t>(row * blocks.across + column)];
+      left += own(n, n) - 2 * a.dot(own.topRightCorner(n, 1).col(0)) +
+              a.dot(own.topLeftCorner(n, n) * a);
+      all += own(n, n);
+      found.by_block.push_back(a.cast<float>());
+    }
+  }
+  found.explained = all > 0 ? std::clamp(1 - left / all, 0.0, 1.0) : 0;
+  return found;
+}
+
+// Of photographs' points, texels²: as measured, or as expected and more by what their detail lacks.
+std::vector<double> BlurVariances(const PhotographSet& set, const RefineOptions& options,
+                                  int threads) {
+  const RefineProblem problem = ProblemOf(set);
+  const bool measured = std::all_of(problem.views.begin(), problem.views.end(),
+                                    [](const RefineView& view) { return view.blur_px > 0; });
+  std::vector<double> variances =
+      measured ? std::vector<double>(problem.views.size(), 0.0) : RelativeBlurs(set, threads);
+  for (size_t v = 0; v < variances.size(); ++v) {
+    variances[v] += SpreadOf(problem.views[v], options).variance();
+  }
+  return variances;
+}
+
+// Where a texel lies between the middles of blocks.
+struct Between {
+  Between(int texel, int blocks) {
+    const double at = std::clamp((texel + 0.5) / kBlock - 0.5, 0.0, blocks - 1.0);
+    first = std::min(static_cast<int>(at), std::max(0, blocks - 2));
+    second = std::min(first + 1, blocks - 1);
+    share = static_cast<float>(at - first);
+  }
+  int first, second;
+  float share;  // of the second
+};
+
+}  // namespace
+
+SharedDetail::SharedDetail(const PhotographSet& middle, const RefineOptions& options, int threads)
+    : variances_(BlurVariances(middle, options, threads)) {
+  sharper_.resize(variances_.size());
+  std::iota(sharper_.begin(), sharper_.end(), size_t{0});
+  std::stable_sort(sharper_.begin(), sharper_.end(),
+                   [&](size_t a, size_t b) { return variances_[a] < variances_[b]; });
+  const std::vector<size_t> blurrier(sharper_.begin() + (sharper_.size() + 1) / 2, sharper_.end());
+  sharper_.resize((sharper_.size() + 1) / 2);
+  for (const size_t v : blurrier) {
+    const double hidden = HiddenVariance(middle, v, threads);
+    if (std::sqrt(hidden) <= constants::kLeastHiddenDetail) continue;
+    double explained = 0;
+    Photograph sharpened = middle.photographs[v];
+    Sharpen(middle, v, threads, &sharpened, &explained);
+    blurred_.push_back({v, hidden * (1 - explained)});
+  }
+}
+
+// e²: of the detail that the blur of `photograph` takes from sharper ones, the mean over them.
+double SharedDetail::HiddenVariance(const PhotographSet& set, size_t photograph,
+                                    int threads) const {
+  std::vector<double> taken(sharper_.size(), 0.0);
+  ForEachPiece(static_cast<int>(sharper_.size()), threads, [&](int piece) {
+    const size_t u = sharper_[static_cast<size_t>(piece)];
+    const double more = variances_[photograph] - variances_[u];
+    if (!(more > 0)) return;
+    const LogPicture picture(set.photographs[u], set.plane.width, set.plane.height);
+    const std::vector<float> lacking = Luminance(Difference(picture.rgb, picture.Blurred(more)));
+    double sum = 0, count = 0;
+    for (size_t t = 0; t < lacking.size(); ++t) {
+      sum += static_cast<double>(lacking[t]) * static_cast<double>(lacking[t]);
+      count += static_cast<double>(picture.usable[t]);
+    }
+    if (count > 0) taken[static_cast<size_t>(piece)] = sum / count;
+  });
+  return std::accumulate(taken.begin(), taken.end(), 0.0) / static_cast<double>(taken.size());
+}
+
+int SharedDetail::RowsAbout() const {
+  if (blurred_.empty()) return 0;
+  // Of the two blocks between which a texel lies, the window of the farther one.
+  constexpr int kOfWindow = 3 * kBlock;
+  return kOfWindow + kDetailReach + PointSpread(constants::kMostBlurVariance).reach();
+}
+
+void SharedDetail::Sharpen(const PhotographSet& from, size_t photograph, int threads,
+                           Photograph* to, double* explained) const {
+  const int width = from.plane.width, height = from.plane.height;
+  const double own = variances_[photograph], aim = variances_[sharper_.back()];
+  std::vector<size_t> used;
+  for (const size_t u : sharper_) {
+    if (used.size() < kMostSharper && variances_[u] < own) used.push_back(u);
+  }
+  std::vector<Source> sources(used.size());
+  ForEachPiece(static_cast<int>(used.size()), threads, [&](int piece) {
+    const size_t u = used[static_cast<size_t>(piece)];
+    sources[static_cast<size_t>(piece)] = SourceOf(LogPicture(from.photographs[u], width, height),
+                                                   own - variances_[u], aim - variances_[u]);
+  });
+  const Photograph& blurred = from.photographs[photograph];
+  const LogPicture picture(blurred, width, height);
+  const std::vector<float> shown = picture.DetailOf(Luminance(picture.rgb));
+  std::vector<const float*> planes;
+  for (Source& source : sources) {
+    for (size_t t = 0; t < shown.size(); ++t) source.shown[t] *= picture.usable[t];
+    planes.push_back(source.shown.data());
+  }
+  planes.push_back(shown.data());
+  const Blocks blocks(from.plane);
+  const Combination combination = CombinationOf(blocks, ProductsOf(blocks, planes, threads));
+  *explained = combination.explained;
+
+  const size_t texels = shown.size();
+  const auto at = [&](int row, int column) -> const Eigen::VectorXf& {
+    return combination.by_block[static_cast<size_t>(row * blocks.across + column)];
+  };
+  ForEachPiece(height, threads, [&](int row) {
+    const Between down(row + blocks.first_row - blocks.first * kBlock, blocks.down);
+    for (int column = 0; column < width; ++column) {
+      const size_t t =
+          static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column);
+      if (picture.usable[t] == 0) continue;
+      const Between across(column, blocks.across);
+      const Eigen::VectorXf a =
+          (1 - down.share) * ((1 - across.share) * at(down.first, across.first) +
+                              across.share * at(down.first, across.second)) +
+          down.share * ((1 - across.share) * at(down.second, across.first) +
+                        across.share * at(down.second, across.second));
+      for (size_t c = 0; c < 3; ++c) {
+        float& radiance = to->rgb[c * texels + t];
+        if (blurred.ldr && static_cast<double>(radiance) >= constants::kClippedRadiance) continue;
+        float log = picture.rgb[c * texels + t];
+        for (size_t k = 0; k < sources.size(); ++k) {
+          log += a[static_cast<Eigen::Index>(k)] * sources[k].lacking[c * texels + t];
+        }
+        radiance = std::max(std::exp(log) - static_cast<float>(kLogOffset), 0.0f);
+      }
+    }
+  });
+}
+
+void SharedDetail::AddTo(PhotographSet* rows, int threads) const {
+  if (blurred_.empty()) return;
+  std::vector<Photograph> sharpened;
+  for (const Blurred& one : blurred_) {
+    double explained = 0;
+    sharpened.push_back(rows->photographs[one.photograph]);
+    Sharpen(*rows, one.photograph, threads, &sharpened.back(), &explained);
+  }
+  for (size_t k = 0; k < blurred_.size(); ++k) {
+    rows->photographs[blurred_[k].photograph] = std::move(sharpened[k]);
+  }
+  Describe(rows);
+}
+
+void SharedDetail::Describe(PhotographSet* set) const {
+  for (const Blurred& one : blurred_) {
+    Photograph& photograph = set->photographs[one.photograph];
+    photograph.hidden_variance = one.hidden_variance;
+    if (photograph.blur_px > 0) {
+      photograph.blur_px = BlurOf(variances_[sharper_.back()], photograph.pixels_per_texel);
+    }
+  }
+}
+
+}  // namespace glint
