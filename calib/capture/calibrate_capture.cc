@@ -239,7 +239,7 @@ Calibration PosesOf(const Capture& capture, const CalibSummary& summary) {
     photo.rms_px = estimate.rms_px;
     photo.corners = static_cast<int>(estimate.corners.size());
     photo.inliers = estimate.inliers();
-    photo.blur_px = detected.measures.blur_px;
+    if (!detected.reduced) photo.blur_px = detected.measures.blur_px;
     calibration.photos.push_back(photo);
   }
   return calibration;

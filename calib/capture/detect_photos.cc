@@ -19,6 +19,7 @@ namespace {
 
 // From a reduced copy to the photograph itself.
 void Enlarge(int reduction, std::pair<int, int> size, DetectedPhoto* photo) {
+  photo->reduced = true;
   std::tie(photo->width_px, photo->height_px) = size;
   photo->picture.left_px *= reduction;
   photo->picture.top_px *= reduction;

@@ -26,6 +26,7 @@ struct DetectedPhoto {
   std::vector<PaperSample> paper;   // of flash photographs
   double sample_clipped_share = 0;  // see guidance/clipping.h
   PhotoMeasures measures;           // what triage goes by
+  bool reduced = false;             // all this is of a smaller copy: as sharp as that is
   SamplePicture picture;            // of flash photographs
 };
 

@@ -75,6 +75,7 @@ GuidanceInput GuidanceInputOf(const Capture& capture, const CalibSummary& summar
     one.light_in_sample_mm = sample_from_camera * photo.light_in_camera_mm;
     one.posed = {summary.calibration.cameras[photo.camera], photo.camera_from_sample};
     one.clipped_share = FindPhoto(summary, photo.photo).sample_clipped_share;
+    one.blur_px = photo.blur_px;
     input.photos.push_back(one);
   }
   for (const RejectedPhoto& photo : summary.rejected) {

@@ -149,6 +149,29 @@ void AddResolution(const GuidanceInput& input, const Verdict& v, List* list) {
                    std::max(8.0, std::floor(input.resolution_px[0] * px)))});
 }
 
+// Pixels that are blurred tell as much as fewer sharp ones.
+void AddSoft(const GuidanceInput& input, const Verdict& v, List* list) {
+  const ViewFacts* best = nullptr;
+  double most_px = 0;  // sharp pixels per texel
+  for (const ViewFacts& view : v.views) {
+    if (view.blur_px <= 0 || view.texel_px <= 0) return;
+    const double px = view.texel_px * std::min(1.0, v.limits.sharp_px / view.blur_px);
+    if (px <= most_px) continue;
+    most_px = px;
+    best = &view;
+  }
+  if (best == nullptr || most_px >= v.limits.texel_px) return;
+  if (v.sharpest_texel_px < v.limits.texel_px) return;  // that is said already
+  list->push_back(
+      {"soft", Importance::kHint,
+       fmt::format(
+           "the photographs are soft: even in {} edges are blurred by {:.1f} px (sigma; {:.1f} "
+           "is sharp), {:.1f} texels, so that maps show little more than with resolution_px "
+           "= {:.0f}; wipe the lens, lock the focus on the board, and move closer",
+           best->photo, best->blur_px, v.limits.sharp_px, best->blur_px / best->texel_px,
+           std::max(8.0, std::floor(input.resolution_px[0] * most_px)))});
+}
+
 void AddCut(const Verdict& v, List* list) {
   std::vector<std::string> names;
   for (const ViewFacts& view : v.views) {
@@ -206,6 +229,7 @@ std::vector<Advice> AdviceFor(const GuidanceInput& input, const Verdict& verdict
   AddHighlight(verdict, &list);
   AddClipped(verdict, "use a shorter exposure or step back", &list);
   AddResolution(input, verdict, &list);
+  AddSoft(input, verdict, &list);
   AddLeftOut(input, verdict, "take them again", &list);
   AddCut(verdict, &list);
   std::stable_sort(list.begin(), list.end(), [](const Advice& a, const Advice& b) {

@@ -11,6 +11,7 @@
 //   highlight   part of the sample never shows a highlight
 //   clipped     too much of the sample is clipped in some photographs
 //   resolution  a texel is smaller than a pixel
+//   soft        a sharp photograph's pixel as large as the blur is would be larger than a texel
 //   left_out    photographs that are not used
 //   cut         photographs that show part of the sample only
 #pragma once

@@ -34,6 +34,7 @@ struct GuidancePhoto {
   // sets) the whole sample counts as inside.
   std::optional<PosedCamera> posed;
   double clipped_share = 0;  // of the sample's pixels
+  double blur_px = 0;        // standard deviation of the edges' blur; 0: not known
 };
 
 // The sample cut into cells; row 0 is at +y, as in a map.

@@ -23,6 +23,7 @@ ViewFacts FactsOf(const GuidanceInput& input, const GuidancePhoto& photo,
   facts.distance_mm = photo.camera_in_sample_mm.norm();
   facts.shown_share = ShownShare(photo, grid);
   facts.clipped_share = photo.clipped_share;
+  facts.blur_px = photo.blur_px;
   facts.texel_px = PixelsPerMm(photo) * input.sample_size_mm[0] / input.resolution_px[0];
   facts.least_half_angle_deg = 180;
   for (size_t cell = 0; cell < grid.cells(); ++cell) {

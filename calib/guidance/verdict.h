@@ -45,7 +45,9 @@ struct GuidanceLimits {
   double tilted_deg = 15;       // one farther from it is tilted
   double gap_deg = 150;         // between the sides tilted photographs are taken from
   int few_photos = 5, enough_photos = 12;
-  double texel_px = 0.8;       // a texel smaller than this, in pixels of the sharpest photograph
+  double texel_px = 0.8;  // a texel smaller than this, in pixels of the sharpest photograph
+  // Blur of a photograph that is sharp to the pixel: of a lens of 0.5 and the pixel's own area.
+  double sharp_px = 0.58;
   double cut_share = 0.1;      // of the sample beside a photograph
   double clipped_share = 0.2;  // Gao et al. 2019, fig. 14: 20 % are harmless
   double left_out_share = 0.25;
@@ -72,6 +74,7 @@ struct ViewFacts {
   double least_half_angle_deg = 0;  // over the sample
   double shown_share = 0, clipped_share = 0;
   double texel_px = 0;  // pixels per texel; 0: unknown
+  double blur_px = 0;   // standard deviation of the edges' blur; 0: unknown
 };
 
 struct Verdict {

@@ -144,6 +144,23 @@ TEST(Verdict, TellsThatTexelsAreSmallerThanPixelsAndBothWaysOut) {
   EXPECT_EQ(Sentence(input, "resolution"), "");
 }
 
+TEST(Verdict, SaysThatPhotographsAreSoftAndHowSmallMapsMayBe) {
+  GuidanceInput input = GoodCapture();  // 10 pixels/mm, 100 mm
+  input.resolution_px = {1000, 1000};
+  for (GuidancePhoto& photo : input.photos) photo.blur_px = 0.6;
+  EXPECT_EQ(Sentence(input, "soft"), "");
+  for (GuidancePhoto& photo : input.photos) photo.blur_px = 1.45;
+  EXPECT_THAT(Sentence(input, "soft"), HasSubstr("blurred by 1.4 px"));
+  EXPECT_THAT(Sentence(input, "soft"), HasSubstr("resolution_px = 4"));
+  input.photos[0].blur_px = 0.6;  // one sharp photograph is enough for that
+  EXPECT_EQ(Sentence(input, "soft"), "");
+  for (GuidancePhoto& photo : input.photos) photo.blur_px = 1.45;
+  input.resolution_px = {400, 400};
+  EXPECT_EQ(Sentence(input, "soft"), "");
+  input.resolution_px = {2048, 2048};  // said by "resolution"
+  EXPECT_EQ(Sentence(input, "soft"), "");
+}
+
 TEST(Verdict, NamesClippedPhotographs) {
   GuidanceInput input = GoodCapture();
   input.photos[2].clipped_share = 0.19;
