@@ -90,8 +90,9 @@ struct Combination {
 Combination CombinationOf(const Blocks& blocks, const std::vector<Eigen::MatrixXd>& products) {
   Combination found;
   const Eigen::Index n = products[0].rows() - 1;
-  // What noise feigns of shown detail.
-  const double noise = constants::kSensorNoise * constants::kSensorNoise * 9 * kBlock * kBlock;
+  // A ridge: of the noise that comes with what is added, of as much as counts as no detail.
+  const double noise =
+      constants::kLeastHiddenDetail * constants::kLeastHiddenDetail * 9 * kBlock * kBlock;
   double left = 0, all = 0;
   for (int row = 0; row < blocks.down; ++row) {
     for (int column = 0; column < blocks.across; ++column) {

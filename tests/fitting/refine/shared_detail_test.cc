@@ -85,11 +85,11 @@ TEST(SharedDetail, ABlurredPhotographIsNearlyAsIfItWereSharp) {
     ASSERT_GT(shared.RowsAbout(), 0);
     shared.AddTo(&set, 2);
     EXPECT_LT(DifferenceOf(set.photographs[4], sharp.photographs[4]),
-              0.3 * DifferenceOf(before.photographs[4], sharp.photographs[4]));
+              0.4 * DifferenceOf(before.photographs[4], sharp.photographs[4]));
     // What is still hidden is stated: not more than was, and more than nothing.
     const double stated = std::sqrt(set.photographs[4].hidden_variance);
     EXPECT_GT(stated, 0.003);
-    EXPECT_LT(stated, 0.3 * DifferenceOf(before.photographs[4], sharp.photographs[4]));
+    EXPECT_LT(stated, 0.4 * DifferenceOf(before.photographs[4], sharp.photographs[4]));
     for (const size_t v : {0, 1, 2, 3, 5}) {
       EXPECT_EQ(set.photographs[v].rgb, before.photographs[v].rgb);
       EXPECT_EQ(set.photographs[v].hidden_variance, 0);
