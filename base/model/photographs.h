@@ -64,7 +64,8 @@ inline constexpr ModelConstant kPhotographRows[] = {
         "lend it theirs",
         "rounding to 8 bits is 0.007"),
     Row("kLeastRelativeBlur", {kLeastRelativeBlur}, "texels²",
-        "by which a photograph whose blur was not measured must be blurred more than the median",
+        "by which a photograph must be blurred more than the sharper half, by measure or by "
+        "spectra",
         "photographs of fourteen real samples differ by 0.05 (standard deviation), two by 0.2 and "
         "0.45"),
     Row("kDeblurSteps", {kDeblurSteps}, "steps", "of taking a photograph's blur off, in each pass",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct Photograph {
   double pixels_per_texel = 0;  // side of a texel in the picture that this was; 0: not known
   double blur_px = 0;           // of that picture, before it was resampled; 0: not known
   double hidden_variance = 0;   // of log radiance: detail that its blur hides and others show
+  // Of its points as it is now, texels², where others lent it detail.
+  std::optional<double> spread_variance = {};
 };
 
 struct PhotographSet {

@@ -60,8 +60,14 @@ RefineProblem ProblemOf(const PhotographSet& set) {
   problem.environment = set.environment;
   problem.systematic_sd = set.systematic_sd;
   for (const Photograph& p : set.photographs) {
-    problem.views.push_back(
-        {p.view, p.ldr, p.rgb, p.mask, p.pixels_per_texel, p.blur_px, p.hidden_variance});
+    problem.views.push_back({.view = p.view,
+                             .ldr = p.ldr,
+                             .rgb = p.rgb,
+                             .mask = p.mask,
+                             .pixels_per_texel = p.pixels_per_texel,
+                             .blur_px = p.blur_px,
+                             .hidden_variance = p.hidden_variance,
+                             .spread_variance = p.spread_variance});
   }
   return problem;
 }

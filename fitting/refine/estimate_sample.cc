@@ -142,6 +142,7 @@ class Estimator {
                                          const RefineWorker& worker) const;
 
   RefineProblem problem_;         // views as they deviate
+  double weighed_variance_ = 0;   // of residuals, by which they are weighed
   const std::vector<View> said_;  // those, with lights where they are said to be
   // The problem with one deviation of every view a step further, where they are looked for.
   std::vector<RefineProblem> nudged_;
@@ -269,7 +270,8 @@ void Estimator::SetViews(const ViewDeviations& deviations) {
 void Estimator::Weigh(double residual_variance) {
   const bool alike = std::all_of(problem_.views.begin(), problem_.views.end(),
                                  [](const RefineView& view) { return view.hidden_variance == 0; });
-  if (alike) return;
+  if (alike || residual_variance == weighed_variance_) return;
+  weighed_variance_ = residual_variance;
   WeighViews(residual_variance, &problem_);
   for (RefineProblem& nudged : nudged_) WeighViews(residual_variance, &nudged);
   gathered_.Forget();

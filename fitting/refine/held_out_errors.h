@@ -26,8 +26,8 @@ namespace glint {
 // view's weight; nothing: the view does not show it.
 using ViewDifferences = std::vector<std::optional<std::array<float, 3>>>;
 
-// Squared residuals g² (texel/batch_kernel.h) of each texel, summed over views and channels.
-// `free_exposures`: after the factor on each view's photograph that makes its sum least.
+// Squared residuals g² (texel/batch_kernel.h) of these, of each texel, summed over views and
+// channels. `free_exposures`: after the factor on each view's photograph that makes its sum least.
 std::vector<double> SquaresOf(std::span<const ViewDifferences> texels, double robust_scale,
                               bool free_exposures);
 

@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,6 +50,7 @@ struct RefineView {
   // Of log radiance: variance of the detail that its blur hides and sharper views show, and what
   // its squared residuals therefore weigh (view_sharpness.h).
   double hidden_variance = 0, weight = 1;
+  std::optional<double> spread_variance = {};  // of its points, texels²; nullopt: by its blur
   // What is solved from; empty: rgb. Refinement itself sets it where the picture is blurred
   // (point_spread.h).
   std::span<const float> deblurred = {};
@@ -106,7 +108,8 @@ struct RefineOptions {
   // Standard deviation by which lens, pixel, demosaicking and resampling spread a point of the
   // picture, pixels (point_spread.h), of views whose blur is not known, or of all. 0: not at all.
   double point_spread_px = constants::kPointSpread_px;
-  bool measured_blur = true;                      // views whose blur is known have that
+  bool share_detail = true;   // sharper photographs lend theirs to blurred ones (shared_detail.h)
+  bool measured_blur = true;  // views whose blur is known have that
   double robust_scale = constants::kRobustScale;  // residuals (log units) beyond it count linearly
 
   // Empty: all is well; otherwise what is wrong.

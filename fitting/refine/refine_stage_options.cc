@@ -45,6 +45,10 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "than that, renderings of the maps are blurred before they are compared with the "
       "photographs; 0: no blur");
   set->Add(
+      "share-detail", &refine->share_detail,
+      "give photographs that are blurred more than the others the finer detail that these show, "
+      "and let them count for less; not with a fixed camera");
+  set->Add(
       "measured-blur", &refine->measured_blur,
       "take each photograph's blur as calibration measured it at the board's corners, where it "
       "did; else --point-spread is that of all photographs");

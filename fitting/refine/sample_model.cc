@@ -266,6 +266,7 @@ void SampleModel::Solve(const SampleRequest& request, Sampling* sampling) const 
 }
 
 void SampleModel::Fit(Sampling* sampling) {
+  sampling->solver->weigh(residuals_.variance());
   for (int round = 0; round < options_.estimation_rounds; ++round) {
     Solve({.views = all_views_, .of_views = finds_views_}, sampling);
     UpdateSubstances(*sampling);

@@ -56,6 +56,7 @@ RefineProblem SampleSource::Part::Problem() const {
 void SampleSource::Correct(ViewCorrections corrections) { corrections_ = std::move(corrections); }
 
 void SampleSource::CompareSharpness(const RefineOptions& options, int threads) {
+  if (!options.share_detail || !SharedDetail::MayLack(Views(), options)) return;
   const int rows = std::min(kRowsCompared, plane().height);
   shared_detail_ =
       SharedDetail(CorrectedRows((plane().height - rows) / 2, rows, threads), options, threads);

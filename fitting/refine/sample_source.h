@@ -41,7 +41,7 @@ class SampleSource {
   void MaskShadows(int threads);
 
   // From now on Rows() and Every() give photographs with the detail that sharper ones show, as the
-  // sample's middle rows tell it; all that is given says what their blurs hide.
+  // sample's middle rows tell it; they and Views() say what their blurs hide.
   void CompareSharpness(const RefineOptions& options, int threads);
 
   // With views alone, as said.

@@ -2,8 +2,12 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <span>
+#include <tuple>
 
 #include "base/model/photographs.h"
 #include "base/parallel/parallel.h"
@@ -16,8 +20,8 @@
 namespace glint {
 namespace {
 
-constexpr int kBlock = 16;  // texels; windows are three of them wide
-constexpr size_t kMostSharper = 8;
+constexpr int kBlock = 16;          // texels; windows are three of them wide
+constexpr size_t kMostSharper = 8;  // all mix three pictures, the sharpest with least noise
 
 std::vector<float> Difference(std::vector<float> a, const std::vector<float>& b) {
   for (size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
@@ -83,8 +87,10 @@ std::vector<Eigen::MatrixXd> ProductsOf(const Blocks& blocks,
 }
 
 struct Combination {
-  std::vector<Eigen::VectorXf> by_block;  // coefficients a
-  double explained = 0;                   // share of the blurred photograph's coarser detail
+  using Coefficients = std::array<float, kMostSharper>;
+  std::vector<Coefficients> by_block;  // a
+  // Share of the blurred photograph's coarser detail, of each block by those about it.
+  double explained = 0;
 };
 
 Combination CombinationOf(const Blocks& blocks, const std::vector<Eigen::MatrixXd>& products) {
@@ -102,32 +108,56 @@ Combination CombinationOf(const Blocks& blocks, const std::vector<Eigen::MatrixX
           window += products[static_cast<size_t>(r * blocks.across + c)];
         }
       }
-      Eigen::MatrixXd normal = window.topLeftCorner(n, n);
-      normal.diagonal().array() += noise;
-      const Eigen::VectorXd a = normal.llt().solve(window.topRightCorner(n, 1));
+      const auto solve = [&](const Eigen::MatrixXd& sums) -> Eigen::VectorXd {
+        Eigen::MatrixXd normal = sums.topLeftCorner(n, n);
+        normal.diagonal().array() += noise;
+        return normal.llt().solve(sums.topRightCorner(n, 1));
+      };
       const Eigen::MatrixXd& own = products[static_cast<size_t>(row * blocks.across + column)];
-      left += own(n, n) - 2 * a.dot(own.topRightCorner(n, 1).col(0)) +
-              a.dot(own.topLeftCorner(n, n) * a);
+      const Eigen::VectorXd by_others = solve(window - own), a = solve(window);
+      left += own(n, n) - 2 * by_others.dot(own.topRightCorner(n, 1).col(0)) +
+              by_others.dot(own.topLeftCorner(n, n) * by_others);
       all += own(n, n);
-      found.by_block.push_back(a.cast<float>());
+      Combination::Coefficients& coefficients = found.by_block.emplace_back();
+      for (Eigen::Index k = 0; k < n; ++k) {
+        coefficients[static_cast<size_t>(k)] = static_cast<float>(a[k]);
+      }
     }
   }
   found.explained = all > 0 ? std::clamp(1 - left / all, 0.0, 1.0) : 0;
   return found;
 }
 
-// Of photographs' points, texels²: as measured, or as expected and more by what their detail lacks.
-std::vector<double> BlurVariances(const PhotographSet& set, const RefineOptions& options,
-                                  int threads) {
+bool BlurIsMeasured(const PhotographSet& set, const RefineOptions& options) {
+  return options.measured_blur &&
+         std::all_of(set.photographs.begin(), set.photographs.end(),
+                     [](const Photograph& photograph) { return photograph.blur_px > 0; });
+}
+
+// Of photographs' points, texels²: as measured of them all, or as expected and more by what their
+// detail lacks.
+std::vector<double> BlurVariances(const PhotographSet& set, RefineOptions options, int threads) {
   const RefineProblem problem = ProblemOf(set);
-  const bool measured = std::all_of(problem.views.begin(), problem.views.end(),
-                                    [](const RefineView& view) { return view.blur_px > 0; });
-  std::vector<double> variances =
-      measured ? std::vector<double>(problem.views.size(), 0.0) : RelativeBlurs(set, threads);
+  options.measured_blur = BlurIsMeasured(set, options);
+  std::vector<double> variances = options.measured_blur
+                                      ? std::vector<double>(problem.views.size(), 0.0)
+                                      : RelativeBlurs(set, threads);
   for (size_t v = 0; v < variances.size(); ++v) {
     variances[v] += SpreadOf(problem.views[v], options).variance();
   }
   return variances;
+}
+
+// Sharpest first; of equal ones the same whatever the order in which they were given.
+std::vector<size_t> BySharpness(const PhotographSet& set, const std::vector<double>& variances) {
+  std::vector<size_t> order(variances.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  const auto key = [&](size_t v) {
+    const View& view = set.photographs[v].view;
+    return std::tie(variances[v], view.camera_in_sample_mm, view.light_in_sample_mm);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return key(a) < key(b); });
+  return order;
 }
 
 // Where a texel lies between the middles of blocks.
@@ -146,40 +176,52 @@ struct Between {
 
 SharedDetail::SharedDetail(const PhotographSet& middle, const RefineOptions& options, int threads)
     : variances_(BlurVariances(middle, options, threads)) {
-  sharper_.resize(variances_.size());
-  std::iota(sharper_.begin(), sharper_.end(), size_t{0});
-  std::stable_sort(sharper_.begin(), sharper_.end(),
-                   [&](size_t a, size_t b) { return variances_[a] < variances_[b]; });
+  sharper_ = BySharpness(middle, variances_);
   const std::vector<size_t> blurrier(sharper_.begin() + (sharper_.size() + 1) / 2, sharper_.end());
   sharper_.resize((sharper_.size() + 1) / 2);
+  // Spectra have told already what is more than chance.
+  const double least = BlurIsMeasured(middle, options) ? constants::kLeastRelativeBlur : 0;
   for (const size_t v : blurrier) {
+    if (!(variances_[v] - variances_[sharper_.back()] > least)) continue;
     const double hidden = HiddenVariance(middle, v, threads);
     if (std::sqrt(hidden) <= constants::kLeastHiddenDetail) continue;
-    double explained = 0;
-    Photograph sharpened = middle.photographs[v];
-    Sharpen(middle, v, threads, &sharpened, &explained);
-    blurred_.push_back({v, hidden * (1 - explained)});
+    PhotographSet sharpened = middle;
+    blurred_.push_back({v, hidden * (1 - Sharpen(v, threads, &sharpened))});
   }
+}
+
+bool SharedDetail::MayLack(const PhotographSet& views, const RefineOptions& options) {
+  if (views.photographs.size() < 2) return false;
+  if (!BlurIsMeasured(views, options)) return true;
+  std::vector<double> variances = BlurVariances(views, options, 1);
+  std::sort(variances.begin(), variances.end());
+  return variances.back() - variances[(variances.size() + 1) / 2 - 1] >
+         constants::kLeastRelativeBlur;
 }
 
 // e²: of the detail that the blur of `photograph` takes from sharper ones, the mean over them.
 double SharedDetail::HiddenVariance(const PhotographSet& set, size_t photograph,
                                     int threads) const {
-  std::vector<double> taken(sharper_.size(), 0.0);
+  std::vector<double> taken(sharper_.size(), 0.0), shown(sharper_.size(), 0.0);
   ForEachPiece(static_cast<int>(sharper_.size()), threads, [&](int piece) {
     const size_t u = sharper_[static_cast<size_t>(piece)];
     const double more = variances_[photograph] - variances_[u];
-    if (!(more > 0)) return;
     const LogPicture picture(set.photographs[u], set.plane.width, set.plane.height);
+    if (std::none_of(picture.usable.begin(), picture.usable.end(), [](float x) { return x > 0; })) {
+      return;
+    }
+    shown[static_cast<size_t>(piece)] = 1;
+    if (!(more > 0)) return;
     const std::vector<float> lacking = Luminance(Difference(picture.rgb, picture.Blurred(more)));
     double sum = 0, count = 0;
     for (size_t t = 0; t < lacking.size(); ++t) {
       sum += static_cast<double>(lacking[t]) * static_cast<double>(lacking[t]);
       count += static_cast<double>(picture.usable[t]);
     }
-    if (count > 0) taken[static_cast<size_t>(piece)] = sum / count;
+    taken[static_cast<size_t>(piece)] = sum / count;
   });
-  return std::accumulate(taken.begin(), taken.end(), 0.0) / static_cast<double>(taken.size());
+  const double photographs = std::accumulate(shown.begin(), shown.end(), 0.0);
+  return photographs > 0 ? std::accumulate(taken.begin(), taken.end(), 0.0) / photographs : 0;
 }
 
 int SharedDetail::RowsAbout() const {
@@ -189,21 +231,18 @@ int SharedDetail::RowsAbout() const {
   return kOfWindow + kDetailReach + PointSpread(constants::kMostBlurVariance).reach();
 }
 
-void SharedDetail::Sharpen(const PhotographSet& from, size_t photograph, int threads,
-                           Photograph* to, double* explained) const {
-  const int width = from.plane.width, height = from.plane.height;
+double SharedDetail::Sharpen(size_t photograph, int threads, PhotographSet* set) const {
+  const int width = set->plane.width, height = set->plane.height;
   const double own = variances_[photograph], aim = variances_[sharper_.back()];
-  std::vector<size_t> used;
-  for (const size_t u : sharper_) {
-    if (used.size() < kMostSharper && variances_[u] < own) used.push_back(u);
-  }
+  const std::span<const size_t> used =
+      std::span(sharper_).first(std::min(sharper_.size(), kMostSharper));
   std::vector<Source> sources(used.size());
   ForEachPiece(static_cast<int>(used.size()), threads, [&](int piece) {
     const size_t u = used[static_cast<size_t>(piece)];
-    sources[static_cast<size_t>(piece)] = SourceOf(LogPicture(from.photographs[u], width, height),
+    sources[static_cast<size_t>(piece)] = SourceOf(LogPicture(set->photographs[u], width, height),
                                                    own - variances_[u], aim - variances_[u]);
   });
-  const Photograph& blurred = from.photographs[photograph];
+  Photograph& blurred = set->photographs[photograph];
   const LogPicture picture(blurred, width, height);
   const std::vector<float> shown = picture.DetailOf(Luminance(picture.rgb));
   std::vector<const float*> planes;
@@ -212,12 +251,15 @@ void SharedDetail::Sharpen(const PhotographSet& from, size_t photograph, int thr
     planes.push_back(source.shown.data());
   }
   planes.push_back(shown.data());
-  const Blocks blocks(from.plane);
+  const Blocks blocks(set->plane);
   const Combination combination = CombinationOf(blocks, ProductsOf(blocks, planes, threads));
-  *explained = combination.explained;
 
   const size_t texels = shown.size();
-  const auto at = [&](int row, int column) -> const Eigen::VectorXf& {
+  // What was not clipped does not become so.
+  const float most = blurred.ldr
+                         ? std::nextafter(static_cast<float>(constants::kClippedRadiance), 0.0f)
+                         : std::numeric_limits<float>::infinity();
+  const auto at = [&](int row, int column) -> const Combination::Coefficients& {
     return combination.by_block[static_cast<size_t>(row * blocks.across + column)];
   };
   ForEachPiece(height, threads, [&](int row) {
@@ -227,35 +269,28 @@ void SharedDetail::Sharpen(const PhotographSet& from, size_t photograph, int thr
           static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column);
       if (picture.usable[t] == 0) continue;
       const Between across(column, blocks.across);
-      const Eigen::VectorXf a =
-          (1 - down.share) * ((1 - across.share) * at(down.first, across.first) +
-                              across.share * at(down.first, across.second)) +
-          down.share * ((1 - across.share) * at(down.second, across.first) +
-                        across.share * at(down.second, across.second));
+      float lacking[3] = {};
+      for (size_t k = 0; k < sources.size(); ++k) {
+        const float above = (1 - across.share) * at(down.first, across.first)[k] +
+                            across.share * at(down.first, across.second)[k];
+        const float below = (1 - across.share) * at(down.second, across.first)[k] +
+                            across.share * at(down.second, across.second)[k];
+        const float a = (1 - down.share) * above + down.share * below;
+        for (size_t c = 0; c < 3; ++c) lacking[c] += a * sources[k].lacking[c * texels + t];
+      }
       for (size_t c = 0; c < 3; ++c) {
-        float& radiance = to->rgb[c * texels + t];
-        if (blurred.ldr && static_cast<double>(radiance) >= constants::kClippedRadiance) continue;
-        float log = picture.rgb[c * texels + t];
-        for (size_t k = 0; k < sources.size(); ++k) {
-          log += a[static_cast<Eigen::Index>(k)] * sources[k].lacking[c * texels + t];
-        }
-        radiance = std::max(std::exp(log) - static_cast<float>(kLogOffset), 0.0f);
+        float& radiance = blurred.rgb[c * texels + t];
+        if (!(radiance < most)) continue;
+        const float log = picture.rgb[c * texels + t] + lacking[c];
+        radiance = std::clamp(std::exp(log) - static_cast<float>(kLogOffset), 0.0f, most);
       }
     }
   });
+  return combination.explained;
 }
 
 void SharedDetail::AddTo(PhotographSet* rows, int threads) const {
-  if (blurred_.empty()) return;
-  std::vector<Photograph> sharpened;
-  for (const Blurred& one : blurred_) {
-    double explained = 0;
-    sharpened.push_back(rows->photographs[one.photograph]);
-    Sharpen(*rows, one.photograph, threads, &sharpened.back(), &explained);
-  }
-  for (size_t k = 0; k < blurred_.size(); ++k) {
-    rows->photographs[blurred_[k].photograph] = std::move(sharpened[k]);
-  }
+  for (const Blurred& one : blurred_) Sharpen(one.photograph, threads, rows);
   Describe(rows);
 }
 
@@ -263,9 +298,7 @@ void SharedDetail::Describe(PhotographSet* set) const {
   for (const Blurred& one : blurred_) {
     Photograph& photograph = set->photographs[one.photograph];
     photograph.hidden_variance = one.hidden_variance;
-    if (photograph.blur_px > 0) {
-      photograph.blur_px = BlurOf(variances_[sharper_.back()], photograph.pixels_per_texel);
-    }
+    photograph.spread_variance = variances_[sharper_.back()];
   }
 }
 

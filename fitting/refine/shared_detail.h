@@ -9,8 +9,9 @@
 // tell what v would show if it were as sharp as t (as pan-sharpening does, with windows of He, Sun
 // and Tang, "Guided image filtering", ECCV 2010):
 //   l_v + Σ_u a_u (T_u − B_u) l_u.
-// t is the blur of the least sharp of the sharper half of the photographs, which stay as they are.
-// What the combination leaves of v's own coarser detail tells how much of the finer is right.
+// u are the sharpest photographs, eight at most. t is the blur of the least sharp of the sharper
+// half, which stay as they are. What the combination leaves of v's own coarser detail tells how
+// much of the finer is right.
 #pragma once
 
 #include <vector>
@@ -26,11 +27,14 @@ class SharedDetail {
   // Photographs are compared by `middle`, rows of them all.
   SharedDetail(const PhotographSet& middle, const RefineOptions& options, int threads);
 
+  // Whether photographs, of which no pixels are needed, must be compared at all.
+  static bool MayLack(const PhotographSet& views, const RefineOptions& options);
+
   // Rows above and below on which a texel's detail depends; 0: no photograph lacks any.
   int RowsAbout() const;
   // Sharpens photographs: rows of the sample, in order of those above. Of the `above` first and
   // `below` last of them, where the sample goes on, nothing is right.
-  // Sets hidden_variance, and blur_px to what is left.
+  // Sets hidden_variance, and spread_variance to what is left.
   void AddTo(PhotographSet* rows, int threads) const;
   // Of photographs without pixels the latter alone.
   void Describe(PhotographSet* set) const;
@@ -41,8 +45,8 @@ class SharedDetail {
     double hidden_variance;  // once it is sharpened
   };
   double HiddenVariance(const PhotographSet& set, size_t photograph, int threads) const;
-  void Sharpen(const PhotographSet& from, size_t photograph, int threads, Photograph* to,
-               double* explained) const;
+  // Returns R² of the combination: 1 less what it leaves of the coarser detail.
+  double Sharpen(size_t photograph, int threads, PhotographSet* set) const;
 
   std::vector<double> variances_;  // of blur by photograph, texels²
   std::vector<size_t> sharper_;    // sharpest first

@@ -8,18 +8,11 @@
 namespace glint {
 
 PointSpread SpreadOf(const RefineView& view, const RefineOptions& options) {
+  if (view.spread_variance) return PointSpread(*view.spread_variance);
   const bool measured = options.measured_blur && view.blur_px > 0;
   return {view.pixels_per_texel, measured
                                      ? std::hypot(view.blur_px, constants::kResamplingSpread_px)
                                      : options.point_spread_px};
-}
-
-double BlurOf(double variance, double pixels_per_texel) {
-  constexpr double kLeast_px = 0.01;  // 0 is one that is not known
-  const double spread_px = std::sqrt(variance + constants::kTexelVariance) * pixels_per_texel;
-  return std::sqrt(std::max(
-      spread_px * spread_px - constants::kResamplingSpread_px * constants::kResamplingSpread_px,
-      kLeast_px * kLeast_px));
 }
 
 void WeighViews(double variance, RefineProblem* problem) {

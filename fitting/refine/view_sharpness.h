@@ -10,10 +10,9 @@
 
 namespace glint {
 
-// Of the view's points: as calibration measured it, with what resampling adds, or as expected.
+// Of the view's points: as it is said to be; as calibration measured its blur, with what resampling
+// adds; or as expected.
 PointSpread SpreadOf(const RefineView& view, const RefineOptions& options);
-// Its inverse: the blur, pixels, of a view whose spread has this variance, texels²; above 0.
-double BlurOf(double variance, double pixels_per_texel);
 
 // Sets the views' weights where residuals have the variance σ².
 void WeighViews(double variance, RefineProblem* problem);

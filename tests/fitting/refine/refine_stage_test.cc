@@ -397,8 +397,30 @@ TEST(RefineStage, APhotographOutOfFocusIsNamedAndDoesLittleHarm) {
   EXPECT_EQ(blurred[0]["name"], "view_004");
   EXPECT_LT(blurred[0]["weight"], 0.5);
   const double error = ReliefError(folder.path());
-  ASSERT_EQ(Refine(folder.path(), {"--no-measured-blur"}).code, 0);
+  ASSERT_EQ(Refine(folder.path(), {"--no-measured-blur", "--no-share-detail"}).code, 0);
   EXPECT_LT(error, 0.25 * ReliefError(folder.path()));
+}
+
+TEST(RefineStage, RowsThreadsAndPartsDoNotChangeAByteOfABlurredCapture) {
+  const test::TemporaryFolder folder;
+  const auto written = [&](const std::string& name) {
+    WriteCapture(folder.path() / name, 5, {}, {.sd_mm = 0.01}, {.view = 3, .variance = 1.0});
+    return folder.path() / name;
+  };
+  const auto maps = [](const fs::path& capture) {
+    return ReadAll(capture / "glint/refine/svbrdf.exr") +
+           ReadAll(capture / "glint/refine/confidence.exr");
+  };
+  const fs::path whole = written("whole"), few = written("few"), parts = written("parts");
+  ASSERT_EQ(Refine(whole, {"--threads", "3"}).code, 0);
+  const Manifest manifest = ReadManifest(whole / "glint/refine/manifest.json", "refine");
+  ASSERT_EQ(manifest.metrics["blurred_views"].size(), 1u);
+  ASSERT_EQ(Refine(few, {"--rows-at-once", "5", "--threads", "1"}).code, 0);
+  EXPECT_EQ(maps(few), maps(whole));
+  ASSERT_EQ(Refine(parts, {"--part", "1/2"}).code, 0);
+  ASSERT_EQ(Refine(parts, {"--part", "2/2"}).code, 0);
+  ASSERT_EQ(Refine(parts, {"--join", "2"}).code, 0);
+  EXPECT_EQ(maps(parts), maps(whole));
 }
 
 TEST(RefineStage, StartsFromMapsOfAnotherProgram) {
