@@ -16,7 +16,7 @@ inline constexpr double kChannelCorrelation = 0.9;
 inline constexpr double kResidualSigma = 0.05, kUncalibratedResidualSigma = 0.1;
 inline constexpr double kResidualSigmaWeight = 1;
 inline constexpr double kPointSpread_px = 0.67, kResamplingSpread_px = 0.33;
-inline constexpr double kLeastHiddenDetail = 0.01, kLeastRelativeBlur = 0.1;
+inline constexpr double kLeastHiddenDetail = 0.01, kLeastRelativeBlur = 0.15;
 inline constexpr int kDeblurSteps = 2;
 inline constexpr double kPriorWeight = 1;
 inline constexpr double kTexelVariance = 0.0915, kMostBlurVariance = 8;
@@ -66,8 +66,7 @@ inline constexpr ModelConstant kPhotographRows[] = {
     Row("kLeastRelativeBlur", {kLeastRelativeBlur}, "texels²",
         "by which a photograph must be blurred more than the sharper half, by measure or by "
         "spectra",
-        "photographs of fourteen real samples differ by 0.05 (standard deviation), two by 0.2 and "
-        "0.45"),
+        "three standard deviations of those of fourteen real samples; two are at 0.2 and 0.45"),
     Row("kDeblurSteps", {kDeblurSteps}, "steps", "of taking a photograph's blur off, in each pass",
         "leather of 1.3 pixels' blur, two pixels to a texel: normals 2.8, 2.0, 1.9, 2.0° off with "
         "1, 2, 3, 6; sharp, a pixel to a texel: 1.63, 1.70, 1.80, 2.00°"),
