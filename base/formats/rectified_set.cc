@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "base/errors/errors.h"
 #include "base/formats/rectified_rows.h"
@@ -122,14 +123,15 @@ Json ToJson(const RectifiedSet& set) {
 }
 
 std::filesystem::path ViewsManifest(const std::filesystem::path& work, std::string_view reader) {
-  const StageKind* const last = LastGiving(Gives::kViews, reader);
-  for (const StageKind* stage = last; stage != nullptr;
+  std::filesystem::path latest;
+  for (const StageKind* stage = LastGiving(Gives::kViews, reader); stage != nullptr;
        stage = LastGiving(Gives::kViews, stage->name)) {
-    const std::filesystem::path file = work / stage->name / "manifest.json";
+    std::filesystem::path file = work / stage->name / "manifest.json";
     std::error_code unreadable;  // whoever reads it will say so
     if (std::filesystem::exists(file, unreadable)) return file;
+    if (latest.empty()) latest = std::move(file);
   }
-  return work / last->name / "manifest.json";
+  return latest;
 }
 
 std::filesystem::path ImportedViewsManifest(const std::filesystem::path& work) {

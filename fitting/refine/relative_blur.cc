@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <opencv2/core.hpp>
 
 #include "base/model/photographs.h"
@@ -101,14 +102,23 @@ std::vector<double> RelativeBlurs(const PhotographSet& set, int threads) {
   Powers median{};
   for (size_t ring = 0; ring < kRings; ++ring) {
     std::vector<double> logs;
+    logs.reserve(count);
     for (Powers& of : powers) logs.push_back(of[ring] = std::log(of[ring] + kNone));
     median[ring] = Median(logs);
   }
   for (size_t v = 0; v < count; ++v) {
     Powers beside = powers[v];
     for (size_t ring = 0; ring < kRings; ++ring) beside[ring] -= median[ring];
-    const double more = -SlopeOverSquare(beside) / (4 * std::numbers::pi * std::numbers::pi);
-    if (more > constants::kLeastRelativeBlur) blurs[v] = more;
+    blurs[v] = -SlopeOverSquare(beside) / (4 * std::numbers::pi * std::numbers::pi);
+  }
+  std::vector<double> sorted = blurs;
+  std::sort(sorted.begin(), sorted.end());
+  const size_t sharper = (count + 1) / 2;
+  const double usual =
+      std::accumulate(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sharper), 0.0) /
+      static_cast<double>(sharper);
+  for (double& blur : blurs) {
+    blur = blur - usual > constants::kLeastRelativeBlur ? blur - usual : 0.0;
   }
   return blurs;
 }

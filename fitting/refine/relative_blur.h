@@ -13,8 +13,8 @@
 
 namespace glint {
 
-// V by photograph, more than the median's; 0 where it is less than light by itself changes detail
-// (kLeastRelativeBlur), and of all where fewer than three, or too small to tell.
+// V by photograph, more than the mean of the sharper half; 0 where it is less than light by itself
+// changes detail (kLeastRelativeBlur), and of all where fewer than three, or too small to tell.
 std::vector<double> RelativeBlurs(const PhotographSet& set, int threads);
 
 }  // namespace glint

@@ -14,7 +14,7 @@ namespace {
 // Of which texels are picked at a time.
 constexpr int kRowsAtOnce = 256;
 // By which photographs' sharpness is compared.
-constexpr int kRowsCompared = 256;
+constexpr int kRowsCompared = 512;
 
 RectifiedSet WithModelOf(RectifiedSet set, const std::filesystem::path& maps_file) {
   ReflectanceConvention of_maps;

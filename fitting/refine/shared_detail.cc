@@ -51,20 +51,23 @@ struct Blocks {
   int width, height, first_row;
   int first;  // row of blocks
   int across, down;
+  size_t at(int row, int column) const {  // rows counted from `first`
+    return static_cast<size_t>(row) * static_cast<size_t>(across) + static_cast<size_t>(column);
+  }
+  size_t count() const { return at(down, 0); }
 };
 
 // Upper triangles of the sums of products of n + 1 planes, the last one the blurred photograph's.
 std::vector<Eigen::MatrixXd> ProductsOf(const Blocks& blocks,
                                         const std::vector<const float*>& planes, int threads) {
   const auto n = static_cast<Eigen::Index>(planes.size());
-  std::vector<Eigen::MatrixXd> products(static_cast<size_t>(blocks.across * blocks.down),
-                                        Eigen::MatrixXd::Zero(n, n));
+  std::vector<Eigen::MatrixXd> products(blocks.count(), Eigen::MatrixXd::Zero(n, n));
   ForEachPiece(blocks.down, threads, [&](int block_row) {
     const int from = std::max(0, (blocks.first + block_row) * kBlock - blocks.first_row);
     const int to =
         std::min(blocks.height, (blocks.first + block_row + 1) * kBlock - blocks.first_row);
     for (int block = 0; block < blocks.across; ++block) {
-      Eigen::MatrixXd& sums = products[static_cast<size_t>(block_row * blocks.across + block)];
+      Eigen::MatrixXd& sums = products[blocks.at(block_row, block)];
       const int left = block * kBlock, right = std::min(blocks.width, left + kBlock);
       for (int row = from; row < to; ++row) {
         const size_t at = static_cast<size_t>(row) * static_cast<size_t>(blocks.width);
@@ -105,7 +108,7 @@ Combination CombinationOf(const Blocks& blocks, const std::vector<Eigen::MatrixX
       Eigen::MatrixXd window = Eigen::MatrixXd::Zero(n + 1, n + 1);
       for (int r = std::max(0, row - 1); r <= std::min(blocks.down - 1, row + 1); ++r) {
         for (int c = std::max(0, column - 1); c <= std::min(blocks.across - 1, column + 1); ++c) {
-          window += products[static_cast<size_t>(r * blocks.across + c)];
+          window += products[blocks.at(r, c)];
         }
       }
       const auto solve = [&](const Eigen::MatrixXd& sums) -> Eigen::VectorXd {
@@ -113,7 +116,7 @@ Combination CombinationOf(const Blocks& blocks, const std::vector<Eigen::MatrixX
         normal.diagonal().array() += noise;
         return normal.llt().solve(sums.topRightCorner(n, 1));
       };
-      const Eigen::MatrixXd& own = products[static_cast<size_t>(row * blocks.across + column)];
+      const Eigen::MatrixXd& own = products[blocks.at(row, column)];
       const Eigen::VectorXd by_others = solve(window - own), a = solve(window);
       left += own(n, n) - 2 * by_others.dot(own.topRightCorner(n, 1).col(0)) +
               by_others.dot(own.topLeftCorner(n, n) * by_others);
@@ -260,7 +263,7 @@ double SharedDetail::Sharpen(size_t photograph, int threads, PhotographSet* set)
                          ? std::nextafter(static_cast<float>(constants::kClippedRadiance), 0.0f)
                          : std::numeric_limits<float>::infinity();
   const auto at = [&](int row, int column) -> const Combination::Coefficients& {
-    return combination.by_block[static_cast<size_t>(row * blocks.across + column)];
+    return combination.by_block[blocks.at(row, column)];
   };
   ForEachPiece(height, threads, [&](int row) {
     const Between down(row + blocks.first_row - blocks.first * kBlock, blocks.down);
