@@ -60,8 +60,7 @@ inline constexpr ModelConstant kPhotographRows[] = {
         "that of resampling, beside a blur that was measured", "its kernel's response, as above"),
     Row("kLeastHiddenDetail", {kLeastHiddenDetail}, "log radiance",
         "RMS of the detail that a photograph's blur hides and sharper ones show, from which on "
-        "they "
-        "lend it theirs",
+        "they lend it theirs",
         "rounding to 8 bits is 0.007"),
     Row("kLeastRelativeBlur", {kLeastRelativeBlur}, "texels²",
         "by which a photograph must be blurred more than the sharper half, by measure or by "

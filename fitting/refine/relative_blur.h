@@ -5,6 +5,7 @@
 // median over photographs,
 //   log P_v(f) − log M(f) ≈ c_v − 4π² V_v f²,
 // fitted over rings of f from 0.06 to 0.42: c_v is the contrast that its light gives the sample.
+// Rings below hold shading, those above mostly noise and JPEG.
 #pragma once
 
 #include <vector>
