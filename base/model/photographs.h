@@ -63,9 +63,8 @@ inline constexpr ModelConstant kPhotographRows[] = {
         "they lend it theirs",
         "rounding to 8 bits is 0.007"),
     Row("kLeastRelativeBlur", {kLeastRelativeBlur}, "texels²",
-        "by which a photograph must be blurred more than the sharper half, by measure or by "
-        "spectra",
-        "three standard deviations of those of fourteen real samples; an unsharp one has 0.45"),
+        "by which a photograph must be blurred more than the sharper half",
+        "distances of handheld photographs make 0.1 of a phone's blur"),
     Row("kDeblurSteps", {kDeblurSteps}, "steps", "of taking a photograph's blur off, in each pass",
         "leather of 1.3 pixels' blur, two pixels to a texel: normals 2.8, 2.0, 1.9, 2.0° off with "
         "1, 2, 3, 6; sharp, a pixel to a texel: 1.63, 1.70, 1.80, 2.00°"),

@@ -14,7 +14,6 @@
 #include "base/reflectance/log_radiance.h"
 #include "fitting/refine/correct_views.h"
 #include "fitting/refine/log_picture.h"
-#include "fitting/refine/relative_blur.h"
 #include "fitting/refine/view_sharpness.h"
 
 namespace glint {
@@ -137,16 +136,11 @@ bool BlurIsMeasured(const PhotographSet& set, const RefineOptions& options) {
                      [](const Photograph& photograph) { return photograph.blur_px > 0; });
 }
 
-// Of photographs' points, texels²: as measured of them all, or as expected and more by what their
-// detail lacks.
-std::vector<double> BlurVariances(const PhotographSet& set, RefineOptions options, int threads) {
-  const RefineProblem problem = ProblemOf(set);
-  options.measured_blur = BlurIsMeasured(set, options);
-  std::vector<double> variances = options.measured_blur
-                                      ? std::vector<double>(problem.views.size(), 0.0)
-                                      : RelativeBlurs(set, threads);
-  for (size_t v = 0; v < variances.size(); ++v) {
-    variances[v] += SpreadOf(problem.views[v], options).variance();
+// Of photographs' points, texels².
+std::vector<double> BlurVariances(const PhotographSet& set, const RefineOptions& options) {
+  std::vector<double> variances;
+  for (const RefineView& view : ProblemOf(set).views) {
+    variances.push_back(SpreadOf(view, options).variance());
   }
   return variances;
 }
@@ -178,14 +172,15 @@ struct Between {
 }  // namespace
 
 SharedDetail::SharedDetail(const PhotographSet& middle, const RefineOptions& options, int threads)
-    : variances_(BlurVariances(middle, options, threads)) {
+    : variances_(BlurVariances(middle, options)) {
   sharper_ = BySharpness(middle, variances_);
   const std::vector<size_t> blurrier(sharper_.begin() + (sharper_.size() + 1) / 2, sharper_.end());
   sharper_.resize((sharper_.size() + 1) / 2);
-  // Spectra have told already what is more than chance.
-  const double least = BlurIsMeasured(middle, options) ? constants::kLeastRelativeBlur : 0;
+  if (!BlurIsMeasured(middle, options)) return;
   for (const size_t v : blurrier) {
-    if (!(variances_[v] - variances_[sharper_.back()] > least)) continue;
+    if (!(variances_[v] - variances_[sharper_.back()] > constants::kLeastRelativeBlur)) {
+      continue;
+    }
     const double hidden = HiddenVariance(middle, v, threads);
     if (std::sqrt(hidden) <= constants::kLeastHiddenDetail) continue;
     PhotographSet sharpened = middle;
@@ -195,8 +190,8 @@ SharedDetail::SharedDetail(const PhotographSet& middle, const RefineOptions& opt
 
 bool SharedDetail::MayLack(const PhotographSet& views, const RefineOptions& options) {
   if (views.photographs.size() < 2) return false;
-  if (!BlurIsMeasured(views, options)) return true;
-  std::vector<double> variances = BlurVariances(views, options, 1);
+  if (!BlurIsMeasured(views, options)) return false;
+  std::vector<double> variances = BlurVariances(views, options);
   std::sort(variances.begin(), variances.end());
   return variances.back() - variances[(variances.size() + 1) / 2 - 1] >
          constants::kLeastRelativeBlur;

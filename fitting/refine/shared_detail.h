@@ -24,7 +24,8 @@ namespace glint {
 class SharedDetail {
  public:
   SharedDetail() = default;  // of photographs that are all as sharp
-  // Photographs are compared by `middle`, rows of them all.
+  // Photographs are compared by `middle`, rows of them all; nothing is lent where the blur of any
+  // was not measured.
   SharedDetail(const PhotographSet& middle, const RefineOptions& options, int threads);
 
   // Whether photographs, of which no pixels are needed, must be compared at all.

@@ -8,7 +8,6 @@
 #include <random>
 
 #include "base/resampling/resampling.h"
-#include "fitting/refine/relative_blur.h"
 #include "fitting/refine/view_sharpness.h"
 
 namespace glint {
@@ -73,7 +72,7 @@ double DifferenceOf(const Photograph& a, const Photograph& b) {
 }
 
 TEST(SharedDetail, ABlurredPhotographIsNearlyAsIfItWereSharp) {
-  for (const bool measured : {true, false}) {
+  for (const bool measured : {true}) {
     const PhotographSet sharp = Photographs();
     PhotographSet set = sharp;
     Blur(1.5, measured, &set.photographs[4]);
@@ -114,7 +113,7 @@ TEST(SharedDetail, PhotographsThatAreAllAsSharpStayAsTheyAre) {
 
 // A photograph from farther off is coarser, whether its blur was measured or not.
 TEST(SharedDetail, APhotographFromFartherOffIsAsIfItWereNear) {
-  for (const bool measured : {true, false}) {
+  for (const bool measured : {true}) {
     const PhotographSet sharp = Photographs();
     PhotographSet set = sharp;
     for (Photograph& photograph : set.photographs) {
@@ -201,13 +200,13 @@ TEST(SharedDetail, RowsAndThreadsDoNotChangeABit) {
   }
 }
 
-TEST(RelativeBlurs, AreFoundByWhatDetailLacks) {
+TEST(SharedDetail, NothingIsLentWhereABlurWasNotMeasured) {
   PhotographSet set = Photographs();
-  for (int i = 0; i < 2; ++i) Blur(0.25, false, &set.photographs[2]);  // nearly a Gaussian
-  const std::vector<double> found = RelativeBlurs(set, 2);
-  ASSERT_EQ(found.size(), 6u);
-  EXPECT_NEAR(found[2], 0.5, 0.1);
-  for (const size_t v : {0, 1, 3, 4, 5}) EXPECT_NEAR(found[v], 0, 0.05);
+  Blur(1.5, true, &set.photographs[4]);
+  EXPECT_TRUE(SharedDetail::MayLack(set, {}));
+  set.photographs[1].blur_px = 0;
+  EXPECT_FALSE(SharedDetail::MayLack(set, {}));
+  EXPECT_EQ(SharedDetail(set, {}, 2).RowsAbout(), 0);
 }
 
 TEST(ViewSharpness, SpreadIsAsSaidAsMeasuredOrAsExpected) {
