@@ -72,32 +72,26 @@ double DifferenceOf(const Photograph& a, const Photograph& b) {
 }
 
 TEST(SharedDetail, ABlurredPhotographIsNearlyAsIfItWereSharp) {
-  for (const bool measured : {true}) {
-    const PhotographSet sharp = Photographs();
-    PhotographSet set = sharp;
-    Blur(1.5, measured, &set.photographs[4]);
-    if (!measured) {
-      for (Photograph& photograph : set.photographs) photograph.blur_px = 0;
-    }
-    const PhotographSet before = set;
-    const SharedDetail shared(set, {}, 2);
-    ASSERT_GT(shared.RowsAbout(), 0);
-    shared.AddTo(&set, 2);
-    EXPECT_LT(DifferenceOf(set.photographs[4], sharp.photographs[4]),
-              0.5 * DifferenceOf(before.photographs[4], sharp.photographs[4]));
-    // What is still hidden is stated: not more than was, and more than nothing.
-    const double stated = std::sqrt(set.photographs[4].hidden_variance);
-    EXPECT_GT(stated, 0.003);
-    EXPECT_LT(stated, 0.5 * DifferenceOf(before.photographs[4], sharp.photographs[4]));
-    for (const size_t v : {0, 1, 2, 3, 5}) {
-      EXPECT_EQ(set.photographs[v].rgb, before.photographs[v].rgb);
-      EXPECT_EQ(set.photographs[v].hidden_variance, 0);
-    }
-    // As sharp as the least sharp of the sharper half, whatever it is thought to have been.
-    const double aim = measured ? PointSpread(2, std::hypot(0.6, 0.33)).variance()
-                                : PointSpread(2, 0.67).variance();
-    EXPECT_NEAR(set.photographs[4].spread_variance.value(), aim, 1e-9);
+  const PhotographSet sharp = Photographs();
+  PhotographSet set = sharp;
+  Blur(1.5, true, &set.photographs[4]);
+  const PhotographSet before = set;
+  const SharedDetail shared(set, {}, 2);
+  ASSERT_GT(shared.RowsAbout(), 0);
+  shared.AddTo(&set, 2);
+  EXPECT_LT(DifferenceOf(set.photographs[4], sharp.photographs[4]),
+            0.5 * DifferenceOf(before.photographs[4], sharp.photographs[4]));
+  // What is still hidden is stated: not more than was, and more than nothing.
+  const double stated = std::sqrt(set.photographs[4].hidden_variance);
+  EXPECT_GT(stated, 0.003);
+  EXPECT_LT(stated, 0.5 * DifferenceOf(before.photographs[4], sharp.photographs[4]));
+  for (const size_t v : {0, 1, 2, 3, 5}) {
+    EXPECT_EQ(set.photographs[v].rgb, before.photographs[v].rgb);
+    EXPECT_EQ(set.photographs[v].hidden_variance, 0);
   }
+  // As sharp as the least sharp of the sharper half.
+  const double aim = PointSpread(2, std::hypot(0.6, 0.33)).variance();
+  EXPECT_NEAR(set.photographs[4].spread_variance.value(), aim, 1e-9);
 }
 
 TEST(SharedDetail, PhotographsThatAreAllAsSharpStayAsTheyAre) {
@@ -111,27 +105,21 @@ TEST(SharedDetail, PhotographsThatAreAllAsSharpStayAsTheyAre) {
   EXPECT_EQ(set.photographs[2].rgb, before);
 }
 
-// A photograph from farther off is coarser, whether its blur was measured or not.
+// A photograph from farther off is coarser.
 TEST(SharedDetail, APhotographFromFartherOffIsAsIfItWereNear) {
-  for (const bool measured : {true}) {
-    const PhotographSet sharp = Photographs();
-    PhotographSet set = sharp;
-    for (Photograph& photograph : set.photographs) {
-      if (!measured) photograph.blur_px = 0;
-    }
-    Photograph& far = set.photographs[4];
-    far.pixels_per_texel = 0.5;
-    RefineView view;
-    view.pixels_per_texel = far.pixels_per_texel;
-    view.blur_px = far.blur_px;
-    far.rgb = PointSpread(SpreadOf(view, {}).variance()).Blurred(far.rgb, kWidth, kHeight);
-    const PhotographSet before = set;
-    if (!measured) far.blur_px = 0;
-    SharedDetail(set, {}, 2).AddTo(&set, 2);
-    EXPECT_LT(DifferenceOf(far, sharp.photographs[4]),
-              0.5 * DifferenceOf(before.photographs[4], sharp.photographs[4]));
-    EXPECT_LT(far.spread_variance.value(), 0.1);
-  }
+  const PhotographSet sharp = Photographs();
+  PhotographSet set = sharp;
+  Photograph& far = set.photographs[4];
+  far.pixels_per_texel = 0.5;
+  RefineView view;
+  view.pixels_per_texel = far.pixels_per_texel;
+  view.blur_px = far.blur_px;
+  far.rgb = PointSpread(SpreadOf(view, {}).variance()).Blurred(far.rgb, kWidth, kHeight);
+  const PhotographSet before = set;
+  SharedDetail(set, {}, 2).AddTo(&set, 2);
+  EXPECT_LT(DifferenceOf(far, sharp.photographs[4]),
+            0.5 * DifferenceOf(before.photographs[4], sharp.photographs[4]));
+  EXPECT_LT(far.spread_variance.value(), 0.1);
 }
 
 // Only one photograph has it: nothing of the others is a combination of it.
