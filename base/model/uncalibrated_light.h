@@ -8,6 +8,7 @@ namespace glint::constants {
 inline constexpr double kFlashOffsetSd = 0.05;
 inline constexpr double kFlashBeamSd = 0.3;
 inline constexpr double kDistancePowerSd = 1;
+inline constexpr double kToeSd = 0.02, kShoulderSd = 0.2;
 inline constexpr double kExposureSd = 0.1, kLightPlaceSd = 0.02;
 inline constexpr double kViewSdWeight = 2;
 inline constexpr double kMeanDeviationPrecision = 1e3;
@@ -21,6 +22,12 @@ inline constexpr ModelConstant kLightRows[] = {
         "a fall-off to a half at 33° has it for an axis 10° beside the sample", "--flash-beam"),
     Row("kDistancePowerSd", {kDistancePowerSd}, "exponent", "Ω of the power of distance",
         "2 is an exposure that makes up for all of it", "--distance-power"),
+    Row("kToeSd", {kToeSd}, "radiance",
+        "Ω of the toe of the photographs' curve; light that was calibrated, too",
+        "sRGB's curve read by gamma 2.2 has one of 0.007 and a shoulder of 0.06 (to 0.3 %); "
+        "cameras' contrast curves have several times that",
+        "--toe"),
+    Row("kShoulderSd", {kShoulderSd}, "1", "Ω of its shoulder", "likewise", "--shoulder"),
     Row("kExposureSd", {kExposureSd}, "log",
         "Φ₀ of single exposures; and of a view's shading from the centre to the edge",
         "then estimated: 4 to 26 % of fourteen real samples", "--exposure-spread"),

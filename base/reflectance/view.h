@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "base/reflectance/characteristic_curve.h"
 #include "base/reflectance/convention.h"
 
 namespace glint {
@@ -24,6 +25,8 @@ struct View {
   // the texel, (texel − light)_xy / light_z. The fused renderer knows lights of equal intensity
   // only; TexelGeometryInView and RenderLit (render/render_lit.h) know both.
   std::array<double, 2> beam{0, 0};
+  // Of the photograph, which renderers do not apply.
+  CharacteristicCurve curve = {};
 };
 
 // What a part of a plane of texels is a part of, in the whole's texels.

@@ -12,6 +12,7 @@
 #include "base/formats/svbrdf_file.h"
 #include "base/formats/svbrdf_rows.h"
 #include "base/images/image.h"
+#include "base/reflectance/characteristic_curve.h"
 #include "base/reflectance/log_radiance.h"
 #include "base/resampling/resampling.h"
 #include "fitting/photographs/photographs.h"
@@ -176,6 +177,7 @@ std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
   RenderLit(maps, set.plane, lit, convention, rendered.data(), threads);
   AddEnvironmentLighting(fit.environment, maps, set.plane, lit, convention, rendered.data(),
                          threads);
+  Record(lit.curve, rendered);
   return rendered;
 }
 

@@ -146,6 +146,7 @@ class Estimator {
   const std::vector<View> said_;  // those, with lights where they are said to be
   // The problem with one deviation of every view a step further, where they are looked for.
   std::vector<RefineProblem> nudged_;
+  UnknownDeviations unknown_{};
   const SvbrdfMaps& start_;
   const int threads_;
   std::vector<std::unique_ptr<RefineWorker>> workers_;
@@ -191,6 +192,7 @@ void Estimator::Run() {
   solver.reflect = [&](const SpecularLobes& lobes) {
     for (const auto& worker : workers_) worker->batches.SetLobes(lobes);
   };
+  unknown_ = model_.deviations().unknown();
   if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);
   SetViews(model_.deviations());
   Weigh(model_.residuals().variance());
@@ -229,10 +231,17 @@ void Estimator::Describe(std::span<const SampleTask> tasks, const SampleRequest&
   }
   const bool of_views = request.of_views && !nudged_.empty();
   for (size_t i = 0; of_views && i < nudged_.size(); ++i) {
+    if (!unknown_[i] || IsOfCurve(i)) continue;
     GatherObservations(nudged_[i], start_, texels, request.views, &worker->observed);
     GramOf(worker->observed, values, worker, &worker->nudged[i]);
   }
   const BatchObservations& observed = gathered_.Of(texels, request.views, &worker->observed);
+  for (size_t i = kToe; of_views && i < nudged_.size(); ++i) {
+    if (!unknown_[i]) continue;
+    worker->batches.SetCurve(CurveOf(nudged_[i]));
+    GramOf(observed, values, worker, &worker->nudged[i]);
+    worker->batches.SetCurve(CurveOf(problem_));
+  }
   GramOf(observed, values, worker, &worker->residuals);
   for (size_t i = 0; i < tasks.size(); ++i) {
     const int lane = static_cast<int>(i);
@@ -264,6 +273,7 @@ void Estimator::SetViews(const ViewDeviations& deviations) {
       set(v, further, &nudged_[i]);
     }
   }
+  for (const auto& worker : workers_) worker->batches.SetCurve(CurveOf(problem_));
   gathered_.Forget();
 }
 
@@ -290,7 +300,7 @@ std::vector<DeviationProducts> Estimator::OfViews(size_t texel, int lane,
     const int view = static_cast<int>(k);
     if (!observed.sees(view, lane)) continue;
     DeviationProducts& of =
-        products.emplace_back(ProductsOf(worker.residuals, worker.nudged, view, lane));
+        products.emplace_back(ProductsOf(worker.residuals, worker.nudged, unknown_, view, lane));
     of.view = views[k];
     of.by_shared = ByShared(problem_.views[static_cast<size_t>(views[k])].view,
                             shared_light_.distance_mm, x_mm, y_mm);
@@ -304,6 +314,7 @@ SampleEstimate Estimator::Estimate(std::vector<int> order) const {
   RefineSummary& summary = estimate.summary;
   model_.Describe(&summary);
   summary.shared_light = shared_light_;
+  summary.curve = CurveOf(problem_);
   const size_t views = said_.size();
   summary.light_offsets_mm.assign(views, {});
   summary.exposures.assign(views, 1.0);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/parallel/parallel.h"
+#include "base/reflectance/characteristic_curve.h"
 #include "fitting/refine/confidence.h"
 #include "fitting/refine/gather.h"
 #include "fitting/refine/neighbours.h"
@@ -68,7 +69,7 @@ PartRefiner::PartRefiner(const SampleEstimate& estimate, const RefineProblem& sa
       above_(above),
       below_(below),
       count_(std::move(count)),
-      workers_(RefineWorkers(said, options, threads)) {
+      workers_(RefineWorkers(problem_, options, threads)) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   for (auto& worker : workers_) {
     worker->batches.SetNoise(std::sqrt(model_.residuals().variance()));
@@ -113,6 +114,7 @@ void PartRefiner::Deblur() {
     RenderLit(now_.maps, problem_.plane, view.view, problem_.convention, rendering.data());
     AddEnvironmentLighting(problem_.environment, now_.maps, problem_.plane, view.view,
                            problem_.convention, rendering.data());
+    Record(view.view.curve, rendering);
     std::vector<float>& deblurred = deblurred_[static_cast<size_t>(v)];
     deblurred =
         Deblurred(spread, view.rgb, view.mask, view.ldr, std::move(rendering), width, height);

@@ -79,6 +79,8 @@ std::string RefineOptions::Check() const {
     return "the share of metals must be between 0 and 1";
   }
   if (!(distance_power >= 0.0)) return "the expected power of distance must be at least 0";
+  if (!(toe >= 0.0)) return "the expected toe must be at least 0";
+  if (!(shoulder >= 0.0)) return "the expected shoulder must be at least 0";
   if (!(exposure_spread >= 0.0)) return "the expected exposure spread must be at least 0";
   if (!(residual_sigma > 0.0)) return "the expected scale of residuals must be above 0";
   if (!(light_spread >= 0.0)) return "the expected light spread must be at least 0";
@@ -108,6 +110,10 @@ std::string RefineSummary::BriefReport() const {
   if (lobes.anisotropy.any()) {
     text << "lobes " << lobes.anisotropy.ratio << " times as wide at "
          << lobes.anisotropy.direction_deg << " deg as across, ";
+  }
+  if (!curve.straight()) {
+    text << "the photographs' tone curve has a toe of " << curve.toe << " and a shoulder of "
+         << curve.shoulder << ", ";
   }
   if (exposure_spread > 0) text << "exposures scatter " << 100 * exposure_spread << " %, ";
   text << 100.0 * converged << " % converged";

@@ -101,6 +101,8 @@ struct RefineOptions {
   KindsPriorOptions kinds;
   // Standard deviations expected of all views' light (shared_light.h). 0: as said.
   double flash_beam = 0, distance_power = 0;
+  // Likewise of their curve (characteristic_curve.h): its toe, radiance, and its shoulder.
+  double toe = 0, shoulder = 0;
   bool second_lobe = true;  // of the whole sample, where held-out photographs ask for it
   bool anisotropy = true;   // of its lobes, likewise
   bool lobe_tails = false;  // look for shorter ones than GGX's too, likewise
@@ -141,7 +143,8 @@ struct RefineSummary {
   // By how much the light is stronger than stated, if dielectrics reflect what they do (of use
   // where its power was not calibrated): specular albedos over what they should be.
   double light_power = 1;
-  SharedLight shared_light;  // of all views
+  SharedLight shared_light;   // of all views
+  CharacteristicCurve curve;  // as `shared_light` has it
   // What single views deviate by: added to the lights beside `shared_light`, factors on
   // exposures; and the spreads of both, estimated.
   std::vector<Vec3d> light_offsets_mm;

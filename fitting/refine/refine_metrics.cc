@@ -54,6 +54,12 @@ const ManifestField<Summary> kSampleMetrics[] = {
      [](const Summary& s) -> Json { return KnownOrNull(s.normal_spread); }},
     {"facet_spread", "standard deviation θ_f of slopes that belong to no height field (flakes)",
      [](const Summary& s) -> Json { return s.facet_spread; }},
+    {"curve",
+     "of the photographs, relative to the one by which they were read: its `toe`, radiance that it "
+     "takes off the dark, and `shoulder` (base/reflectance/characteristic_curve.h)",
+     [](const Summary& s) -> Json {
+       return {{"toe", s.curve.toe}, {"shoulder", s.curve.shoulder}};
+     }},
     {"exposure_spread", "standard deviation of the views' log exposures",
      [](const Summary& s) -> Json { return s.exposure_spread; }},
     {"light_spread", "standard deviation of the views' light positions, relative to their distance",

@@ -201,12 +201,20 @@ int RowsAtOnce(const SamplePlane& plane, size_t views) {
   return static_cast<int>(std::clamp(bytes / texel_bytes / plane.width, 16.0, 1e9));
 }
 
+// Pictures of 8 or 16 bit were encoded by a camera, with a curve that is known more or less; floats
+// are radiance.
+bool HaveCurve(const RectifiedSet& set) {
+  return std::all_of(set.views.begin(), set.views.end(),
+                     [](const RectifiedView& view) { return view.ldr; });
+}
+
 // What is expected of views whose light nobody calibrated.
 RefineOptions OptionsFor(const RectifiedSet& set, const RefineStart& start,
                          const RefineStageOptions& options) {
   RefineOptions refine = options.refine;
   refine.kinds.metal_share = MetalShareOf(start.metals);
   if (!set.light_power_known) refine.kinds.light_power_spread = options.light_power_spread;
+  if (HaveCurve(set)) refine.toe = options.toe;
   if (set.light_power_known && !set.fixed_camera) return refine;
   refine.exposure_spread = options.exposure_spread;
   refine.residual_sigma = options.residual_sigma;
@@ -220,6 +228,7 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStart& start,
   refine.light_spread = options.light_spread;
   refine.flash_beam = options.flash_beam;
   refine.distance_power = options.distance_power;
+  if (HaveCurve(set)) refine.shoulder = options.shoulder;
   return refine;
 }
 

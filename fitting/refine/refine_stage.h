@@ -17,7 +17,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 45;
+inline constexpr int kRefineVersion = 46;
 
 struct RefineStageOptions {
   RefineOptions refine;
@@ -36,6 +36,7 @@ struct RefineStageOptions {
   double level_spread = constants::kLampLevelSd;
   double flash_beam = constants::kFlashBeamSd;
   double distance_power = constants::kDistancePowerSd;
+  double toe = constants::kToeSd, shoulder = constants::kShoulderSd;
   // Likewise KindsPriorOptions::light_power_spread: estimators find it within a half.
   double light_power_spread = constants::kUncalibratedLightPowerSd;
   int rows_at_once = 0;              // in memory; 0: as memory allows; never changes a value

@@ -23,11 +23,17 @@ struct RefineWorker {
   std::vector<BatchResiduals> nudged;  // views a step further off, by deviation
 };
 
+// All photographs of a capture have one curve.
+inline CharacteristicCurve CurveOf(const RefineProblem& problem) {
+  return problem.views.empty() ? CharacteristicCurve() : problem.views[0].view.curve;
+}
+
 inline KernelOptions KernelOptionsOf(const RefineProblem& problem, const RefineOptions& options) {
   KernelOptions kernel;
   kernel.diffuse_weight = problem.convention.diffuse_weight;
   kernel.mix = LobeMixOf<float>(problem.convention.lobes);
   kernel.robust_scale = options.robust_scale;
+  kernel.curve = CurveOf(problem);
   return kernel;
 }
 

@@ -123,11 +123,12 @@ SampleModel::SampleModel(const SamplePart& part, const RefineOptions& options)
       has_sample_priors_(part.problem().views.size() > 1),
       normal_spreads_(static_cast<size_t>(part.substances().count()),
                       has_sample_priors_ ? constants::kNormalSd : kUnknownSpread),
-      deviations_(static_cast<int>(part.problem().views.size()),
-                  {options.exposure_spread, options.light_spread, options.light_spread},
-                  {options.flash_offset, options.flash_offset, options.flash_beam,
-                   options.flash_beam, options.distance_power},
-                  LampsOf(part.problem(), options)) {
+      deviations_(
+          static_cast<int>(part.problem().views.size()),
+          {options.exposure_spread, options.light_spread, options.light_spread},
+          {options.flash_offset, options.flash_offset, options.flash_beam, options.flash_beam,
+           options.distance_power, options.toe / kToeUnit, options.shoulder},
+          LampsOf(part.problem(), options)) {
   std::iota(all_views_.begin(), all_views_.end(), 0);
   means_.mean = InitialMeans(part);
   means_.kinds = options.kinds;
@@ -514,7 +515,11 @@ void SampleModel::FitNormalsToo(Sampling* sampling) {
   sampling->solver->reflect(lobes_);
   sampling->solver->deviate(deviations_);
   learns_normals_ = has_sample_priors_;
+  // The curve moves once all else is near its place: what is wrong at first looks like one.
+  deviations_.HoldCurve(true);
   Fit(sampling);
+  deviations_.HoldCurve(false);
+  if (deviations_.finds_curve()) Fit(sampling);
   learns_normals_ = false;
 }
 
@@ -525,6 +530,7 @@ void SampleModel::FitAsChosen(Sampling* sampling) {
     // its departures are alike in neighbouring texels, and views would be moved to make them even.
     const double chosen = std::exchange(means_.diffuse_spread, kUnknownSpread);
     finds_views_ = true;
+    deviations_.HoldCurve(false);
     Fit(sampling);
     FreezeViews(chosen, *sampling);
   }

@@ -147,14 +147,16 @@ struct ViewEquations {
 }  // namespace
 
 DeviationProducts ProductsOf(const BatchResiduals& residuals,
-                             std::span<const BatchResiduals> nudged, int view, int lane) {
+                             std::span<const BatchResiduals> nudged,
+                             const UnknownDeviations& unknown, int view, int lane) {
   using Row = BatchResiduals::Row;
   DeviationProducts of;
   for (int c = 0; c < 3; ++c) {
     const auto at = [&](Row row) { return residuals.at(view, c, row, lane); };
     const double residual = at(Row::kResidual);
-    std::array<double, kViewDeviations> by;
+    std::array<double, kViewDeviations> by{};
     for (size_t i = 0; i < kViewDeviations; ++i) {
+      if (!unknown[i]) continue;
       by[i] = (nudged[i].at(view, c, Row::kResidual, lane) - residual) / constants::kDeviationStep;
     }
     const std::pair<int, double> by_values[] = {{DiffuseParameter(c), at(Row::kByDiffuse)},
@@ -186,10 +188,45 @@ ViewDeviations::ViewDeviations(int views, const DeviationValues& expected,
                        std::any_of(expected_shared.begin(), expected_shared.end(), wide));
 }
 
+UnknownDeviations ViewDeviations::unknown() const {
+  UnknownDeviations unknown{};
+  for (size_t i = 0; i < kViewDeviations; ++i) unknown[i] = any_ && expected_[i] > 0;
+  const DeviationsByShared by = ByShared({.light_in_sample_mm = {0, 0, 1}}, 2, 1, 1);
+  for (size_t k = 0; k < kSharedLightValues; ++k) {
+    for (size_t i = 0; i < kViewDeviations; ++i) {
+      unknown[i] = unknown[i] || (any_ && expected_shared_[k] > 0 && by[k][i] != 0);
+    }
+  }
+  return unknown;
+}
+
+bool ViewDeviations::finds_curve() const {
+  return any_ && (expected_shared_[kSharedToe] > 0 || expected_shared_[kSharedShoulder] > 0);
+}
+
+void ViewDeviations::HoldCurve(bool hold) {
+  curve_held_ = hold;
+  last_step_ = {};
+}
+
+// Dark texels tell much of a small toe and little of a large one, so that Newton's steps go back
+// and forth between them: one that turns back is half as long as the last at most, others twice as
+// long.
+double ViewDeviations::CurveStep(size_t shared, double newton) {
+  double& last = last_step_[shared];
+  double most = kMostDeviationStep;
+  if (last != 0) most = std::min(most, std::abs(last) * (newton * last < 0 ? 0.5 : 2));
+  last = std::clamp(newton, -most, most);
+  return last;
+}
+
 void ViewDeviations::Update(std::span<const TexelOfViews> texels, double information) {
   if (!any_) return;
   const int views = static_cast<int>(values_.size());
-  const UnknownsOfViews unknowns(views, expected_, expected_shared_);
+  SharedLightValues free = expected_shared_;
+  if (curve_held_) free[kSharedToe] = free[kSharedShoulder] = 0;
+  const UnknownsOfViews unknowns(views, expected_, free);
+  if (unknowns.size() == 0) return;
   ViewEquations equations(unknowns, texels);
   Eigen::MatrixXd& hessian = equations.hessian;
   Eigen::VectorXd& gradient = equations.gradient;
@@ -255,8 +292,12 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
     }
   }
   for (size_t i = 0; i < unknowns.shared().size(); ++i) {
-    shared_[static_cast<size_t>(unknowns.shared()[i])] += bounded(step[unknowns.at_shared(i)]);
+    const auto k = static_cast<size_t>(unknowns.shared()[i]);
+    const double newton = step[unknowns.at_shared(i)];
+    shared_[k] += k == kSharedToe || k == kSharedShoulder ? CurveStep(k, newton) : bounded(newton);
   }
+  // Beyond it the curve would fall somewhere.
+  shared_[kSharedShoulder] = std::max(shared_[kSharedShoulder], -0.9);
   UpdateSpreads(variances);
 }
 

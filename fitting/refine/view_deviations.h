@@ -38,10 +38,14 @@ struct DeviationProducts {
   std::array<std::array<double, kTexelParameters>, kViewDeviations> by_values{};
 };
 
+using UnknownDeviations = std::array<bool, kViewDeviations>;
+
 // Of a lane's texel in one view. `nudged`: for each deviation in turn, with views that are a step
-// further. Which view it is, and `by_shared`, is left to the caller.
+// further; of those that are not `unknown` anything. Which view it is, and `by_shared`, is left to
+// the caller.
 DeviationProducts ProductsOf(const BatchResiduals& residuals,
-                             std::span<const BatchResiduals> nudged, int view, int lane);
+                             std::span<const BatchResiduals> nudged,
+                             const UnknownDeviations& unknown, int view, int lane);
 
 // What one texel tells of the views.
 struct TexelOfViews {
@@ -66,6 +70,11 @@ class ViewDeviations {
                  const SharedLightValues& expected_shared, LampsExpected lamps = {});
 
   bool any() const { return any_; }
+  // What derivatives are wanted by: what is unknown of single views or of what all share.
+  UnknownDeviations unknown() const;
+  // Whether the photographs' curve is unknown, and moves.
+  bool finds_curve() const;
+  void HoldCurve(bool hold);  // or let it go, as if for the first time
   // One step. `information`: what a squared residual of these texels is worth, 1 / variance.
   void Update(std::span<const TexelOfViews> texels, double information);
 
@@ -76,13 +85,15 @@ class ViewDeviations {
  private:
   // The prior precision of all views' log exposures.
   Eigen::MatrixXd ExposurePrecision() const;
+  double CurveStep(size_t shared, double newton);
   void UpdateSpreads(const std::vector<DeviationValues>& variances);
 
   DeviationValues expected_, spreads_;
   SharedLightValues expected_shared_, shared_{};
   LampsExpected lamps_;
   std::vector<DeviationValues> values_;
-  bool any_ = false;
+  SharedLightValues last_step_{};  // of the curve's; 0: none yet
+  bool any_ = false, curve_held_ = false;
 };
 
 }  // namespace glint

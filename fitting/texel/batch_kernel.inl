@@ -10,6 +10,7 @@
 
 #include "base/model/solver.h"
 #include "base/reflectance/brdf_core.h"
+#include "base/reflectance/characteristic_curve.h"
 #include "base/reflectance/log_radiance.h"
 #include "fitting/texel/batch_kernel.h"
 #include "fitting/texel/texel_bounds.h"
@@ -214,6 +215,17 @@ GLINT_INLINE Coat<Floats> CoatIn(const Floats* lobe, const LobeMix<float>& mix) 
   return {lobe[kCoat], Broadcast(mix.share[1] * mix.coat_f0 * float(kInversePi)), mix.mapped()};
 }
 
+// I + 0.01 of a rendered radiance as photographs record it, and what its derivatives are divided by
+// to be those of the logarithm: a curve leaves a thousandth of them at least.
+struct Photographed {
+  Floats value, divisor;
+};
+GLINT_INLINE Photographed PhotographedAs(const Floats& radiance, const CharacteristicCurve& curve) {
+  const RecordedRadiance<Floats> seen = Recorded(radiance, float(curve.toe), float(curve.shoulder));
+  const Floats value = seen.value + float(kLogOffset);
+  return {value, value / Max(seen.slope, Broadcast(1e-3f))};
+}
+
 // The normal equations: BatchGram's products, of one vector.
 struct Normal {
   Floats own[3][BatchGram::kOwn];
@@ -257,16 +269,18 @@ GLINT_INLINE Normal EvaluateProducts(const KernelOptions& options, const BatchVi
         mirrored = Fma(mirrored, Broadcast(coat.mapped), ambient_specular * coat.surrounding);
       }
       const Floats surroundings = Fma(ambient, diffuse.value, mirrored);
-      const Floats radiance = Fma(irradiance, terms.reflected, surroundings) + float(kLogOffset);
+      const Floats radiance = Fma(irradiance, terms.reflected, surroundings);
+      Photographed seen = {radiance + float(kLogOffset), radiance + float(kLogOffset)};
+      if (!options.curve.straight()) seen = PhotographedAs(radiance, options.curve);
 
-      const Floats free = Log(radiance) - At(rows[Obs::kLogTarget + c], first);
+      const Floats free = Log(seen.value) - At(rows[Obs::kLogTarget + c], first);
       const Floats ceiling = At(rows[Obs::kCeiling + c], first);
       const Floats error = Min(free, ceiling);
       const Floats weight = At(rows[Obs::kWeight], first);
       const Floats on = Where(free < ceiling, weight, Floats{});
       const Floats scaled = error * inverse_scale;
       const Floats root = Sqrt(Fma(scaled, scaled, Broadcast(1.0f)));
-      const Floats above = 1.0f + root, below = root * radiance;
+      const Floats above = 1.0f + root, below = root * seen.divisor;
       const Floats inverse = 1.0f / (below * above);
       const Floats inverse_below = inverse * above;
       const Floats by_error = error * inverse_below * on;
@@ -730,6 +744,26 @@ void Solve(const KernelOptions& options, const SolveOptions& solve, const BatchV
   }
 }
 
+// A photographed I + 0.01, and by what radiances are multiplied to be compared with it.
+struct Relative {
+  Floats target, unit;
+};
+// The same of the radiance that is recorded so, to first order: two of Newton's steps from it.
+GLINT_INLINE Relative OfRadiance(const Relative& seen, const CharacteristicCurve& curve) {
+  const float toe = float(curve.toe), shoulder = float(curve.shoulder);
+  const Floats recorded =
+      Max(seen.target / Max(seen.unit, Broadcast(1e-30f)) - float(kLogOffset), Broadcast(0.0f));
+  Floats radiance = recorded + (toe > 0 ? toe : 0.0f);
+  RecordedRadiance<Floats> of = Recorded(radiance, toe, shoulder);
+  for (int step = 0; step < 2; ++step) {
+    radiance += (recorded - of.value) / Max(of.slope, Broadcast(0.1f));
+    radiance = Max(radiance, Broadcast(0.0f));
+    of = Recorded(radiance, toe, shoulder);
+  }
+  const Floats unit = seen.unit * of.slope;
+  return {unit * (radiance + float(kLogOffset)), unit};
+}
+
 // Weighted rows relative to I + 0.01, whose inverse is the exponential of −log.
 void AlbedoSums(const KernelOptions& options, const BatchViews& views, const BatchValues& values,
                 BatchAlbedoSums* sums) {
@@ -746,7 +780,9 @@ void AlbedoSums(const KernelOptions& options, const BatchViews& views, const Bat
         const Floats irradiance = At(rows[Obs::kIrradiance + c], first);
         const Floats usable = Where(At(rows[Obs::kCeiling + c], first) > 0.0f,
                                     Sqrt(At(rows[Obs::kWeight], first)), Floats{});
-        const Floats relative = usable * At(rows[Obs::kInverseTarget + c], first);
+        Relative seen = {usable, usable * At(rows[Obs::kInverseTarget + c], first)};
+        if (!options.curve.straight()) seen = OfRadiance(seen, options.curve);
+        const Floats relative = seen.unit;
         const Floats ambient_specular = At(rows[Obs::kAmbientSpecular + c], first);
         const Coat<Floats> coat = CoatIn(lobe, options.mix);
         const ChannelTerms<Floats> terms =
@@ -756,7 +792,7 @@ void AlbedoSums(const KernelOptions& options, const BatchViews& views, const Bat
             At(rows[Obs::kAmbient + c], first), ambient_specular, coat.mapped);
         const Floats a = relative * slopes.by_diffuse, b = relative * slopes.by_specular;
         const Floats dark = Fma(ambient_specular, coat.surrounding, Broadcast(float(kLogOffset)));
-        const Floats y = usable - relative * Fma(irradiance, terms.reflected, dark);
+        const Floats y = seen.target - relative * Fma(irradiance, terms.reflected, dark);
         aa = Fma(a, a, aa);
         ab = Fma(a, b, ab);
         bb = Fma(b, b, bb);

@@ -26,6 +26,7 @@ class BatchEvaluator {
 
   const KernelOptions& options() const { return options_; }
   void SetLobes(const SpecularLobes& lobes);
+  void SetCurve(const CharacteristicCurve& curve) { options_.curve = curve; }
   // Of the photographs alone.
   void Gram(const BatchObservations& observations, const BatchValues& values, BatchGram* gram,
             BatchResiduals* residuals = nullptr);
@@ -86,6 +87,7 @@ class BatchSearch {
   void SetNoise(double residual_sigma);
 
   void SetLobes(const SpecularLobes& lobes) { evaluator_.SetLobes(lobes); }
+  void SetCurve(const CharacteristicCurve& curve) { evaluator_.SetCurve(curve); }
 
   // From here on tasks are `from`; `done` is called with each in any order, by Finish() at the
   // latest.

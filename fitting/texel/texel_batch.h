@@ -19,6 +19,7 @@ inline constexpr int kBatch = 16;
 struct KernelOptions {
   DiffuseWeight diffuse_weight = DiffuseWeight::kOne;
   LobeMix<float> mix;                             // of the sample's specular lobes
+  CharacteristicCurve curve;                      // of the photographs
   double robust_scale = constants::kRobustScale;  // δ (batch_kernel.h), in units of the logarithm
 };
 

@@ -49,6 +49,8 @@ Json JsonOf(const SharedLight& shared) {
            {values[kOffsetX] * shared.distance_mm, values[kOffsetY] * shared.distance_mm, 0}},
           {"beam", {values[kBeamX], values[kBeamY]}},
           {"distance_power", values[kDistancePower]},
+          {"toe", kToeUnit * values[kSharedToe]},
+          {"shoulder", values[kSharedShoulder]},
           {"distance_mm", shared.distance_mm}};
 }
 
@@ -63,8 +65,19 @@ SharedLight ReadSharedLight(const std::filesystem::path& manifest_file, const Js
     throw UserError(manifest_file, "data.shared_light.distance_mm", light["distance_mm"].dump(),
                     "run glint-refine again");
   }
-  shared.values = {offset[0] / shared.distance_mm, offset[1] / shared.distance_mm, beam[0], beam[1],
-                   RequireNumber(manifest_file, light, "data.shared_light", "distance_power")};
+  const auto number = [&](const char* field) {
+    return RequireNumber(manifest_file, light, "data.shared_light", field);
+  };
+  // Manifests that are older than the curve have none.
+  const double toe = light.contains("toe") ? number("toe") : 0;
+  const double shoulder = light.contains("shoulder") ? number("shoulder") : 0;
+  shared.values = {offset[0] / shared.distance_mm,
+                   offset[1] / shared.distance_mm,
+                   beam[0],
+                   beam[1],
+                   number("distance_power"),
+                   toe / kToeUnit,
+                   shoulder};
   return shared;
 }
 

@@ -12,6 +12,8 @@ View Deviating(const View& said, const DeviationValues& deviation) {
   View view = WithFlashOffset(
       said, {distance * deviation[kLightAcrossX], distance * deviation[kLightAcrossY], 0});
   view.exposure *= std::exp(deviation[kLogExposure]);
+  view.curve.toe += kToeUnit * deviation[kToe];
+  view.curve.shoulder += deviation[kShoulder];
   return view;
 }
 

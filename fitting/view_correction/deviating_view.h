@@ -1,5 +1,6 @@
 // What one photograph may deviate by from what is said of it: how bright its flash or its exposure
-// was, and where its flash stood. What all photographs of a capture share is flash_offset.h's.
+// was, where its flash stood, and what its curve does to the dark. What all photographs of a
+// capture share is shared_light.h's.
 #pragma once
 
 #include <array>
@@ -12,8 +13,13 @@ enum ViewDeviation : int {
   kLogExposure,   // natural logarithm of a factor on the exposure
   kLightAcrossX,  // the light's offset across its direction, of its distance, in the frame of
   kLightAcrossY,  // flash_offset.h
+  kToe,           // of View::curve, in kToeUnit
+  kShoulder,      // likewise, 1
   kViewDeviations
 };
+// So that steps of all deviations are of one size.
+inline constexpr double kToeUnit = 0.1;
+inline constexpr bool IsOfCurve(size_t deviation) { return deviation >= kToe; }
 using DeviationValues = std::array<double, kViewDeviations>;
 
 View Deviating(const View& said, const DeviationValues& deviation);

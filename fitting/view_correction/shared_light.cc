@@ -25,6 +25,7 @@ View WithSharedLight(const View& said, const SharedLight& shared) {
   View view = WithFlashOffset(
       said, {values[kOffsetX] * shared.distance_mm, values[kOffsetY] * shared.distance_mm, 0});
   view.beam = {values[kBeamX], values[kBeamY]};
+  view.curve = {kToeUnit * values[kSharedToe], values[kSharedShoulder]};
   view.exposure *= std::pow(Distance_mm(said) / shared.distance_mm, values[kDistancePower]);
   return view;
 }
@@ -37,6 +38,7 @@ DeviationsByShared ByShared(const View& view, double distance_mm, double x_mm, d
   by[kBeamX][kLogExposure] = (x_mm - light[0]) / light[2];
   by[kBeamY][kLogExposure] = (y_mm - light[1]) / light[2];
   by[kDistancePower][kLogExposure] = std::log(own_distance_mm / distance_mm);
+  by[kSharedToe][kToe] = by[kSharedShoulder][kShoulder] = 1;
   return by;
 }
 

@@ -1,6 +1,6 @@
-// How the light of all photographs of a capture differs from what is said of it, where nobody
-// calibrated it. Unlike errors of single views (view_correction.h), this is known of photographs
-// that were not fitted too.
+// How the light of all photographs of a capture, and what their curve makes of it, differ from what
+// is said, where nobody calibrated it. Unlike errors of single views (view_correction.h), this is
+// known of photographs that were not fitted too.
 #pragma once
 
 #include <array>
@@ -12,12 +12,14 @@
 namespace glint {
 
 enum SharedLightValue : int {
-  kOffsetX,        // of the flash across the light's direction (flash_offset.h), of `distance_mm`:
-  kOffsetY,        // the camera's place, or one measured by hand, is often stated for it
-  kBeamX,          // View::beam: telephones' flashes and lenses fall off toward the edges, and one
-  kBeamY,          // whose axis passes beside the sample lights one side of it more
-  kDistancePower,  // of the light's intensity, by its distance: an automatic exposure makes up for
-                   // distance, and distances that are not known well do not vary as much as said
+  kOffsetX,         // of the flash across the light's direction (flash_offset.h), of `distance_mm`:
+  kOffsetY,         // the camera's place, or one measured by hand, is often stated for it
+  kBeamX,           // View::beam: telephones' flashes and lenses fall off toward the edges, and one
+  kBeamY,           // whose axis passes beside the sample lights one side of it more
+  kDistancePower,   // of the light's intensity, by its distance: an automatic exposure makes up for
+                    // distance, and distances that are not known well do not vary as much as said
+  kSharedToe,       // of View::curve, in kToeUnit
+  kSharedShoulder,  // likewise, 1
   kSharedLightValues
 };
 using SharedLightValues = std::array<double, kSharedLightValues>;

@@ -141,6 +141,26 @@ TEST_F(FittedMapsTest, EveryViewIsLitByTheFlashThatWasFound) {
   EXPECT_THROW(ReadFittedMaps(WriteFit("refine", {{"shared_light", nowhere}})), UserError);
 }
 
+// The curve is the photographs', so that renderings are compared as they would be recorded.
+TEST_F(FittedMapsTest, EveryViewIsRecordedByTheCurveThatWasFound) {
+  SharedLight shared{.distance_mm = 256};
+  shared.values[kSharedToe] = 0.02 / kToeUnit;
+  shared.values[kSharedShoulder] = 0.2;
+  Json json = JsonOf(shared);
+  const FittedMaps fit = ReadFittedMaps(WriteFit("refine", {{"shared_light", json}}));
+  json.erase("toe");
+  json.erase("shoulder");
+  const FittedMaps old = ReadFittedMaps(WriteFit("refine", {{"shared_light", json}}));
+  for (const RectifiedView& view : set_.views) {
+    const std::vector<float> straight = RenderFit(old, set_, view, 1);
+    std::vector<float> expected = straight;
+    Record({0.02, 0.2}, expected);
+    const std::vector<float> recorded = RenderFit(fit, set_, view, 1);
+    EXPECT_NE(recorded, straight);
+    for (size_t i = 0; i < expected.size(); ++i) ASSERT_FLOAT_EQ(recorded[i], expected[i]);
+  }
+}
+
 // Environment lighting reaches held-out views, too.
 TEST_F(FittedMapsTest, EveryViewIsLitByTheEnvironmentThatWasFound) {
   EnvironmentLighting environment;

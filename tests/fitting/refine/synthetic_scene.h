@@ -71,7 +71,7 @@ inline SvbrdfMaps QuarteredMaps(int size, unsigned seed) {
 }
 
 // `bits` 0: float radiance; otherwise clipped at 1 and quantised in gamma 2.2.
-// `light`: what is not said of the views' lights. `lobes`: nor of the sample's.
+// `light`: what is not said of the views' lights and curve. `lobes`: nor of the sample's.
 inline SyntheticScene Photograph(const SvbrdfMaps& truth, int views, int bits = 0,
                                  unsigned seed = 5, const SharedLight& light = {},
                                  const SpecularLobes& lobes = {}) {
@@ -97,7 +97,7 @@ inline SyntheticScene Photograph(const SvbrdfMaps& truth, int views, int bits = 
                                       scene.plane.y_mm(static_cast<int>(t) / truth.width)),
           reflecting, radiance);
       for (int c = 0; c < 3; ++c) {
-        double value = radiance[c];
+        double value = Recorded(radiance[c], lit.curve.toe, lit.curve.shoulder).value;
         if (bits > 0) {
           const double most = std::exp2(bits) - 1.0;
           const double level = std::round(most * std::pow(std::fmin(value, 1.0), 1.0 / 2.2));

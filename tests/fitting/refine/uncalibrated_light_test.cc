@@ -92,6 +92,41 @@ TEST(Refine, LeavesTheShapeOfALightThatIsAsSaid) {
   EXPECT_NEAR(values[kDistancePower], 0, 0.1);
 }
 
+// Photographs whose dark a phone crushed: albedos come out too dark and roughness too low.
+TEST(Refine, FindsTheCurveOfThePhotographs) {
+  SharedLight curve;
+  curve.values[kSharedToe] = 0.02 / kToeUnit;
+  curve.values[kSharedShoulder] = 0.2;
+  const SyntheticScene scene = Photograph(QuarteredMaps(24, 26), 8, 8, 5, curve);
+  const SvbrdfMaps start = DisturbedMaps(scene.truth, 0.5f, 27);
+  RefineOptions options;
+  options.exposure_spread = 0.1;
+  const SvbrdfMaps believed = Refine(scene.Problem(), start, options, 1).maps;
+  options.toe = 0.02;
+  options.shoulder = 0.2;
+  const RefineResult found = Refine(scene.Problem(), start, options, 1);
+  const SharedLightValues& values = found.summary.shared_light.values;
+  EXPECT_NEAR(kToeUnit * values[kSharedToe], 0.02, 0.006);
+  EXPECT_NEAR(values[kSharedShoulder], 0.2, 0.1);
+  for (const auto& [first, last] : {std::pair{kDiffuseR, kDiffuseB}, {kSpecularR, kSpecularB}}) {
+    EXPECT_LT(MeanSquare(found.maps, scene.truth, first, last),
+              0.5 * MeanSquare(believed, scene.truth, first, last));
+  }
+}
+
+TEST(Refine, LeavesACurveThatIsStraight) {
+  const SyntheticScene scene = Photograph(QuarteredMaps(24, 26), 8, 8);
+  RefineOptions options;
+  options.exposure_spread = 0.1;
+  options.toe = 0.02;
+  options.shoulder = 0.2;
+  const SharedLightValues values =
+      Refine(scene.Problem(), DisturbedMaps(scene.truth, 0.5f, 27), options, 1)
+          .summary.shared_light.values;
+  EXPECT_NEAR(kToeUnit * values[kSharedToe], 0, 0.002);
+  EXPECT_NEAR(values[kSharedShoulder], 0, 0.05);
+}
+
 double RootMeanSquareLog(const std::vector<double>& factors) {
   double squares = 0;
   for (const double factor : factors) squares += std::log(factor) * std::log(factor);

@@ -92,6 +92,9 @@ struct Lanes {
       for (int v = 0; v < kViews; ++v) {
         ShadeRadiance(TexelFromValues(shown[lane].data()), Geometry(lane, v), Model(),
                       radiance[lane][v].data());
+        for (double& r : radiance[lane][v]) {
+          r = Recorded(r, options.curve.toe, options.curve.shoulder).value;
+        }
         clipped[lane][v] = {false, false, false};
       }
     }
