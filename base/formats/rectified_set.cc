@@ -43,6 +43,7 @@ RectifiedView ReadView(const std::filesystem::path& file, const Json& json, size
   view.file = RequireString(file, json, name, "file");
   view.photo = RequireString(file, json, name, "photo");
   view.ldr = RequireBool(file, json, name, "ldr");
+  view.linear = json.contains("linear") && RequireBool(file, json, name, "linear");
   view.view.camera_in_sample_mm = RequireVec(file, json, name, "camera_in_sample_mm");
   view.view.light_in_sample_mm = RequireVec(file, json, name, "light_in_sample_mm");
   view.view.light_rgb = RequireVec(file, json, name, "light_rgb");
@@ -114,6 +115,7 @@ Json ToJson(const RectifiedSet& set) {
                              {"light_rgb", FromVec(view.view.light_rgb)},
                              {"ambient_rgb", FromVec(view.view.ambient_rgb)},
                              {"exposure", view.view.exposure}});
+    if (view.linear) data["views"].back()["linear"] = true;
     if (view.pixels_per_texel) {
       data["views"].back()["pixels_per_texel"] = *view.pixels_per_texel;
     }

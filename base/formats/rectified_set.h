@@ -14,10 +14,11 @@
 namespace glint {
 
 struct RectifiedView {
-  std::string name;   // "view_000"
-  std::string file;   // EXR, relative to the manifest's folder: R, G, B, mask.Y
-  std::string photo;  // the photograph it came from, as in capture.toml's folder
-  bool ldr = true;    // the photograph clips at radiance 1
+  std::string name;     // "view_000"
+  std::string file;     // EXR, relative to the manifest's folder: R, G, B, mask.Y
+  std::string photo;    // the photograph it came from, as in capture.toml's folder
+  bool ldr = true;      // the photograph clips at radiance 1
+  bool linear = false;  // and was stored as radiance (RAW, float), without a camera's curve
   View view;
   // Side of a texel at the sample's centre in the photograph, which was resampled; not known of
   // imported pictures and of a fixed camera's whose pixels are the texels.
@@ -25,6 +26,9 @@ struct RectifiedView {
   // Standard deviation by which lens, focus and pixel spread a point of the photograph, in its
   // pixels, where calibration measured it; resampling comes on top.
   std::optional<double> blur_px;
+
+  // Through a curve that is known more or less.
+  bool encoded() const { return ldr && !linear; }
 };
 
 struct RectifiedSet {

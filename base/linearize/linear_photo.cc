@@ -6,7 +6,9 @@
 namespace glint {
 
 LinearPhoto::LinearPhoto(Photo photo, const Encoding& encoding, const SaturationRule& saturation)
-    : image_(std::move(photo.image)), colour_(std::move(photo.colour)) {
+    : image_(std::move(photo.image)),
+      colour_(std::move(photo.colour)),
+      stored_linear_(encoding == Encoding::kLinear) {
   image_.Visit([&]<class T>(std::vector<T>& samples) {
     if constexpr (std::is_floating_point_v<T>) {
       LineariseFloats(encoding, saturation, &samples);

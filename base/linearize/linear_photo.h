@@ -66,6 +66,7 @@ class LinearPhoto {
   int width() const { return image_.width; }
   int height() const { return image_.height; }
   bool is_float() const { return table_.empty(); }
+  bool stored_linear() const { return stored_linear_; }  // without a camera's curve
 
   // Calls `f` with the storage's reader (Codes<uint8_t>, Codes<uint16_t> or Floats).
   template <class F>
@@ -93,6 +94,7 @@ class LinearPhoto {
 
   StoredImage image_;
   ColourProfile colour_;
+  bool stored_linear_;
   size_t codes_ = 0;
   std::vector<float> table_;  // of codes
   int saturated_code_ = 0;

@@ -23,7 +23,7 @@ inline constexpr ModelConstant kLightRows[] = {
     Row("kDistancePowerSd", {kDistancePowerSd}, "exponent", "Ω of the power of distance",
         "2 is an exposure that makes up for all of it", "--distance-power"),
     Row("kToeSd", {kToeSd}, "radiance",
-        "Ω of the toe of the photographs' curve; light that was calibrated, too",
+        "Ω of the toe of the photographs' curve; of known light, too",
         "sRGB's curve read by gamma 2.2 has one of 0.007 and a shoulder of 0.06 (to 0.3 %); "
         "cameras' contrast curves have several times that",
         "--toe"),

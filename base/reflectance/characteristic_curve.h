@@ -52,11 +52,14 @@ inline RecordedRadiance<T> Recorded(const T& radiance, Scalar toe, Scalar should
   return of;
 }
 
-// Radiances as they are recorded, in place.
+// Radiances as they are recorded, in place. Below 0, where the harmonics of environment lighting
+// may reach, they stay as they are.
 inline void Record(const CharacteristicCurve& curve, std::span<float> radiances) {
   if (curve.straight()) return;
   const auto toe = static_cast<float>(curve.toe), shoulder = static_cast<float>(curve.shoulder);
-  for (float& radiance : radiances) radiance = Recorded(radiance, toe, shoulder).value;
+  for (float& radiance : radiances) {
+    if (radiance > 0) radiance = Recorded(radiance, toe, shoulder).value;
+  }
 }
 
 }  // namespace glint

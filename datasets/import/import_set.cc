@@ -195,6 +195,7 @@ ImportSummary ImportSet(const ForeignSet& foreign, const ImportOptions& options,
     view.view = InSampleFrame(source.view, registration.plane);
     const LinearPhoto photo = ReadLinear(source, foreign.encoding, options);
     view.ldr = source.ldr.value_or(!photo.is_float());
+    view.linear = photo.stored_linear();
     RequireSize(photo, source, size, first);
     ViewCounts counts;
     const RectifiedImage image =

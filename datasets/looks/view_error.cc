@@ -177,7 +177,7 @@ std::vector<float> RenderFit(const FittedMaps& fit, const RectifiedSet& set,
   RenderLit(maps, set.plane, lit, convention, rendered.data(), threads);
   AddEnvironmentLighting(fit.environment, maps, set.plane, lit, convention, rendered.data(),
                          threads);
-  Record(lit.curve, rendered);
+  if (view.encoded()) Record(lit.curve, rendered);
   return rendered;
 }
 

@@ -99,10 +99,13 @@ CorrectionResult FindCorrections(const PhotographSet& set, const SvbrdfMaps& sta
     report(steps);
     return result;
   }
+  // CorrectViews() knows of no curve, nor must the maps that it begins with.
+  RefineOptions straight = refine;
+  straight.toe = straight.shoulder = 0;
   for (int round = 1; round < options.rounds; ++round) {
     report(2 * round - 1);
     const PhotographSet corrected = Corrected(small, found.corrections, threads);
-    const SvbrdfMaps maps = Refine(ProblemOf(corrected), small_start, refine, threads).maps;
+    const SvbrdfMaps maps = Refine(ProblemOf(corrected), small_start, straight, threads).maps;
     report(2 * round);
     ViewCorrectionResult next =
         CorrectViews(small, maps, finding.options, threads, found.corrections);

@@ -201,20 +201,15 @@ int RowsAtOnce(const SamplePlane& plane, size_t views) {
   return static_cast<int>(std::clamp(bytes / texel_bytes / plane.width, 16.0, 1e9));
 }
 
-// Pictures of 8 or 16 bit were encoded by a camera, with a curve that is known more or less; floats
-// are radiance.
-bool HaveCurve(const RectifiedSet& set) {
-  return std::all_of(set.views.begin(), set.views.end(),
-                     [](const RectifiedView& view) { return view.ldr; });
-}
-
-// What is expected of views whose light nobody calibrated.
-RefineOptions OptionsFor(const RectifiedSet& set, const RefineStart& start,
-                         const RefineStageOptions& options) {
+// What is expected of views whose light nobody calibrated, and of those that were stored encoded.
+RefineOptions OptionsFor(const RectifiedSet& set, const std::vector<RectifiedView>& views,
+                         const RefineStart& start, const RefineStageOptions& options) {
   RefineOptions refine = options.refine;
   refine.kinds.metal_share = MetalShareOf(start.metals);
   if (!set.light_power_known) refine.kinds.light_power_spread = options.light_power_spread;
-  if (HaveCurve(set)) refine.toe = options.toe;
+  const bool encoded = std::all_of(views.begin(), views.end(),
+                                   [](const RectifiedView& view) { return view.encoded(); });
+  if (encoded && !set.fixed_camera) refine.toe = options.toe;
   if (set.light_power_known && !set.fixed_camera) return refine;
   refine.exposure_spread = options.exposure_spread;
   refine.residual_sigma = options.residual_sigma;
@@ -228,7 +223,7 @@ RefineOptions OptionsFor(const RectifiedSet& set, const RefineStart& start,
   refine.light_spread = options.light_spread;
   refine.flash_beam = options.flash_beam;
   refine.distance_power = options.distance_power;
-  if (HaveCurve(set)) refine.shoulder = options.shoulder;
+  if (encoded) refine.shoulder = options.shoulder;
   return refine;
 }
 
@@ -266,7 +261,7 @@ struct Sample {
          const RefineStageOptions& stage_options, int threads)
       : set(ReadRectifiedSet(rectify_manifest)),
         views(ChooseViews(set, start, stage_options)),
-        options(OptionsFor(set, start, stage_options)),
+        options(OptionsFor(set, views, start, stage_options)),
         source(set, views, start.light_scale_rgb, start.maps_file, start.deviations_file),
         correction(CorrectViewsWithBar(options, CorrectionFor(set, views, stage_options.correction),
                                        threads, &source)),

@@ -101,11 +101,12 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
       "toe", &options->toe, 0, 1,
       "prior standard deviation of the toe of the photographs' tone curve: of the radiance (1: "
       "clips) that it takes off the dark, or that stray light adds; one toe is estimated for all "
-      "photographs of 8 or 16 bits; 0: none");
+      "photographs, unless they were stored linear (RAW, float) or the camera was fixed; 0: none");
   set->AddRange(
       "shoulder", &options->shoulder, 0, 1,
       "prior standard deviation of the curve's shoulder s, which makes R·(1 + s)/(1 + s·R) "
-      "of a radiance R, if the light was not calibrated; 0: none");
+      "of a radiance R, likewise, if the light's power is not known and the camera was moved; "
+      "0: none");
   set->AddRange("light-power-spread", &options->light_power_spread, 0.01, 10,
                 "prior standard deviation of the logarithm of the light's power, if the light was "
                 "not calibrated; all specular albedos may be off by this common factor");

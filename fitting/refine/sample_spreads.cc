@@ -262,6 +262,7 @@ void SampleModel::TryShape(const SpecularLobes& shape, const Asks& asks,
   Sampling own = model.SamplingOf(sampling->texels, *sampling->solver, sampling->threads);
   model.FitNormalsToo(&own);
   model.Choose(other, own, blocks, powers);
+  // Both with the views, and the curve, that the new shape found.
   if (!asks(model.CrossValidate(blocks), CrossValidate(blocks))) return;
   *this = model;
   *sampling = std::move(own);

@@ -216,14 +216,17 @@ GLINT_INLINE Coat<Floats> CoatIn(const Floats* lobe, const LobeMix<float>& mix) 
 }
 
 // I + 0.01 of a rendered radiance as photographs record it, and what its derivatives are divided by
-// to be those of the logarithm: a curve leaves a thousandth of them at least.
+// to be those of the logarithm: a curve leaves a thousandth of them at least. Below 0, where the
+// harmonics of environment lighting may reach, there is no curve.
 struct Photographed {
   Floats value, divisor;
 };
 GLINT_INLINE Photographed PhotographedAs(const Floats& radiance, const CharacteristicCurve& curve) {
   const RecordedRadiance<Floats> seen = Recorded(radiance, float(curve.toe), float(curve.shoulder));
-  const Floats value = seen.value + float(kLogOffset);
-  return {value, value / Max(seen.slope, Broadcast(1e-3f))};
+  const Ints lit = radiance > 0.0f;
+  const Floats value = Where(lit, seen.value, radiance) + float(kLogOffset);
+  const Floats slope = Where(lit, Max(seen.slope, Broadcast(1e-3f)), Broadcast(1.0f));
+  return {value, value / slope};
 }
 
 // The normal equations: BatchGram's products, of one vector.

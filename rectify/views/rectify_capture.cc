@@ -126,6 +126,7 @@ RectifySummary RectifyCapture(const Capture& capture, const Calibration& calibra
     view.file = view.name + ".exr";
     view.photo = calibrated.photo;
     view.ldr = photo.ldr;
+    view.linear = photo.photo.stored_linear();
     view.view =
         ViewOf(calibration, calibrated, task.ambient, capture.work() / "calib" / "manifest.json");
     const Camera& camera = calibration.cameras[static_cast<size_t>(calibrated.camera)];

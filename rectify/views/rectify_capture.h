@@ -14,7 +14,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRectifyVersion = 13;
+inline constexpr int kRectifyVersion = 14;
 
 // Throws UserError when a photograph is not the one that calib saw, or not of its camera's size.
 void CheckPhotos(const Capture& capture, const Calibration& calibration,
