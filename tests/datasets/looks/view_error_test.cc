@@ -151,13 +151,16 @@ TEST_F(FittedMapsTest, EveryViewIsRecordedByTheCurveThatWasFound) {
   json.erase("toe");
   json.erase("shoulder");
   const FittedMaps old = ReadFittedMaps(WriteFit("refine", {{"shared_light", json}}));
-  for (const RectifiedView& view : set_.views) {
+  for (RectifiedView view : set_.views) {
+    view.ldr = true;
     const std::vector<float> straight = RenderFit(old, set_, view, 1);
     std::vector<float> expected = straight;
     Record({0.02, 0.2}, expected);
     const std::vector<float> recorded = RenderFit(fit, set_, view, 1);
     EXPECT_NE(recorded, straight);
     for (size_t i = 0; i < expected.size(); ++i) ASSERT_FLOAT_EQ(recorded[i], expected[i]);
+    view.linear = true;  // RAW of the same sample
+    EXPECT_EQ(RenderFit(fit, set_, view, 1), straight);
   }
 }
 

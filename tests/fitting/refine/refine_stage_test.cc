@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <optional>
+#include <utility>
 
 #include "base/formats/rectified_set.h"
 #include "base/formats/svbrdf_file.h"
@@ -39,7 +41,8 @@ struct OutOfFocus {
 
 void WriteCapture(const fs::path& folder, int views = 3,
                   const EnvironmentLighting& environment = {}, const SaidOfLights& said = {},
-                  const OutOfFocus& blurred = {}) {
+                  const OutOfFocus& blurred = {},
+                  const std::function<void(RectifiedSet* set)>& restate = {}) {
   test::WriteAll(folder / "capture.toml",
                  "[sample]\nsize_mm = [2, 2]\n[photos]\nfiles = [\"photos/*.png\"]\n");
   test::WriteAll(folder / "photos/0.png", "refine reads rectified views only");
@@ -83,6 +86,7 @@ void WriteCapture(const fs::path& folder, int views = 3,
       image.mask = scene.masks[i];
       WriteRectifiedImage(stage.Output(view.file), image, set, view);
     }
+    if (restate) restate(&set);
     stage.Commit(ToJson(set), Json::object());
   }
   Stage stage(folder / "glint/fit", {"fit", 1}, none, common, {});
@@ -186,6 +190,35 @@ TEST(RefineStage, EnvironmentLightingThatIsFoundStandsInTheManifest) {
   }
   const Vec3d irradiance = ReadEnvironmentLighting(file, manifest.data).PlaneIrradiance();
   for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(irradiance[c], c == 2 ? 0.38 : 0.31, 0.15);
+}
+
+// Toe and shoulder, of photographs restated so.
+std::pair<double, double> CurveFound(const std::function<void(RectifiedSet* set)>& restate) {
+  const test::TemporaryFolder folder;
+  WriteCapture(folder.path(), 3, {}, {}, {}, restate);
+  const test::Outcome outcome = Refine(folder.path());
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Manifest manifest = ReadManifest(folder.path() / "glint/refine/manifest.json", "refine");
+  const Json& light = manifest.data["shared_light"];
+  EXPECT_EQ(manifest.metrics["curve"]["toe"], light["toe"]);
+  return {light["toe"], light["shoulder"]};
+}
+
+TEST(RefineStage, OnlyPhotographsThatACameraEncodedHaveACurve) {
+  const auto [toe, shoulder] = CurveFound({});
+  EXPECT_NE(toe, 0);
+  EXPECT_NE(shoulder, 0);
+  // Of light of known power the bright part of the curve is known.
+  const auto calibrated = CurveFound([](RectifiedSet* set) { set->light_power_known = true; });
+  EXPECT_NE(calibrated.first, 0);
+  EXPECT_EQ(calibrated.second, 0);
+  const std::pair<double, double> straight{0, 0};
+  EXPECT_EQ(CurveFound([](RectifiedSet* set) { set->fixed_camera = true; }), straight);
+  EXPECT_EQ(CurveFound([](RectifiedSet* set) {
+              for (RectifiedView& view : set->views) view.linear = true;
+            }),
+            straight);
+  EXPECT_EQ(CurveFound([](RectifiedSet* set) { set->views[1].ldr = false; }), straight);
 }
 
 TEST(RefineStage, ThreadsDoNotChangeABytes) {
