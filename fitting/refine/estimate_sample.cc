@@ -247,7 +247,7 @@ void Estimator::Describe(std::span<const SampleTask> tasks, const SampleRequest&
     const int lane = static_cast<int>(i);
     SampledTexel& sampled = solved[i];
     sampled.views = observed.seen(lane);
-    sampled.of_views.clear();
+    sampled.of_views = {};
     if (sampled.views == 0) continue;
     if (of_views) sampled.of_views = OfViews(texels[i], lane, request.views, observed, *worker);
     TexelGram gram = worker->residuals.GramOf(lane, observed.views()), prior{};
@@ -302,8 +302,13 @@ std::vector<DeviationProducts> Estimator::OfViews(size_t texel, int lane,
     DeviationProducts& of =
         products.emplace_back(ProductsOf(worker.residuals, worker.nudged, unknown_, view, lane));
     of.view = views[k];
-    of.by_shared = ByShared(problem_.views[static_cast<size_t>(views[k])].view,
-                            shared_light_.distance_mm, x_mm, y_mm);
+    const DeviationsByShared by = ByShared(problem_.views[static_cast<size_t>(views[k])].view,
+                                           shared_light_.distance_mm, x_mm, y_mm);
+    for (size_t i = 0; i < by.size(); ++i) {
+      for (size_t j = 0; j < by[i].size(); ++j) {
+        of.by_shared[i][j] = static_cast<float>(by[i][j]);
+      }
+    }
   }
   return products;
 }

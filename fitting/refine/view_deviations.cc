@@ -165,10 +165,11 @@ DeviationProducts ProductsOf(const BatchResiduals& residuals,
                                                 {kSlopeX, at(Row::kBySlopeX)},
                                                 {kSlopeY, at(Row::kBySlopeY)}};
     for (size_t i = 0; i < kViewDeviations; ++i) {
-      for (size_t j = 0; j < kViewDeviations; ++j) of.squared[i][j] += by[i] * by[j];
-      of.by_residual[i] += by[i] * residual;
+      for (size_t j = 0; j < kViewDeviations; ++j)
+        of.squared[i][j] += static_cast<float>(by[i] * by[j]);
+      of.by_residual[i] += static_cast<float>(by[i] * residual);
       for (const auto& [value, by_value] : by_values) {
-        of.by_values[i][static_cast<size_t>(value)] += by[i] * by_value;
+        of.by_values[i][static_cast<size_t>(value)] += static_cast<float>(by[i] * by_value);
       }
     }
   }

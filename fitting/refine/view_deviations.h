@@ -29,13 +29,15 @@
 namespace glint {
 
 // Of one texel and one view that shows it: sums over channels of products of the residuals'
-// derivatives by the view's deviations.
+// derivatives by the view's deviations. In single precision, as the residuals are: there are 2,048
+// texels times the views of them.
 struct DeviationProducts {
+  using Row = std::array<float, kViewDeviations>;
   int view = 0;
-  DeviationsByShared by_shared{};
-  std::array<std::array<double, kViewDeviations>, kViewDeviations> squared{};
-  std::array<double, kViewDeviations> by_residual{};
-  std::array<std::array<double, kTexelParameters>, kViewDeviations> by_values{};
+  std::array<Row, kSharedLightValues> by_shared{};
+  std::array<Row, kViewDeviations> squared{};
+  Row by_residual{};
+  std::array<std::array<float, kTexelParameters>, kViewDeviations> by_values{};
 };
 
 using UnknownDeviations = std::array<bool, kViewDeviations>;
