@@ -33,7 +33,7 @@ struct RecordedRadiance {
 
 template <class T, class Scalar>
 inline RecordedRadiance<T> Recorded(const T& radiance, Scalar toe, Scalar shoulder) {
-  RecordedRadiance<T> of{radiance - toe, radiance - radiance + Scalar(1)};
+  RecordedRadiance<T> of{radiance - toe, T{} + Scalar(1)};
   if (toe > 0) {
     const T inverse = Scalar(1) / (radiance + toe);
     of.value = radiance * radiance * inverse;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -25,7 +26,8 @@ TEST(CharacteristicCurve, BrighterIsRecordedBrighter) {
       EXPECT_EQ(last, toe < 0
                           ? -toe * (1 + std::min(shoulder, 0.0)) * (shoulder > 0 ? 1 + shoulder : 1)
                           : 0);
-      for (double radiance = 1e-6; radiance < 1; radiance *= 1.1) {
+      for (int step = 0; step < 145; ++step) {
+        const double radiance = 1e-6 * std::pow(1.1, step);
         const double recorded = Recorded(radiance, toe, shoulder).value;
         ASSERT_GT(recorded, last) << toe << ' ' << shoulder << ' ' << radiance;
         last = recorded;

@@ -68,7 +68,7 @@ class FittedMapsTest : public testing::Test {
 
   // What fit would leave behind: maps and the scale of the light.
   fs::path WriteFit(const std::string& stage, const Json& data) {
-    const fs::path fit = folder_.path() / stage;
+    fs::path fit = folder_.path() / stage;
     fs::create_directories(fit);
     WriteSvbrdf(fit / "svbrdf.exr", material_.maps, set_.convention);
     Manifest manifest;
