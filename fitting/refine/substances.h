@@ -25,6 +25,13 @@ inline constexpr std::array<int, kShared> kSharedParameters = {
     SpecularParameter(0), SpecularParameter(1), SpecularParameter(2), kRough,
     DiffuseParameter(0),  DiffuseParameter(1),  DiffuseParameter(2)};
 using SharedValues = std::array<double, kShared>;
+inline SharedValues SharedOf(const TexelValues& values) {
+  SharedValues shared;
+  for (size_t p = 0; p < kShared; ++p) {
+    shared[p] = values[static_cast<size_t>(kSharedParameters[p])];
+  }
+  return shared;
+}
 using SharedCovariance = std::array<double, kShared * kShared>;  // row-major
 
 // What texels are told apart by.
