@@ -192,7 +192,6 @@ void Estimator::Run() {
   solver.reflect = [&](const SpecularLobes& lobes) {
     for (const auto& worker : workers_) worker->batches.SetLobes(lobes);
   };
-  unknown_ = model_.deviations().unknown();
   if (model_.deviations().any()) nudged_.assign(kViewDeviations, problem_);
   SetViews(model_.deviations());
   Weigh(model_.residuals().variance());
@@ -229,7 +228,8 @@ void Estimator::Describe(std::span<const SampleTask> tasks, const SampleRequest&
     texels.push_back(tasks[i].texel);
     values.push_back(solved[i].values);
   }
-  const bool of_views = request.of_views && !nudged_.empty();
+  const bool of_views = request.of_views && std::any_of(unknown_.begin(), unknown_.end(),
+                                                        [](bool unknown) { return unknown; });
   for (size_t i = 0; of_views && i < nudged_.size(); ++i) {
     if (!unknown_[i] || IsOfCurve(i)) continue;
     GatherObservations(nudged_[i], start_, texels, request.views, &worker->observed);
@@ -261,6 +261,7 @@ void Estimator::Describe(std::span<const SampleTask> tasks, const SampleRequest&
 
 // To the shared light as it is known, and single views' deviations beside it.
 void Estimator::SetViews(const ViewDeviations& deviations) {
+  unknown_ = deviations.unknown();
   shared_light_.values = deviations.shared();
   const auto set = [&](size_t v, const DeviationValues& deviation, RefineProblem* problem) {
     problem->views[v].view = Deviating(WithSharedLight(said_[v], shared_light_), deviation);

@@ -338,14 +338,18 @@ void SampleModel::Estimate(const SamplePart* other, const SampleSolver& solver, 
 
 void SampleModel::FitNormalsToo(Sampling* sampling) {
   sampling->solver->reflect(lobes_);
-  sampling->solver->deviate(deviations_);
   learns_normals_ = has_sample_priors_;
   // The curve moves once all else is near its place: what is wrong at first looks like one.
-  deviations_.HoldCurve(true);
+  HoldCurve(true, *sampling);
   Fit(sampling);
-  deviations_.HoldCurve(false);
+  HoldCurve(false, *sampling);
   if (deviations_.finds_curve()) Fit(sampling);
   learns_normals_ = false;
+}
+
+void SampleModel::HoldCurve(bool hold, const Sampling& sampling) {
+  deviations_.HoldCurve(hold);
+  sampling.solver->deviate(deviations_);
 }
 
 // All else once more by what cross-validation chose.
@@ -355,7 +359,7 @@ void SampleModel::FitAsChosen(Sampling* sampling) {
     // its departures are alike in neighbouring texels, and views would be moved to make them even.
     const double chosen = std::exchange(means_.diffuse_spread, kUnknownSpread);
     finds_views_ = true;
-    deviations_.HoldCurve(false);
+    HoldCurve(false, *sampling);
     Fit(sampling);
     FreezeViews(chosen, *sampling);
   }

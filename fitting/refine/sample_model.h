@@ -157,6 +157,7 @@ class SampleModel {
   // Fit with normals' scatter too, from what is believed before any round.
   void FitNormalsToo(Sampling* sampling);
   void FitAsChosen(Sampling* sampling);
+  void HoldCurve(bool hold, const Sampling& sampling);
   // By cross-validation, sample_spreads.cc.
   int Folds() const;
   // The texels' values by these views, from the prior's means and other starts on.

@@ -14,6 +14,9 @@ namespace {
 using constants::kLeastViewSd;
 using constants::kMostDeviationStep;
 
+// At −1 the curve would be level at black, and fall beyond it.
+constexpr double kLeastShoulder = -0.9;
+
 using TexelMatrix = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
 // A view's deviations, then its shading's gradient along x and y, then what all views share.
@@ -192,13 +195,20 @@ ViewDeviations::ViewDeviations(int views, const DeviationValues& expected,
 UnknownDeviations ViewDeviations::unknown() const {
   UnknownDeviations unknown{};
   for (size_t i = 0; i < kViewDeviations; ++i) unknown[i] = any_ && expected_[i] > 0;
+  const SharedLightValues expected = ExpectedOfShared();
   const DeviationsByShared by = ByShared({.light_in_sample_mm = {0, 0, 1}}, 2, 1, 1);
   for (size_t k = 0; k < kSharedLightValues; ++k) {
     for (size_t i = 0; i < kViewDeviations; ++i) {
-      unknown[i] = unknown[i] || (any_ && expected_shared_[k] > 0 && by[k][i] != 0);
+      unknown[i] = unknown[i] || (any_ && expected[k] > 0 && by[k][i] != 0);
     }
   }
   return unknown;
+}
+
+SharedLightValues ViewDeviations::ExpectedOfShared() const {
+  SharedLightValues expected = expected_shared_;
+  if (curve_held_) expected[kSharedToe] = expected[kSharedShoulder] = 0;
+  return expected;
 }
 
 bool ViewDeviations::finds_curve() const {
@@ -224,9 +234,7 @@ double ViewDeviations::CurveStep(size_t shared, double newton) {
 void ViewDeviations::Update(std::span<const TexelOfViews> texels, double information) {
   if (!any_) return;
   const int views = static_cast<int>(values_.size());
-  SharedLightValues free = expected_shared_;
-  if (curve_held_) free[kSharedToe] = free[kSharedShoulder] = 0;
-  const UnknownsOfViews unknowns(views, expected_, free);
+  const UnknownsOfViews unknowns(views, expected_, ExpectedOfShared());
   if (unknowns.size() == 0) return;
   ViewEquations equations(unknowns, texels);
   Eigen::MatrixXd& hessian = equations.hessian;
@@ -297,8 +305,7 @@ void ViewDeviations::Update(std::span<const TexelOfViews> texels, double informa
     const double newton = step[unknowns.at_shared(i)];
     shared_[k] += k == kSharedToe || k == kSharedShoulder ? CurveStep(k, newton) : bounded(newton);
   }
-  // Beyond it the curve would fall somewhere.
-  shared_[kSharedShoulder] = std::max(shared_[kSharedShoulder], -0.9);
+  shared_[kSharedShoulder] = std::max(shared_[kSharedShoulder], kLeastShoulder);
   UpdateSpreads(variances);
 }
 

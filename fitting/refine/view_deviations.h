@@ -72,7 +72,8 @@ class ViewDeviations {
                  const SharedLightValues& expected_shared, LampsExpected lamps = {});
 
   bool any() const { return any_; }
-  // What derivatives are wanted by: what is unknown of single views or of what all share.
+  // What derivatives are wanted by: what is unknown, and not held, of single views or of what all
+  // share.
   UnknownDeviations unknown() const;
   // Whether the photographs' curve is unknown, and moves.
   bool finds_curve() const;
@@ -87,6 +88,8 @@ class ViewDeviations {
  private:
   // The prior precision of all views' log exposures.
   Eigen::MatrixXd ExposurePrecision() const;
+  // Those of shared values that move.
+  SharedLightValues ExpectedOfShared() const;
   double CurveStep(size_t shared, double newton);
   void UpdateSpreads(const std::vector<DeviationValues>& variances);
 
