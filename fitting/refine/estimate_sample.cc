@@ -303,13 +303,9 @@ std::vector<DeviationProducts> Estimator::OfViews(size_t texel, int lane,
     DeviationProducts& of =
         products.emplace_back(ProductsOf(worker.residuals, worker.nudged, unknown_, view, lane));
     of.view = views[k];
-    const DeviationsByShared by = ByShared(problem_.views[static_cast<size_t>(views[k])].view,
-                                           shared_light_.distance_mm, x_mm, y_mm);
-    for (size_t i = 0; i < by.size(); ++i) {
-      for (size_t j = 0; j < by[i].size(); ++j) {
-        of.by_shared[i][j] = static_cast<float>(by[i][j]);
-      }
-    }
+    const SharedLightValues by = DeviationsByShared(
+        problem_.views[static_cast<size_t>(views[k])].view, shared_light_.distance_mm, x_mm, y_mm);
+    std::copy(by.begin(), by.end(), of.by_shared.begin());
   }
   return products;
 }

@@ -317,11 +317,12 @@ void SampleModel::UpdateDeviations(const Sampling& sampling) {
     TexelOfViews& texel = texels.emplace_back();
     texel.place = PlaceOf(part_->problem().plane, sampling.texels[i]);
     texel.slope = {solved.values[kSlopeX], solved.values[kSlopeY]};
-    texel.inverse = solved.inverse;
+    texel.inverse = solved.inverse.data();
     texel.products = &solved.of_views;
   }
   const double scale = residuals_.scale();
-  deviations_.Update(texels, WorthOf(sampling).shared_by_half_vector / (scale * scale));
+  deviations_.Update(texels, WorthOf(sampling).shared_by_half_vector / (scale * scale),
+                     sampling.threads);
   sampling.solver->deviate(deviations_);
 }
 

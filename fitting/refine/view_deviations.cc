@@ -7,6 +7,7 @@
 
 #include "base/model/solver.h"
 #include "base/model/uncalibrated_light.h"
+#include "base/parallel/parallel.h"
 
 namespace glint {
 namespace {
@@ -19,50 +20,25 @@ constexpr double kLeastShoulder = -0.9;
 
 using TexelMatrix = Eigen::Matrix<double, kTexelParameters, kTexelParameters>;
 
-// A view's deviations, then its shading's gradient along x and y, then what all views share.
+// A view's deviations, then its shading's gradient along x and y, then what all views share. Each
+// is some times one deviation of the view: shading is an exposure that depends on the place.
 constexpr int kOwnUnknowns = kViewDeviations + 2;
 constexpr int kUnknowns = kOwnUnknowns + kSharedLightValues;
-using UnknownsByTexel = Eigen::Matrix<double, kUnknowns, kTexelParameters>;
 
-struct OwnProducts {
-  int view = 0;
-  Eigen::Matrix<double, kUnknowns, kUnknowns> squared;
-  Eigen::Matrix<double, kUnknowns, 1> by_residual;
-  UnknownsByTexel by_values;
-};
-
-// Shading is an exposure that depends on the place; what views share are deviations of each.
-OwnProducts WithShading(const DeviationProducts& products, const std::array<double, 2>& place) {
-  Eigen::Matrix<double, kUnknowns, kViewDeviations> by =
-      Eigen::Matrix<double, kUnknowns, kViewDeviations>::Zero();
-  by.topRows<kViewDeviations>().setIdentity();
-  for (int axis = 0; axis < 2; ++axis) {
-    by(kViewDeviations + axis, kLogExposure) = place[static_cast<size_t>(axis)];
-  }
-  for (int i = 0; i < kSharedLightValues; ++i) {
-    for (int j = 0; j < kViewDeviations; ++j) {
-      by(kOwnUnknowns + i, j) = products.by_shared[static_cast<size_t>(i)][static_cast<size_t>(j)];
-    }
-  }
-  Eigen::Matrix<double, kViewDeviations, kViewDeviations> squared;
-  Eigen::Matrix<double, kViewDeviations, 1> by_residual;
-  Eigen::Matrix<double, kViewDeviations, kTexelParameters> by_values;
-  for (int i = 0; i < kViewDeviations; ++i) {
-    const auto p = static_cast<size_t>(i);
-    by_residual[i] = products.by_residual[p];
-    for (int j = 0; j < kViewDeviations; ++j) {
-      squared(i, j) = products.squared[p][static_cast<size_t>(j)];
-    }
-    for (int j = 0; j < kTexelParameters; ++j) {
-      by_values(i, j) = products.by_values[p][static_cast<size_t>(j)];
-    }
-  }
-  return {products.view, by * squared * by.transpose(), by * by_residual, by * by_values};
+size_t DeviationOf(int unknown) {
+  if (unknown < kViewDeviations) return static_cast<size_t>(unknown);
+  if (unknown < kOwnUnknowns) return kLogExposure;
+  return DeviationBy(static_cast<SharedLightValue>(unknown - kOwnUnknowns));
 }
 
 // Which of the unknowns are unknown, and where each stands among those of all views.
 class UnknownsOfViews {
  public:
+  struct Unknown {
+    int kind = 0;
+    size_t deviation = 0;
+  };
+
   UnknownsOfViews(int views, const DeviationValues& expected,
                   const SharedLightValues& expected_shared)
       : views_(views) {
@@ -74,42 +50,50 @@ class UnknownsOfViews {
     for (int i = 0; i < kSharedLightValues; ++i) {
       if (expected_shared[static_cast<size_t>(i)] > 0) shared_.push_back(i);
     }
+    for (const int i : own_) of_view_.push_back({i, DeviationOf(i)});
+    for (const int i : shared_) {
+      of_view_.push_back({kOwnUnknowns + i, DeviationOf(kOwnUnknowns + i)});
+    }
   }
 
   const std::vector<int>& own() const { return own_; }
   const std::vector<int>& shared() const { return shared_; }
+  // All that one view depends on: its own, then what is shared.
+  const std::vector<Unknown>& of_view() const { return of_view_; }
   Eigen::Index at(int view, size_t own) const {
     return static_cast<Eigen::Index>(own_.size()) * view + static_cast<Eigen::Index>(own);
   }
   Eigen::Index at_shared(size_t shared) const {
     return at(views_, 0) + static_cast<Eigen::Index>(shared);
   }
-  Eigen::Index size() const { return at_shared(shared_.size()); }
-  // f(index of the unknown in OwnProducts, its place among all).
-  template <class F>
-  void ForEachOf(int view, const F& f) const {
-    for (size_t i = 0; i < own_.size(); ++i) f(own_[i], at(view, i));
-    for (size_t i = 0; i < shared_.size(); ++i) f(kOwnUnknowns + shared_[i], at_shared(i));
+  // Of one in of_view().
+  Eigen::Index PlaceOf(int view, size_t i) const {
+    return i < own_.size() ? at(view, i) : at_shared(i - own_.size());
   }
+  Eigen::Index size() const { return at_shared(shared_.size()); }
 
  private:
   int views_;
   std::vector<int> own_, shared_;
+  std::vector<Unknown> of_view_;
 };
 
-// The views' normal equations, texels eliminated. Texels' products with all unknowns are gathered,
-// a block of texels at a time, for one product of matrices.
+// The views' normal equations, texels eliminated.
 struct ViewEquations {
-  Eigen::MatrixXd hessian;
+  Eigen::MatrixXd hessian;  // its lower triangle, until Complete()
   Eigen::VectorXd gradient;
   // The sample's mean slope, along x and y, and how it follows the views.
   Eigen::Vector2d mean_slope = Eigen::Vector2d::Zero();
   Eigen::MatrixXd mean_slope_by_views;
 
-  ViewEquations(const UnknownsOfViews& unknowns, std::span<const TexelOfViews> texels)
-      : hessian(Eigen::MatrixXd::Zero(unknowns.size(), unknowns.size())),
-        gradient(Eigen::VectorXd::Zero(unknowns.size())),
-        mean_slope_by_views(Eigen::MatrixXd::Zero(2, unknowns.size())) {
+  explicit ViewEquations(Eigen::Index unknowns)
+      : hessian(Eigen::MatrixXd::Zero(unknowns, unknowns)),
+        gradient(Eigen::VectorXd::Zero(unknowns)),
+        mean_slope_by_views(Eigen::MatrixXd::Zero(2, unknowns)) {}
+
+  // What some texels tell, each of which is a `share` of all. Texels' products with all unknowns
+  // are gathered, a block of texels at a time, for one product of matrices.
+  void Add(const UnknownsOfViews& unknowns, std::span<const TexelOfViews> texels, double share) {
     constexpr size_t kBlockOfTexels = 32;
     constexpr Eigen::Index kRows = kBlockOfTexels * kTexelParameters;
     Eigen::MatrixXd by_values(kRows, unknowns.size()), follows(kRows, unknowns.size());
@@ -121,31 +105,73 @@ struct ViewEquations {
         const Eigen::Index row = static_cast<Eigen::Index>(t) * kTexelParameters;
         const TexelOfViews& texel = texels[first + t];
         Add(unknowns, texel, row, &by_values);
-        const Eigen::Map<const TexelMatrix> inverse(texel.inverse.data());
+        const Eigen::Map<const TexelMatrix> inverse(texel.inverse);
         follows.middleRows<kTexelParameters>(row).noalias() =
             inverse * by_values.middleRows<kTexelParameters>(row);
-        const double share = 1.0 / static_cast<double>(texels.size());
         mean_slope += share * Eigen::Vector2d(texel.slope[0], texel.slope[1]);
         mean_slope_by_views -= share * follows.middleRows<2>(row + kSlopeX);
       }
-      hessian.noalias() -= by_values.transpose() * follows;
+      hessian.triangularView<Eigen::Lower>() -= by_values.transpose() * follows;
     }
   }
+
+  void operator+=(const ViewEquations& other) {
+    hessian += other.hessian;
+    gradient += other.gradient;
+    mean_slope += other.mean_slope;
+    mean_slope_by_views += other.mean_slope_by_views;
+  }
+
+  void Complete() { hessian.triangularView<Eigen::StrictlyUpper>() = hessian.transpose(); }
 
  private:
   void Add(const UnknownsOfViews& unknowns, const TexelOfViews& texel, Eigen::Index row,
            Eigen::MatrixXd* by_values) {
+    const auto& of_view = unknowns.of_view();
     for (const DeviationProducts& products : *texel.products) {
-      const OwnProducts own = WithShading(products, texel.place);
-      unknowns.ForEachOf(own.view, [&](int i, Eigen::Index at) {
-        gradient[at] -= own.by_residual[i];
-        by_values->block<kTexelParameters, 1>(row, at) += own.by_values.row(i).transpose();
-        unknowns.ForEachOf(
-            own.view, [&](int j, Eigen::Index other) { hessian(at, other) += own.squared(i, j); });
-      });
+      std::array<double, kUnknowns> by;
+      for (size_t i = 0; i < of_view.size(); ++i) by[i] = Times(of_view[i].kind, products, texel);
+      for (size_t i = 0; i < of_view.size(); ++i) {
+        const size_t own = of_view[i].deviation;
+        const Eigen::Index at = unknowns.PlaceOf(products.view, i);
+        gradient[at] -= by[i] * products.by_residual[own];
+        for (size_t k = 0; k < kTexelParameters; ++k) {
+          (*by_values)(row + static_cast<Eigen::Index>(k), at) +=
+              by[i] * products.by_values[own][k];
+        }
+        for (size_t j = 0; j <= i; ++j) {
+          hessian(at, unknowns.PlaceOf(products.view, j)) +=
+              by[i] * by[j] * products.squared[own][of_view[j].deviation];
+        }
+      }
     }
   }
+
+  // An unknown's part of its deviation.
+  static double Times(int unknown, const DeviationProducts& products, const TexelOfViews& texel) {
+    if (unknown < kViewDeviations) return 1;
+    if (unknown < kOwnUnknowns) return texel.place[static_cast<size_t>(unknown - kViewDeviations)];
+    return products.by_shared[static_cast<size_t>(unknown - kOwnUnknowns)];
+  }
 };
+
+// Pieces of texels, summed in their order.
+ViewEquations EquationsOf(const UnknownsOfViews& unknowns, std::span<const TexelOfViews> texels,
+                          int threads) {
+  constexpr size_t kPiece = 256;
+  const double share = 1.0 / static_cast<double>(texels.size());
+  const size_t pieces = (texels.size() + kPiece - 1) / kPiece;
+  std::vector<ViewEquations> of_pieces(pieces, ViewEquations(unknowns.size()));
+  ForEachPiece(static_cast<int>(pieces), threads, [&](int piece) {
+    const size_t first = kPiece * static_cast<size_t>(piece);
+    of_pieces[static_cast<size_t>(piece)].Add(
+        unknowns, texels.subspan(first, std::min(kPiece, texels.size() - first)), share);
+  });
+  ViewEquations sum(unknowns.size());
+  for (const ViewEquations& of_piece : of_pieces) sum += of_piece;
+  sum.Complete();
+  return sum;
+}
 
 }  // namespace
 
@@ -196,11 +222,9 @@ UnknownDeviations ViewDeviations::unknown() const {
   UnknownDeviations unknown{};
   for (size_t i = 0; i < kViewDeviations; ++i) unknown[i] = any_ && expected_[i] > 0;
   const SharedLightValues expected = ExpectedOfShared();
-  const DeviationsByShared by = ByShared({.light_in_sample_mm = {0, 0, 1}}, 2, 1, 1);
-  for (size_t k = 0; k < kSharedLightValues; ++k) {
-    for (size_t i = 0; i < kViewDeviations; ++i) {
-      unknown[i] = unknown[i] || (any_ && expected[k] > 0 && by[k][i] != 0);
-    }
+  for (int k = 0; k < kSharedLightValues; ++k) {
+    bool& one = unknown[DeviationBy(static_cast<SharedLightValue>(k))];
+    one = one || (any_ && expected[static_cast<size_t>(k)] > 0);
   }
   return unknown;
 }
@@ -231,12 +255,12 @@ double ViewDeviations::CurveStep(size_t shared, double newton) {
   return last;
 }
 
-void ViewDeviations::Update(std::span<const TexelOfViews> texels, double information) {
+void ViewDeviations::Update(std::span<const TexelOfViews> texels, double information, int threads) {
   if (!any_) return;
   const int views = static_cast<int>(values_.size());
   const UnknownsOfViews unknowns(views, expected_, ExpectedOfShared());
   if (unknowns.size() == 0) return;
-  ViewEquations equations(unknowns, texels);
+  ViewEquations equations = EquationsOf(unknowns, texels, threads);
   Eigen::MatrixXd& hessian = equations.hessian;
   Eigen::VectorXd& gradient = equations.gradient;
   hessian *= information;

@@ -34,7 +34,7 @@ namespace glint {
 struct DeviationProducts {
   using Row = std::array<float, kViewDeviations>;
   int view = 0;
-  std::array<Row, kSharedLightValues> by_shared{};
+  std::array<float, kSharedLightValues> by_shared{};  // DeviationsByShared()
   std::array<Row, kViewDeviations> squared{};
   Row by_residual{};
   std::array<std::array<float, kTexelParameters>, kViewDeviations> by_values{};
@@ -51,9 +51,9 @@ DeviationProducts ProductsOf(const BatchResiduals& residuals,
 
 // What one texel tells of the views.
 struct TexelOfViews {
-  std::array<double, 2> place{};  // on the sample, −1 … 1 along each axis
-  std::array<double, 2> slope{};  // of its normal, as solved
-  std::array<double, kTexelParameters * kTexelParameters> inverse{};  // (JᵀJ + prior)⁻¹
+  std::array<double, 2> place{};    // on the sample, −1 … 1 along each axis
+  std::array<double, 2> slope{};    // of its normal, as solved
+  const double* inverse = nullptr;  // (JᵀJ + prior)⁻¹, row-major
   const std::vector<DeviationProducts>* products = nullptr;
 };
 
@@ -78,8 +78,9 @@ class ViewDeviations {
   // Whether the photographs' curve is unknown, and moves.
   bool finds_curve() const;
   void HoldCurve(bool hold);  // or let it go, as if for the first time
-  // One step. `information`: what a squared residual of these texels is worth, 1 / variance.
-  void Update(std::span<const TexelOfViews> texels, double information);
+  // One step. `information`: what a squared residual of these texels is worth, 1 / variance. The
+  // same for any number of threads.
+  void Update(std::span<const TexelOfViews> texels, double information, int threads);
 
   const std::vector<DeviationValues>& values() const { return values_; }
   const SharedLightValues& shared() const { return shared_; }

@@ -30,15 +30,16 @@ View WithSharedLight(const View& said, const SharedLight& shared) {
   return view;
 }
 
-DeviationsByShared ByShared(const View& view, double distance_mm, double x_mm, double y_mm) {
+SharedLightValues DeviationsByShared(const View& view, double distance_mm, double x_mm,
+                                     double y_mm) {
   const Vec3d& light = view.light_in_sample_mm;
   const double own_distance_mm = Distance_mm(view);
-  DeviationsByShared by{};
-  by[kOffsetX][kLightAcrossX] = by[kOffsetY][kLightAcrossY] = distance_mm / own_distance_mm;
-  by[kBeamX][kLogExposure] = (x_mm - light[0]) / light[2];
-  by[kBeamY][kLogExposure] = (y_mm - light[1]) / light[2];
-  by[kDistancePower][kLogExposure] = std::log(own_distance_mm / distance_mm);
-  by[kSharedToe][kToe] = by[kSharedShoulder][kShoulder] = 1;
+  SharedLightValues by{};
+  by[kOffsetX] = by[kOffsetY] = distance_mm / own_distance_mm;
+  by[kBeamX] = (x_mm - light[0]) / light[2];
+  by[kBeamY] = (y_mm - light[1]) / light[2];
+  by[kDistancePower] = std::log(own_distance_mm / distance_mm);
+  by[kSharedToe] = by[kSharedShoulder] = 1;
   return by;
 }
 

@@ -36,9 +36,25 @@ double MeanLightDistance_mm(std::span<const View> views);
 
 View WithSharedLight(const View& said, const SharedLight& shared);
 
-// What the shared values do to one view at one place, as deviations of its own (deviating_view.h):
-// derivatives [shared value][deviation], the light where `view` has it.
-using DeviationsByShared = std::array<DeviationValues, kSharedLightValues>;
-DeviationsByShared ByShared(const View& view, double distance_mm, double x_mm, double y_mm);
+// The deviation of a single view (deviating_view.h) that a shared value shows itself as.
+constexpr ViewDeviation DeviationBy(SharedLightValue value) {
+  switch (value) {
+    case kOffsetX:
+      return kLightAcrossX;
+    case kOffsetY:
+      return kLightAcrossY;
+    case kSharedToe:
+      return kToe;
+    case kSharedShoulder:
+      return kShoulder;
+    default:
+      return kLogExposure;
+  }
+}
+
+// By how much that one deviates per unit of each shared value in one view at one place, the light
+// where `view` has it.
+SharedLightValues DeviationsByShared(const View& view, double distance_mm, double x_mm,
+                                     double y_mm);
 
 }  // namespace glint
