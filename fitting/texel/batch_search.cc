@@ -138,10 +138,13 @@ BatchSearch::BatchSearch(const KernelOptions& options, int most_iterations, int 
   solve_.most_iterations = most_iterations;
 }
 
+void BatchSearch::SetWorth(double squares) {
+  solve_.squares_tolerance = std::max(static_cast<float>(squares), constants::kSquaresTolerance);
+}
+
 void BatchSearch::SetNoise(double residual_sigma) {
   SetExplained(residual_sigma);
-  solve_.squares_tolerance =
-      std::max(static_cast<float>(constants::kWorthStep * variance_), constants::kSquaresTolerance);
+  SetWorth(constants::kWorthStep * variance_);
 }
 
 int BatchSearch::Batch::FreeLane() const { return std::countr_one(taken); }
