@@ -1,22 +1,14 @@
 #include "fitting/refine/held_out_errors.h"
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/model/solver.h"
 
 namespace glint {
 namespace {
 
-double SquaredDifferences(const std::vector<double>& a, double sum_a, const std::vector<double>& b,
-                          double sum_b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    const double difference = a[i] / sum_a - b[i] / sum_b;
-    sum += difference * difference;
-  }
-  return sum;
-}
+double Squared(double x) { return x * x; }
 
 // Charbonnier's root, of which g² = 2e²/(1 + root).
 double RootOf(double difference, double robust_scale) {
@@ -63,20 +55,39 @@ std::vector<double> SquaresOf(std::span<const ViewDifferences> texels, double ro
 }
 
 void HeldOutErrors::Add(size_t place, double squares) {
-  by_fold_.back() += squares;
-  by_place_[place] += squares;
+  folds_.back().sum += squares;
+  folds_.back().by_place[place] += squares;
 }
 
-double HeldOutErrors::sum() const { return std::accumulate(by_fold_.begin(), by_fold_.end(), 0.0); }
+double HeldOutErrors::SumOf(size_t folds) const {
+  double sum = 0;
+  for (size_t f = 0; f < folds; ++f) sum += folds_[f].sum;
+  return sum;
+}
+
+std::vector<double> HeldOutErrors::ByPlace(size_t folds) const {
+  std::vector<double> sums(places_, 0.0);
+  for (size_t f = 0; f < folds; ++f) {
+    for (size_t place = 0; place < places_; ++place) sums[place] += folds_[f].by_place[place];
+  }
+  return sums;
+}
 
 double HeldOutErrors::EnergyAgainst(const HeldOutErrors& other) const {
-  const double here = sum(), there = other.sum();
+  const size_t both = std::min(folds(), other.folds());
+  const double here = SumOf(both), there = other.SumOf(both);
   // Nothing is seen of the views held out.
   if (!(here > 0) || !(there > 0)) return 0;
   const double logarithm = std::log(here / there);
   if (logarithm == 0) return 0;
-  const double variance = SquaredDifferences(by_fold_, here, other.by_fold_, there) +
-                          SquaredDifferences(by_place_, here, other.by_place_, there);
+  double variance = 0;
+  for (size_t f = 0; f < both; ++f) {
+    variance += Squared(folds_[f].sum / here - other.folds_[f].sum / there);
+  }
+  const std::vector<double> by_place = ByPlace(both), others = other.ByPlace(both);
+  for (size_t place = 0; place < places_; ++place) {
+    variance += Squared(by_place[place] / here - others[place] / there);
+  }
   return std::copysign(2 * logarithm * logarithm / variance, logarithm);
 }
 

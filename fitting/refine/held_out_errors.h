@@ -34,19 +34,29 @@ std::vector<double> SquaresOf(std::span<const ViewDifferences> texels, double ro
 // Sums of squared residuals g². Two that are compared have the same folds and places.
 class HeldOutErrors {
  public:
-  explicit HeldOutErrors(size_t places) : by_place_(places, 0.0) {}
+  explicit HeldOutErrors(size_t places) : places_(places) {}
 
-  void BeginFold() { by_fold_.push_back(0.0); }
+  void BeginFold() { folds_.push_back({0.0, std::vector<double>(places_)}); }
   // Of the fold begun last.
   void Add(size_t place, double squares);
 
-  double sum() const;
+  size_t folds() const { return folds_.size(); }
+  double sum() const { return SumOf(folds()); }
   // The negative logarithm of how probable this is when `other` is one; below 0 where this is the
-  // better one, 0 where nothing tells them apart.
+  // better one, 0 where nothing tells them apart. By the folds that both have, from the first on.
   double EnergyAgainst(const HeldOutErrors& other) const;
 
  private:
-  std::vector<double> by_fold_, by_place_;
+  struct Fold {
+    double sum = 0;
+    std::vector<double> by_place;
+  };
+  // Of the first `folds`.
+  double SumOf(size_t folds) const;
+  std::vector<double> ByPlace(size_t folds) const;
+
+  size_t places_;
+  std::vector<Fold> folds_;
 };
 
 }  // namespace glint

@@ -160,6 +160,8 @@ class SampleModel {
   void HoldCurve(bool hold, const Sampling& sampling);
   // By cross-validation, sample_spreads.cc.
   int Folds() const;
+  int HalfOfFolds() const { return (Folds() + 1) / 2; }
+  int FoldAt(int place) const;  // in the order in which they are predicted
   // The texels' values by these views, from the prior's means and other starts on.
   std::vector<TexelValues> Search(std::span<const int> views, Sampling* part) const;
   // How wrong what is found of the sampled texels without the views of that fold predicts those: g²
@@ -171,7 +173,12 @@ class SampleModel {
   // the first of them, which those of the others are near to; with other lobes they need not be.
   // Empty to begin with.
   using FoldStarts = std::vector<std::vector<TexelValues>>;
-  HeldOutErrors CrossValidate(const Sampling& sampling, FoldStarts* starts) const;
+  // HeldOutSquaresOf() each of some folds.
+  std::vector<std::vector<double>> HeldOutSquaresOfFolds(const Sampling& sampling, int first_fold,
+                                                         int folds, FoldStarts* starts) const;
+  // `give_up` is asked when half of the folds are known.
+  HeldOutErrors CrossValidate(const Sampling& sampling, const GiveUp& give_up,
+                              FoldStarts* starts) const;
   HeldOutErrors CrossValidate(const Sampling& sampling) const;
   SampleModel ScaledBy(const SpreadFactors& factors) const;
   // From factors of these powers on; returns those that predict best, and takes their mean.

@@ -149,27 +149,52 @@ std::vector<double> SampleModel::HeldOutSquaresOf(int fold, std::vector<TexelVal
 
 HeldOutErrors SampleModel::CrossValidate(const Sampling& sampling) const {
   FoldStarts starts;
-  return CrossValidate(sampling, &starts);
+  return CrossValidate(sampling, {}, &starts);
 }
 
-// Folds are what threads share out, and the texels of each where threads are more.
-HeldOutErrors SampleModel::CrossValidate(const Sampling& sampling, FoldStarts* starts) const {
+// Every other fold first: views stand in the order of their places, and half of the folds are to be
+// of views all around.
+int SampleModel::FoldAt(int place) const {
+  const int half = HalfOfFolds();
+  return place < half ? 2 * place : 2 * (place - half) + 1;
+}
+
+// As many folds at a time as there are threads, and those left over by all threads.
+std::vector<std::vector<double>> SampleModel::HeldOutSquaresOfFolds(const Sampling& sampling,
+                                                                    int first_fold, int folds,
+                                                                    FoldStarts* starts) const {
+  std::vector<std::vector<double>> squares(static_cast<size_t>(folds));
+  const auto validate = [&](int first, int count) {
+    const int threads_of_fold = std::max(1, sampling.threads / count);
+    ForEachPieceByWorker(count, std::min(sampling.threads, count), [&](int piece, int worker) {
+      const int fold = FoldAt(first_fold + first + piece);
+      Sampling part = sampling;
+      part.threads = threads_of_fold;
+      part.first_worker = worker * threads_of_fold;
+      squares[static_cast<size_t>(first + piece)] =
+          HeldOutSquaresOf(fold, &(*starts)[static_cast<size_t>(fold)], &part);
+    });
+  };
+  const int left_over = folds % sampling.threads;
+  if (folds > left_over) validate(0, folds - left_over);
+  if (left_over > 0) validate(folds - left_over, left_over);
+  return squares;
+}
+
+HeldOutErrors SampleModel::CrossValidate(const Sampling& sampling, const GiveUp& give_up,
+                                         FoldStarts* starts) const {
   sampling.solver->reflect(lobes_);
   starts->resize(static_cast<size_t>(Folds()));
-  std::vector<std::vector<double>> squares(static_cast<size_t>(Folds()));
-  const int threads_of_fold = std::max(1, sampling.threads / Folds());
-  ForEachPieceByWorker(Folds(), std::min(sampling.threads, Folds()), [&](int fold, int worker) {
-    Sampling part = sampling;
-    part.threads = threads_of_fold;
-    part.first_worker = worker * threads_of_fold;
-    squares[static_cast<size_t>(fold)] =
-        HeldOutSquaresOf(fold, &(*starts)[static_cast<size_t>(fold)], &part);
-  });
   HeldOutErrors errors(sampling.place_count);
-  for (const std::vector<double>& of_fold : squares) {
-    errors.BeginFold();
-    for (size_t k = 0; k < of_fold.size(); ++k) errors.Add(sampling.places[k], of_fold[k]);
-  }
+  const auto add = [&](int first, int folds) {
+    for (const auto& of_fold : HeldOutSquaresOfFolds(sampling, first, folds, starts)) {
+      errors.BeginFold();
+      for (size_t k = 0; k < of_fold.size(); ++k) errors.Add(sampling.places[k], of_fold[k]);
+    }
+  };
+  const int first = give_up ? HalfOfFolds() : Folds();
+  add(0, first);
+  if (first < Folds() && !give_up(errors)) add(first, Folds() - first);
   return errors;
 }
 
@@ -187,10 +212,10 @@ SampleModel SampleModel::ScaledBy(const SpreadFactors& factors) const {
 SpreadPowers SampleModel::ChooseSpreads(const Sampling& sampling, const SpreadPowers& from) {
   FoldStarts starts;
   const auto tried = SearchSpreads(
-      [&](const SpreadPowers& powers) {
+      [&](const SpreadPowers& powers, const GiveUp& give_up) {
         SpreadFactors factors;
         for (size_t i = 0; i < kSpreadKinds; ++i) factors[i] = std::exp2(powers[i]);
-        return ScaledBy(factors).CrossValidate(sampling, &starts);
+        return ScaledBy(factors).CrossValidate(sampling, give_up, &starts);
       },
       from);
   *this = ScaledBy(ProbableFactors(tried));

@@ -40,8 +40,10 @@ SpreadPowers Moved(SpreadPowers powers, const SpreadPowers& direction, int sign)
 
 class Search {
  public:
-  Search(const std::function<HeldOutErrors(const SpreadPowers&)>& predict, const SpreadPowers& from)
-      : predict_(predict), at_(from) {}
+  Search(const PredictBySpreads& predict, const SpreadPowers& from)
+      : predict_(predict), at_(from), best_(predict(from, {})) {
+    known_.emplace(from, best_);
+  }
 
   // As far along a direction as others are better, one way or the other; false: nowhere.
   bool Descend(const SpreadPowers& direction) {
@@ -70,15 +72,25 @@ class Search {
   const std::vector<TriedSpreads>& around() const { return around_; }
 
  private:
-  const HeldOutErrors& At(const SpreadPowers& powers) {
-    auto known = known_.find(powers);
-    if (known == known_.end()) known = known_.emplace(powers, predict_(powers)).first;
-    return known->second;
-  }
-
-  // Against the best as it is.
+  // Against the best as it is. One that was given up against another is finished where it is better
+  // than this one.
   double EnergyAt(const SpreadPowers& powers) {
-    return At(powers).EnergyAgainst(At(at_)) + PriorEnergy(powers) - PriorEnergy(at_);
+    const double prior = PriorEnergy(powers) - PriorEnergy(at_);
+    const auto energy = [&](const HeldOutErrors& errors) {
+      return errors.EnergyAgainst(best_) + prior;
+    };
+    auto known = known_.find(powers);
+    if (known == known_.end()) {
+      known = known_
+                  .emplace(powers, predict_(powers,
+                                            [&](const HeldOutErrors& first) {
+                                              return energy(first) > constants::kImprobable;
+                                            }))
+                  .first;
+    } else if (known->second.folds() < best_.folds() && energy(known->second) < 0) {
+      known->second = predict_(powers, {});
+    }
+    return energy(known->second);
   }
 
   // Never back to one that something was better than: a may be better than b, b than c and c than
@@ -87,6 +99,7 @@ class Search {
     if (left_.contains(next) || !(EnergyAt(next) < 0)) return false;
     left_.insert(at_);
     at_ = next;
+    best_ = known_.at(next);
     return true;
   }
 
@@ -98,10 +111,11 @@ class Search {
     }
   }
 
-  const std::function<HeldOutErrors(const SpreadPowers&)>& predict_;
+  const PredictBySpreads& predict_;
   std::map<SpreadPowers, HeldOutErrors> known_;
   std::set<SpreadPowers> left_;
   SpreadPowers at_;
+  HeldOutErrors best_;  // of at_
   std::vector<TriedSpreads> around_;
 };
 
@@ -119,9 +133,7 @@ std::vector<double> Probabilities(const std::vector<double>& energies) {
 
 }  // namespace
 
-std::vector<TriedSpreads> SearchSpreads(
-    const std::function<HeldOutErrors(const SpreadPowers& powers)>& predict,
-    const SpreadPowers& from) {
+std::vector<TriedSpreads> SearchSpreads(const PredictBySpreads& predict, const SpreadPowers& from) {
   Search search(predict, from);
   for (bool moved = true; moved;) {
     moved = false;

@@ -25,6 +25,11 @@ enum SpreadKind : size_t {
 using SpreadPowers = std::array<int, kSpreadKinds>;  // log₂ of the factors
 using SpreadFactors = std::array<double, kSpreadKinds>;
 
+// Whether the first folds of a prediction tell enough of it: it need not be finished.
+using GiveUp = std::function<bool(const HeldOutErrors& first_folds)>;
+using PredictBySpreads =
+    std::function<HeldOutErrors(const SpreadPowers& powers, const GiveUp& give_up)>;
+
 struct TriedSpreads {
   SpreadPowers powers;
   double energy;  // against the best: negative logarithm of how probable they are
@@ -34,11 +39,11 @@ struct TriedSpreads {
 // albedo together, normals, specular albedo alone, diffuse albedo, the initial maps' errors,
 // neighbours, and neighbours against roughness and specular albedo; then again until nothing is
 // better. Returns the best first, then along the axes through it all that is not
-// improbable; the way to it, which rounding decides, is not told. The initialisation is expected to
-// err by as much as is said, within a factor of two.
-std::vector<TriedSpreads> SearchSpreads(
-    const std::function<HeldOutErrors(const SpreadPowers& powers)>& predict,
-    const SpreadPowers& from = {});
+// improbable; the way to it, which rounding decides, is not told. What is improbable by its first
+// folds is given up. The initialisation is expected to err by as much as is said, within a factor
+// of two.
+std::vector<TriedSpreads> SearchSpreads(const PredictBySpreads& predict,
+                                        const SpreadPowers& from = {});
 
 // Of each kind the mean along the axis through the best, by how probable each factor is: what
 // predicts nearly as well as the best is nearly as probable. `tried`: of SearchSpreads().

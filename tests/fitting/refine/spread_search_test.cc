@@ -59,12 +59,13 @@ TEST(SpreadSearch, FindsSpreadsThatStandInForEachOther) {
   const auto error = [&](const SpreadPowers& p) { return Bowl(p, lowest, 0.08); };
   ASSERT_LT(error({-1, -2, 1, 0, 0}), error({0, -1, 1, 0, 0}));
   Places at(kMany);
-  EXPECT_EQ(Best(SearchSpreads([&](const SpreadPowers& p) { return at(error(p)); })), lowest);
+  EXPECT_EQ(Best(SearchSpreads([&](const SpreadPowers& p, const GiveUp&) { return at(error(p)); })),
+            lowest);
 }
 
 TEST(SpreadSearch, SpecularAlbedosSpreadReachesFurtherDownThanRoughnesss) {
   Places at(kMany);
-  const SpreadPowers best = Best(SearchSpreads([&](const SpreadPowers& p) {
+  const SpreadPowers best = Best(SearchSpreads([&](const SpreadPowers& p, const GiveUp&) {
     return at(Bowl(p, {-9, -9, -2, 0, 0}, 0));
   }));
   EXPECT_LT(best[kSpecularSpread], best[kRoughnessSpread]);
@@ -76,7 +77,7 @@ bool OutOfRange(const SpreadPowers& powers) { return powers[kInitialisationError
 TEST(SpreadSearch, TriesEachOnceAndTheBestOnesNeighbours) {
   std::set<SpreadPowers> asked;
   Places at(kMany);
-  const SpreadPowers best = Best(SearchSpreads([&](const SpreadPowers& powers) {
+  const SpreadPowers best = Best(SearchSpreads([&](const SpreadPowers& powers, const GiveUp&) {
     EXPECT_TRUE(asked.insert(powers).second);
     return at(Bowl(powers, {-1, 0, 0, 0, 0}));
   }));
@@ -95,7 +96,7 @@ TEST(SpreadSearch, TriesEachOnceAndTheBestOnesNeighbours) {
 TEST(SpreadSearch, EndsWhereErrorsFallForEver) {
   int tried = 0;
   Places at(kMany);
-  const SpreadPowers best = Best(SearchSpreads([&](const SpreadPowers& powers) {
+  const SpreadPowers best = Best(SearchSpreads([&](const SpreadPowers& powers, const GiveUp&) {
     ++tried;
     return at(1.0 / (1 + std::exp2(powers[0]) + std::exp2(-powers[3]) + std::exp2(powers[4])));
   }));
@@ -110,7 +111,7 @@ TEST(SpreadSearch, EndsWhereErrorsFallForEver) {
 TEST(SpreadSearch, TheInitialisationErrsAsIsSaidWherePhotographsDoNotTell) {
   const auto factor = [](size_t places) {
     Places at(places);
-    return ProbableFactors(SearchSpreads([&](const SpreadPowers& p) {
+    return ProbableFactors(SearchSpreads([&](const SpreadPowers& p, const GiveUp&) {
       return at(1 - 0.002 * p[kInitialisationError]);
     }))[kInitialisationError];
   };
@@ -128,9 +129,37 @@ TEST(SpreadSearch, TheInitialisationErrsAsIsSaidWherePhotographsDoNotTell) {
 // All photographs held out are masked: nothing is told apart, and nothing is not a number.
 TEST(SpreadSearch, WhereNothingIsPredictedAllAreAsLikely) {
   Places at(10);
-  const auto tried = SearchSpreads([&](const SpreadPowers&) { return at(0); });
+  const auto tried = SearchSpreads([&](const SpreadPowers&, const GiveUp&) { return at(0); });
   const SpreadFactors factors = ProbableFactors(tried);
   EXPECT_NEAR(factors[kRoughnessSpread], (0.25 + 0.5 + 1 + 2 + 4) / 5, 1e-12);
+}
+
+// The same are found as when all are finished, and most of what lies far off is not finished.
+TEST(SpreadSearch, WhatIsImprobableByItsFirstFoldsIsGivenUp) {
+  const SpreadPowers lowest = {-1, -3, 0, -2, 0};
+  const auto search = [&](bool by_first_folds, int* given_up) {
+    return SearchSpreads([&](const SpreadPowers& powers, const GiveUp& give_up) {
+      HeldOutErrors errors(4);
+      for (int fold = 0; fold < 4; ++fold) {
+        errors.BeginFold();
+        // Places err by what is small beside what spreads do.
+        for (size_t place = 0; place < 4; ++place) {
+          errors.Add(place, Bowl(powers, lowest, 0.08) + 0.01 * (fold == int(place)) * powers[0]);
+        }
+        if (fold != 1 || !by_first_folds || !give_up || !give_up(errors)) continue;
+        ++*given_up;
+        break;
+      }
+      return errors;
+    });
+  };
+  int given_up = 0;
+  const auto all = search(false, &given_up), some = search(true, &given_up);
+  EXPECT_EQ(Best(some), lowest);
+  EXPECT_EQ(Best(all), lowest);
+  EXPECT_GE(given_up, 10);
+  const SpreadFactors of_all = ProbableFactors(all), of_some = ProbableFactors(some);
+  for (size_t i = 0; i < kSpreadKinds; ++i) EXPECT_NEAR(of_some[i], of_all[i], 0.05) << i;
 }
 
 TEST(SpreadSearch, OneThatPredictsFarBetterIsTaken) {
@@ -143,7 +172,7 @@ TEST(SpreadSearch, OneThatPredictsFarBetterIsTaken) {
 // Which way is taken to the best rounding decides, and it must not decide what is taken.
 TEST(SpreadSearch, OnlyWhatLiesAroundTheBestCounts) {
   Places at(kMany);
-  const auto tried = SearchSpreads([&](const SpreadPowers& p) {
+  const auto tried = SearchSpreads([&](const SpreadPowers& p, const GiveUp&) {
     return at(Bowl(p, {-1, -3, 0, -2, 0}, 0.08));
   });
   for (const TriedSpreads& one : tried) {
@@ -156,7 +185,7 @@ TEST(SpreadSearch, OnlyWhatLiesAroundTheBestCounts) {
 TEST(SpreadSearch, AllThatMayBeProbableIsTried) {
   const auto farthest = [](size_t places) {
     Places at(places);
-    const auto tried = SearchSpreads([&](const SpreadPowers& p) {
+    const auto tried = SearchSpreads([&](const SpreadPowers& p, const GiveUp&) {
       return at(1 + 0.1 * Bowl(p, {0, 0, 0, -3, 0}, 0));
     });
     int most = 0;
@@ -225,6 +254,14 @@ TEST(HeldOutErrors, TheWorseHasTheEnergyTheBetterLacks) {
 }
 
 // The same sums: 12 against 9.
+TEST(HeldOutErrors, AreComparedByTheFoldsThatBothHave) {
+  const HeldOutErrors half = ErrorsOf({{1, 2, 3}, {2, 2, 1}});
+  const HeldOutErrors other_half = ErrorsOf({{1, 1, 3}, {2, 1, 1}});
+  const HeldOutErrors whole = ErrorsOf({{1, 1, 3}, {2, 1, 1}, {9, 9, 9}});
+  EXPECT_EQ(half.EnergyAgainst(whole), half.EnergyAgainst(other_half));
+  EXPECT_EQ(whole.EnergyAgainst(half), other_half.EnergyAgainst(half));
+}
+
 TEST(HeldOutErrors, WhatAllPlacesAndPhotographsSayIsSurerThanWhatOneSays) {
   const HeldOutErrors best = ErrorsOf({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}});
   const double all =
