@@ -13,7 +13,7 @@ inline constexpr int kSolveIterations = 40;
 inline constexpr int kStarts = 2;
 inline constexpr int kNeighbourPasses = 2;
 inline constexpr float kSquaresTolerance = 1e-9f;
-inline constexpr double kWorthStep = 0.005, kWorthEstimateStep = 0.0005;
+inline constexpr double kWorthStep = 0.005;
 inline constexpr double kExplained = 1.5;
 inline constexpr double kWorthwhile = 0.98;
 inline constexpr std::array<double, 8> kTriedRoughnesses = {0.07, 0.10, 0.14, 0.20,
@@ -86,11 +86,8 @@ inline constexpr ModelConstant kSolverRows[] = {
     Row("kOtherRoughness, kLeastShadingRcond", {kOtherRoughness, kLeastShadingRcond},
         "log; condition",
         "of a neighbour's roughness, and of lights that tell a normal, to be tried"),
-    Row("kSquaresTolerance, kWorthStep, kWorthEstimateStep",
-        {kSquaresTolerance, kWorthStep, kWorthEstimateStep}, "log²; σ²; σ²",
-        "promised gain below which a solve ends: the larger; the last while the sample is "
-        "estimated",
-        "estimate with 0.005: contrast .75 (.76), SSIM .711 (.715); with less the same maps"),
+    Row("kSquaresTolerance, kWorthStep", {kSquaresTolerance, kWorthStep}, "log²; σ²",
+        "promised gain below which a solve ends: the larger"),
     Row("kFarDamping, kNearDamping", {kFarDamping, kNearDamping}, "of the diagonal",
         "of the first step, far from a minimum and next to one"),
     Row("kStepTolerance, kExactCost, kSquaresRounding",

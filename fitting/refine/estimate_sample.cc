@@ -142,8 +142,7 @@ class Estimator {
                                          const RefineWorker& worker) const;
 
   RefineProblem problem_;         // views as they deviate
-  double residual_variance_ = 0;  // as it is known
-  double weighed_variance_ = 0;   // the one by which views are weighed
+  double weighed_variance_ = 0;   // of residuals, by which they are weighed
   const std::vector<View> said_;  // those, with lights where they are said to be
   // The problem with one deviation of every view a step further, where they are looked for.
   std::vector<RefineProblem> nudged_;
@@ -204,7 +203,6 @@ void Estimator::Solve(std::span<const SampleTask> tasks, const SampleRequest& re
   using From = BatchSearch::From;
   BatchSearch& batches = worker->batches;
   batches.SetExplained(request.explained_sigma);
-  batches.SetWorth(constants::kWorthEstimateStep * residual_variance_);
   batches.Begin(
       request.near_minimum ? From::kNearMinimum : From::kStart,
       [&](std::span<const size_t> ids, BatchObservations* buffer) {
@@ -281,7 +279,6 @@ void Estimator::SetViews(const ViewDeviations& deviations) {
 }
 
 void Estimator::Weigh(double residual_variance) {
-  residual_variance_ = residual_variance;
   const bool alike = std::all_of(problem_.views.begin(), problem_.views.end(),
                                  [](const RefineView& view) { return view.hidden_variance == 0; });
   if (alike || residual_variance == weighed_variance_) return;

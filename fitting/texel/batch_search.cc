@@ -138,13 +138,10 @@ BatchSearch::BatchSearch(const KernelOptions& options, int most_iterations, int 
   solve_.most_iterations = most_iterations;
 }
 
-void BatchSearch::SetWorth(double squares) {
-  solve_.squares_tolerance = std::max(static_cast<float>(squares), constants::kSquaresTolerance);
-}
-
 void BatchSearch::SetNoise(double residual_sigma) {
   SetExplained(residual_sigma);
-  SetWorth(constants::kWorthStep * variance_);
+  solve_.squares_tolerance =
+      std::max(static_cast<float>(constants::kWorthStep * variance_), constants::kSquaresTolerance);
 }
 
 int BatchSearch::Batch::FreeLane() const { return std::countr_one(taken); }

@@ -83,9 +83,7 @@ class BatchSearch {
 
   // Texels whose residuals are no larger are not searched further; 0 to begin with.
   void SetExplained(double residual_sigma) { variance_ = residual_sigma * residual_sigma; }
-  // Solves end when they gain less than this of the sum of squares.
-  void SetWorth(double squares);
-  // SetExplained(), and SetWorth() of a small part of such a residual's square.
+  // The same, and solves end when they gain a small part of such a residual's square.
   void SetNoise(double residual_sigma);
 
   void SetLobes(const SpecularLobes& lobes) { evaluator_.SetLobes(lobes); }
