@@ -40,9 +40,13 @@ SpreadPowers Moved(SpreadPowers powers, const SpreadPowers& direction, int sign)
 
 class Search {
  public:
+  // The first that are predicted are those that Descend() tries first: texels of all others begin
+  // where these have theirs, and narrow spreads leave them nearer to their substances.
   Search(const PredictBySpreads& predict, const SpreadPowers& from)
-      : predict_(predict), at_(from), best_(predict(from, {})) {
-    known_.emplace(from, best_);
+      : predict_(predict), at_(from), best_(0) {
+    const SpreadPowers narrower = Moved(from, kDirections.front(), -1);
+    if (InRange(narrower)) known_.emplace(narrower, predict(narrower, {}));
+    best_ = known_.emplace(from, predict(from, {})).first->second;
   }
 
   // As far along a direction as others are better, one way or the other; false: nowhere.
@@ -76,21 +80,23 @@ class Search {
   // than this one.
   double EnergyAt(const SpreadPowers& powers) {
     const double prior = PriorEnergy(powers) - PriorEnergy(at_);
-    const auto energy = [&](const HeldOutErrors& errors) {
-      return errors.EnergyAgainst(best_) + prior;
-    };
     auto known = known_.find(powers);
     if (known == known_.end()) {
       known = known_
                   .emplace(powers, predict_(powers,
                                             [&](const HeldOutErrors& first) {
-                                              return energy(first) > constants::kImprobable;
+                                              return first.EnergyAgainst(best_) + prior >
+                                                     constants::kGivenUp;
                                             }))
                   .first;
-    } else if (known->second.folds() < best_.folds() && energy(known->second) < 0) {
+    } else if (known->second.folds() < best_.folds() &&
+               known->second.EnergyAgainst(best_) + prior < 0) {
       known->second = predict_(powers, {});
     }
-    return energy(known->second);
+    // Energies grow with what is known.
+    const double share =
+        static_cast<double>(known->second.folds()) / static_cast<double>(best_.folds());
+    return known->second.EnergyAgainst(best_) / share + prior;
   }
 
   // Never back to one that something was better than: a may be better than b, b than c and c than

@@ -39,9 +39,9 @@ struct TriedSpreads {
 // albedo together, normals, specular albedo alone, diffuse albedo, the initial maps' errors,
 // neighbours, and neighbours against roughness and specular albedo; then again until nothing is
 // better. Returns the best first, then along the axes through it all that is not
-// improbable; the way to it, which rounding decides, is not told. What is improbable by its first
-// folds is given up. The initialisation is expected to err by as much as is said, within a factor
-// of two.
+// improbable; the way to it, which rounding decides, is not told. What is out of
+// the question by its first folds is given up. The initialisation is expected to err by as much as
+// is said, within a factor of two.
 std::vector<TriedSpreads> SearchSpreads(const PredictBySpreads& predict,
                                         const SpreadPowers& from = {});
 
