@@ -176,7 +176,8 @@ class SampleModel {
   // HeldOutSquaresOf() each of some folds.
   std::vector<std::vector<double>> HeldOutSquaresOfFolds(const Sampling& sampling, int first_fold,
                                                          int folds, FoldStarts* starts) const;
-  // `give_up` is asked when half of the folds are known.
+  // `give_up`, where there is one, is asked when half of the folds are known; only once `starts`
+  // has those of all folds.
   HeldOutErrors CrossValidate(const Sampling& sampling, const GiveUp& give_up,
                               FoldStarts* starts) const;
   HeldOutErrors CrossValidate(const Sampling& sampling) const;

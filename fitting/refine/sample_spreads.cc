@@ -159,7 +159,7 @@ int SampleModel::FoldAt(int place) const {
   return place < half ? 2 * place : 2 * (place - half) + 1;
 }
 
-// As many folds at a time as there are threads, and those left over by all threads.
+// As many folds at a time as there are threads; those left over share the threads.
 std::vector<std::vector<double>> SampleModel::HeldOutSquaresOfFolds(const Sampling& sampling,
                                                                     int first_fold, int folds,
                                                                     FoldStarts* starts) const {
@@ -167,11 +167,11 @@ std::vector<std::vector<double>> SampleModel::HeldOutSquaresOfFolds(const Sampli
   const auto validate = [&](int first, int count) {
     const int threads_of_fold = std::max(1, sampling.threads / count);
     ForEachPieceByWorker(count, std::min(sampling.threads, count), [&](int piece, int worker) {
-      const int fold = FoldAt(first_fold + first + piece);
+      const int place = first + piece, fold = FoldAt(first_fold + place);
       Sampling part = sampling;
       part.threads = threads_of_fold;
       part.first_worker = worker * threads_of_fold;
-      squares[static_cast<size_t>(first + piece)] =
+      squares[static_cast<size_t>(place)] =
           HeldOutSquaresOf(fold, &(*starts)[static_cast<size_t>(fold)], &part);
     });
   };

@@ -40,8 +40,8 @@ SpreadPowers Moved(SpreadPowers powers, const SpreadPowers& direction, int sign)
 
 class Search {
  public:
-  // The first that are predicted are those that Descend() tries first: texels of all others begin
-  // where these have theirs, and narrow spreads leave them nearer to their substances.
+  // The first that are predicted, in full, are narrow ones, which Descend() tries first: texels of
+  // all others begin where these have theirs, nearer to their substances than with wide ones.
   Search(const PredictBySpreads& predict, const SpreadPowers& from)
       : predict_(predict), at_(from), best_(0) {
     const SpreadPowers narrower = Moved(from, kDirections.front(), -1);
@@ -76,27 +76,26 @@ class Search {
   const std::vector<TriedSpreads>& around() const { return around_; }
 
  private:
-  // Against the best as it is. One that was given up against another is finished where it is better
-  // than this one.
+  // Against the best as it is. One that was given up against another is finished where it is not
+  // improbable against this one.
   double EnergyAt(const SpreadPowers& powers) {
     const double prior = PriorEnergy(powers) - PriorEnergy(at_);
+    // Energies grow with what is known.
+    const auto energy = [&](const HeldOutErrors& errors) {
+      const double share = static_cast<double>(errors.folds()) / static_cast<double>(best_.folds());
+      return errors.EnergyAgainst(best_) / share + prior;
+    };
+    const auto give_up = [&](const HeldOutErrors& first_folds) {
+      return first_folds.EnergyAgainst(best_) + prior > constants::kGivenUp;
+    };
     auto known = known_.find(powers);
     if (known == known_.end()) {
-      known = known_
-                  .emplace(powers, predict_(powers,
-                                            [&](const HeldOutErrors& first) {
-                                              return first.EnergyAgainst(best_) + prior >
-                                                     constants::kGivenUp;
-                                            }))
-                  .first;
+      known = known_.emplace(powers, predict_(powers, give_up)).first;
     } else if (known->second.folds() < best_.folds() &&
-               known->second.EnergyAgainst(best_) + prior < 0) {
+               energy(known->second) < constants::kImprobable) {
       known->second = predict_(powers, {});
     }
-    // Energies grow with what is known.
-    const double share =
-        static_cast<double>(known->second.folds()) / static_cast<double>(best_.folds());
-    return known->second.EnergyAgainst(best_) / share + prior;
+    return energy(known->second);
   }
 
   // Never back to one that something was better than: a may be better than b, b than c and c than
