@@ -154,7 +154,7 @@ TEST(SpreadSearch, WhatIsOutOfTheQuestionByItsFirstFoldsIsGivenUp) {
   const auto search = [&](bool by_first_folds) {
     return SearchSpreads([&](const SpreadPowers& powers, const GiveUp& give_up) {
       const double error = 1 + 0.05 * Bowl(powers, lowest, 0.08);
-      const HeldOutErrors first = Scattered(powers, error, 2);
+      HeldOutErrors first = Scattered(powers, error, 2);
       if (!by_first_folds || !give_up || !give_up(first)) return Scattered(powers, error);
       ++given_up;
       return first;
