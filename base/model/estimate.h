@@ -67,7 +67,7 @@ inline constexpr ModelConstant kEstimateRows[] = {
     Row("kGivenUp", {kGivenUp}, "log probability",
         "below the best by every other fold, where spreads are not tried further",
         "with 3 a dark dielectric's specular albedo errs by .016, with 6, 12, 24 and without by "
-        ".0135; with 12 an eighth of the time less"),
+        ".0135; with 12 searches end a tenth sooner"),
     Row("kNarrowLobeShares", {kNarrowLobeShares}, "share", "of the narrow lobe",
         "a step changes held-out errors by 1 to 5 %"),
     Row("kNarrowLobeRatios", {kNarrowLobeRatios}, "ratio of roughnesses", "of the narrow lobe",
