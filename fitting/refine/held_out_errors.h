@@ -31,7 +31,8 @@ using ViewDifferences = std::vector<std::optional<std::array<float, 3>>>;
 std::vector<double> SquaresOf(std::span<const ViewDifferences> texels, double robust_scale,
                               bool free_exposures);
 
-// Sums of squared residuals g². Two that are compared have the same folds and places.
+// Sums of squared residuals g². Two that are compared have the same places, and their folds in the
+// same order; one may have fewer, where its prediction was not finished.
 class HeldOutErrors {
  public:
   explicit HeldOutErrors(size_t places) : places_(places) {}

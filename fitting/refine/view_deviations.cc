@@ -155,20 +155,22 @@ struct ViewEquations {
   }
 };
 
-// Pieces of texels, summed in their order.
+// Blocks of texels, summed in their order.
 ViewEquations EquationsOf(const UnknownsOfViews& unknowns, std::span<const TexelOfViews> texels,
                           int threads) {
-  constexpr size_t kPiece = 256;
-  const double share = 1.0 / static_cast<double>(texels.size());
-  const size_t pieces = (texels.size() + kPiece - 1) / kPiece;
-  std::vector<ViewEquations> of_pieces(pieces, ViewEquations(unknowns.size()));
-  ForEachPiece(static_cast<int>(pieces), threads, [&](int piece) {
-    const size_t first = kPiece * static_cast<size_t>(piece);
-    of_pieces[static_cast<size_t>(piece)].Add(
-        unknowns, texels.subspan(first, std::min(kPiece, texels.size() - first)), share);
+  constexpr int kTexelsOfBlock = 256;
+  const int count = static_cast<int>(texels.size());
+  const double share = 1.0 / count;
+  std::vector<ViewEquations> of_blocks(
+      static_cast<size_t>((count + kTexelsOfBlock - 1) / kTexelsOfBlock),
+      ViewEquations(unknowns.size()));
+  ForEachBlock(count, kTexelsOfBlock, threads, [&](int begin, int end) {
+    of_blocks[static_cast<size_t>(begin / kTexelsOfBlock)].Add(
+        unknowns, texels.subspan(static_cast<size_t>(begin), static_cast<size_t>(end - begin)),
+        share);
   });
   ViewEquations sum(unknowns.size());
-  for (const ViewEquations& of_piece : of_pieces) sum += of_piece;
+  for (const ViewEquations& of_block : of_blocks) sum += of_block;
   sum.Complete();
   return sum;
 }
