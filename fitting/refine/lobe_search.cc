@@ -82,6 +82,31 @@ bool AskForAnisotropy(const HeldOutErrors& anisotropic, const HeldOutErrors& iso
   return anisotropic.EnergyAgainst(isotropic) < -constants::kAnisotropyLogOdds;
 }
 
+bool AskForOneRoughness(const HeldOutErrors& one, const HeldOutErrors& as_found) {
+  return one.EnergyAgainst(as_found) < -constants::kRoughnessLogOdds;
+}
+
+std::optional<double> SearchRoughness(const HeldOutErrors& as_found,
+                                      const std::function<HeldOutErrors(double)>& predict) {
+  constexpr int kLevels = static_cast<int>(constants::kRoughnessLevels.size()), kFirst = 1;
+  const auto sum = [&](int place) {
+    return predict(constants::kRoughnessLevels[static_cast<size_t>(place)]).sum();
+  };
+  int best = kFirst;
+  double least = sum(kFirst);
+  for (const int step : {1, -1}) {
+    while (best + step >= 0 && best + step < kLevels) {
+      const double next = sum(best + step);
+      if (!(next < least)) break;
+      least = next;
+      best += step;
+    }
+    if (best != kFirst) break;
+  }
+  if (!(least < as_found.sum())) return std::nullopt;
+  return constants::kRoughnessLevels[static_cast<size_t>(best)];
+}
+
 Anisotropy SearchAnisotropy(const std::function<HeldOutErrors(const Anisotropy&)>& predict) {
   std::map<StretchPlace, double> known;
   const auto at = [&](const StretchPlace& place) {

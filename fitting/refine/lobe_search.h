@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/reflectance/convention.h"
@@ -23,6 +24,15 @@ bool AskForShortTails(const HeldOutErrors& short_tails, const HeldOutErrors& ggx
 // wood, cloth or brushed metal, and they are the best of some dozen (log odds 4); where nothing
 // tells a direction, cross-validation still reaches 4.4 (log odds 5).
 bool AskForAnisotropy(const HeldOutErrors& anisotropic, const HeldOutErrors& isotropic);
+
+// The same of one roughness of all substances in place of those of the greatest likelihood, about
+// every second time (log odds 1).
+bool AskForOneRoughness(const HeldOutErrors& one, const HeldOutErrors& as_found);
+
+// The roughness on kRoughnessLevels that predicts best, on the way from the second of them to the
+// next that predicts better until none does; nothing: as_found predicts better.
+std::optional<double> SearchRoughness(
+    const HeldOutErrors& as_found, const std::function<HeldOutErrors(double roughness)>& predict);
 
 // From isotropic lobes on over ln(ratio)·(cos 2φ, sin 2φ), in steps of kAnisotropyStep, to the next
 // that predicts better until none does.

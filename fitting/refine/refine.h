@@ -133,6 +133,7 @@ struct RefineSummary {
   double effective_views = 0;     // how many views say something of their own
   int substances = 0;             // that are told apart
   SpecularLobes lobes;            // of the sample
+  double one_roughness = 0;       // that of all substances' means; 0: each has its own
   double roughness_spread = 0;  // of texels about their substance's mean (∞: one photograph) …
   double specular_spread = 0;   // … relative
   double diffuse_spread = 0;    // likewise; ∞ from one or two photographs

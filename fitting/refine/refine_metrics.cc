@@ -38,6 +38,12 @@ const ManifestField<Summary> kSampleMetrics[] = {
      [](const Summary& s) -> Json { return JsonOf(s.lobes.anisotropy); }},
     {"tail_exponent", "γ of the specular lobes' tails; 2: GGX",
      [](const Summary& s) -> Json { return s.lobes.tail_exponent; }},
+    {"one_roughness",
+     "that all substances have in the mean, where held-out photographs ask for it; null: each has "
+     "its own",
+     [](const Summary& s) -> Json {
+       return s.one_roughness > 0 ? Json(s.one_roughness) : Json(nullptr);
+     }},
     {"roughness_spread",
      "standard deviation of roughness within a substance; null: not estimated from so few "
      "photographs (likewise below)",

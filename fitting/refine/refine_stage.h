@@ -17,7 +17,7 @@
 namespace glint {
 
 // Raised whenever the same inputs give other bytes.
-inline constexpr int kRefineVersion = 47;
+inline constexpr int kRefineVersion = 48;
 
 struct RefineStageOptions {
   RefineOptions refine;

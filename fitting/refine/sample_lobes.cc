@@ -68,33 +68,73 @@ Anisotropy SampleModel::AnisotropyToTry(const Sampling& sampling) const {
   });
 }
 
-// From the beginning and with all that it asks for: lobes of another shape are rougher or smoother,
-// what their tails leave over is another lobe's, and an estimate stays in the valley that it is in.
-void SampleModel::TryShape(const SpecularLobes& shape, const Asks& asks,
-                           const SampleModel& pristine, const SamplePart* other,
-                           const SpreadPowers& powers, const Sampling& blocks, Sampling* sampling) {
-  SampleModel model(pristine);
-  model.lobes_ = shape;
+// Normals' scatter is held too, until it is scaled: by likelihood it would shrink to what a level
+// surface of varying albedo leaves of it.
+void SampleModel::HoldRoughness(double roughness) {
+  for (SharedValues& mean : means_.mean) mean[kSharedRoughness] = roughness;
+  means_.holds_roughness = true;
+  normal_spreads_.assign(means_.mean.size(), constants::kRoughNormalSd);
+}
+
+std::optional<double> SampleModel::RoughnessToTry(const Sampling& sampling,
+                                                  const Sampling& blocks) const {
+  const HeldOutErrors as_found = CrossValidate(blocks);
+  return SearchRoughness(as_found, [&](double roughness) {
+    SampleModel model(*this);
+    model.SetLobes({});
+    model.HoldRoughness(roughness);
+    sampling.solver->reflect(model.lobes_);
+    Sampling solved = sampling;
+    for (int round = 0; round < constants::kOtherSubstanceRounds; ++round) {
+      model.Solve({.views = all_views_, .near_minimum = round > 0}, &solved);
+      model.UpdateSubstances(solved);
+    }
+    return model.CrossValidate(blocks);
+  });
+}
+
+// With all that it asks for: lobes of another shape are rougher or smoother, what their tails leave
+// over is another lobe's, and an estimate stays in the valley that it is in.
+bool SampleModel::TryFrom(const SampleModel& beginning, const Asks& asks, const SamplePart* other,
+                          const SpreadPowers& powers, const Sampling& blocks, Sampling* sampling) {
+  SampleModel model(beginning);
   Sampling own = model.SamplingOf(sampling->texels, *sampling->solver, sampling->threads);
   model.FitNormalsToo(&own);
   model.Choose(other, own, blocks, powers);
-  // Both with the views, and the curve, that the new shape found.
-  if (!asks(model.CrossValidate(blocks), CrossValidate(blocks))) return;
-  *this = model;
-  *sampling = std::move(own);
+  // Both with the views, and the curve, that the new one found.
+  if (asks(model.CrossValidate(blocks), CrossValidate(blocks))) {
+    *this = model;
+    *sampling = std::move(own);
+    return true;
+  }
+  sampling->solver->deviate(deviations_);
+  sampling->solver->weigh(residuals_.variance());
+  return false;
 }
 
-void SampleModel::ChooseShape(const SampleModel& pristine, const SamplePart* other,
+void SampleModel::ChooseShape(SampleModel beginning, const SamplePart* other,
                               const Sampling& blocks, Sampling* sampling) {
-  const SpreadPowers powers = Choose(other, *sampling, blocks, {});
+  FreezeViews(constants::kDiffuseSd, *sampling);
+  ChooseSubstances(other, *sampling, blocks);
+  SampleModel nominal(*this);
+  const SpreadPowers powers = ChooseLobesAndSpreads(blocks, {});
+  nominal.lobes_ = lobes_;
+  std::optional<double> roughness;
+  if (TellsLobesApart()) roughness = nominal.RoughnessToTry(*sampling, blocks);
+  if (roughness) {
+    SampleModel held(beginning);
+    held.HoldRoughness(*roughness);
+    if (TryFrom(held, AskForOneRoughness, other, powers, blocks, sampling)) beginning = held;
+  }
   SpecularLobes shape;
   if (TellsLobesApart() && options_.anisotropy) shape.anisotropy = AnisotropyToTry(blocks);
   if (shape.anisotropy.any()) {
-    TryShape(shape, AskForAnisotropy, pristine, other, powers, blocks, sampling);
+    beginning.lobes_ = shape;
+    TryFrom(beginning, AskForAnisotropy, other, powers, blocks, sampling);
   }
   if (TellsLobesApart() && options_.lobe_tails) {
-    shape = {.tail_exponent = constants::kShortTail, .anisotropy = lobes_.anisotropy};
-    TryShape(shape, AskForShortTails, pristine, other, powers, blocks, sampling);
+    beginning.lobes_ = {.tail_exponent = constants::kShortTail, .anisotropy = lobes_.anisotropy};
+    TryFrom(beginning, AskForShortTails, other, powers, blocks, sampling);
   }
   sampling->solver->reflect(lobes_);
   sampling->solver->deviate(deviations_);

@@ -339,7 +339,7 @@ void SampleModel::Estimate(const SamplePart* other, const SampleSolver& solver, 
 
 void SampleModel::FitNormalsToo(Sampling* sampling) {
   sampling->solver->reflect(lobes_);
-  learns_normals_ = has_sample_priors_;
+  learns_normals_ = has_sample_priors_ && !means_.holds_roughness;
   // The curve moves once all else is near its place: what is wrong at first looks like one.
   HoldCurve(true, *sampling);
   Fit(sampling);
@@ -388,8 +388,13 @@ void SampleModel::BeginSubstances(const Sampling& sampling) {
     if (sampling.solved[k].views == 0) continue;
     mean.Add(part_->shares(sampling.texels[k]), sampling.solved[k].values);
   }
+  const double roughness = means_.mean.front()[kSharedRoughness];
   means_.mean = mean.means();
   means_.covariance.clear();
+  if (means_.holds_roughness) {
+    HoldRoughness(roughness);
+    return;
+  }
   normal_spreads_.assign(means_.mean.size(), constants::kNormalSd);
   UpdateNormalSpreads(sampling);
 }
@@ -417,6 +422,7 @@ void SampleModel::Describe(RefineSummary* summary) const {
   summary->effective_views = residuals_.effective_views();
   summary->substances = part_->substances().count();
   summary->lobes = lobes_;
+  if (means_.holds_roughness) summary->one_roughness = means_.mean.front()[kSharedRoughness];
   summary->roughness_spread = means_.roughness_spread;
   summary->specular_spread = means_.specular_spread;
   summary->diffuse_spread = means_.diffuse_spread;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -191,16 +192,20 @@ class SampleModel {
   // What is chosen by cross-validation over `blocks` with one shape of lobes.
   SpreadPowers Choose(const SamplePart* other, const Sampling& sampling, const Sampling& blocks,
                       const SpreadPowers& from);
-  // Whether photographs are enough to tell one shape or number of lobes from another.
+  // Whether photographs are enough to tell one shape, roughness or number of lobes from another.
   bool TellsLobesApart() const;
   Anisotropy AnisotropyToTry(const Sampling& sampling) const;
-  // Becomes the estimate with lobes of that shape where it `asks` for them.
+  // With one lobe, if better than as found.
+  std::optional<double> RoughnessToTry(const Sampling& sampling, const Sampling& blocks) const;
+  // From now on all substances have that one, under a rough relief.
+  void HoldRoughness(double roughness);
+  // Becomes the estimate that begins so where it `asks` for it.
   using Asks = std::function<bool(const HeldOutErrors& with, const HeldOutErrors& without)>;
-  void TryShape(const SpecularLobes& shape, const Asks& asks, const SampleModel& pristine,
-                const SamplePart* other, const SpreadPowers& powers, const Sampling& blocks,
-                Sampling* sampling);
-  // What Choose() does with the lobes' shape chosen too; `pristine`: before anything was fitted.
-  void ChooseShape(const SampleModel& pristine, const SamplePart* other, const Sampling& blocks,
+  bool TryFrom(const SampleModel& beginning, const Asks& asks, const SamplePart* other,
+               const SpreadPowers& powers, const Sampling& blocks, Sampling* sampling);
+  // What Choose() does with the lobes' roughness and shape chosen too; `beginning`: before anything
+  // was fitted.
+  void ChooseShape(SampleModel beginning, const SamplePart* other, const Sampling& blocks,
                    Sampling* sampling);
 
   // What is known of a texel by itself; what its substance and a level surface say; both.

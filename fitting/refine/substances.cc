@@ -181,7 +181,7 @@ SharedValues SubstanceMeans::Variances(const SharedValues& of) const {
     const double spread = specular_spread * (of[p] + kSpecularOffset);
     variances[p] = spread * spread;
   }
-  variances[3] = roughness_spread * roughness_spread;
+  variances[kSharedRoughness] = roughness_spread * roughness_spread;
   for (size_t p = 4; p < kShared; ++p) {
     const double spread = diffuse_spread * (of[p] + kSpecularOffset);
     variances[p] = spread * spread;
@@ -239,9 +239,10 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, const SampleWorth&
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index p = kSpecularValues; p < kN; ++p) {
       const auto q = static_cast<size_t>(p);
-      const double width = constants::kBetweenToWithin *
-                           (p == 3 ? constants::kRoughnessSd
-                                   : constants::kDiffuseSd * (common[q] + kSpecularOffset));
+      const double width =
+          constants::kBetweenToWithin *
+          (q == kSharedRoughness ? constants::kRoughnessSd
+                                 : constants::kDiffuseSd * (common[q] + kSpecularOffset));
       const double precision = 1 / (width * width);
       information(kN * k + p, kN * k + p) += precision;
       gradient[kN * k + p] += precision * (common[q] - means->mean[static_cast<size_t>(k)][q]);
@@ -251,8 +252,10 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, const SampleWorth&
   Eigen::VectorXd least(kN * count), most(kN * count);
   for (Eigen::Index i = 0; i < kN * count; ++i) {
     const double mean = means->mean[static_cast<size_t>(i / kN)][static_cast<size_t>(i % kN)];
-    const double farthest = constants::kMostMeanStep * (mean + kSpecularOffset);
-    least[i] = std::max(-farthest, (i % kN == 3 ? kRoughnessBounds.low : 0.0) - mean);
+    const bool roughness = i % kN == kSharedRoughness;
+    const bool held = roughness && means->holds_roughness;
+    const double farthest = held ? 0 : constants::kMostMeanStep * (mean + kSpecularOffset);
+    least[i] = std::max(-farthest, (roughness ? kRoughnessBounds.low : 0.0) - mean);
     most[i] = std::min(farthest, 1.0 - mean);
   }
   const Eigen::VectorXd step = StepWithin(information, gradient, least, most);

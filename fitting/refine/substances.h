@@ -20,7 +20,7 @@ namespace glint {
 inline constexpr int kMostSubstances = 8;  // that options allow
 // Shared values, by their place among a texel's parameters; the first of them are also expected to
 // depart from their substances as their neighbours' do.
-inline constexpr size_t kShared = 7, kAlikeNearby = 4;
+inline constexpr size_t kShared = 7, kAlikeNearby = 4, kSharedRoughness = 3;
 inline constexpr std::array<int, kShared> kSharedParameters = {
     SpecularParameter(0), SpecularParameter(1), SpecularParameter(2), kRough,
     DiffuseParameter(0),  DiffuseParameter(1),  DiffuseParameter(2)};
@@ -71,6 +71,7 @@ struct SubstanceMeans {
   // relative to mean + kSpecularOffset.
   double roughness_spread = constants::kRoughnessSd, specular_spread = constants::kSpecularSd;
   double diffuse_spread = kUnknownSpread;
+  bool holds_roughness = false;  // means of roughness stay as they are
   KindsPriorOptions kinds;
 
   // The light's power by what substances reflect (KindsPrior::log_power), as far as diffuse albedo

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/model/estimate.h"
 #include "fitting/refine/refine.h"
 #include "tests/fitting/refine/synthetic_scene.h"
 
@@ -120,6 +121,25 @@ TEST(Refine, ASampleWhoseLobeFallsOffFasterThanGgxHasShorterTails) {
   const RefineResult as_ggx = Refined(truth, {});
   EXPECT_EQ(as_ggx.summary.lobes.tail_exponent, 2);
   EXPECT_LT(found.summary.residual_sigma, as_ggx.summary.residual_sigma);
+}
+
+TEST(RoughnessSearch, WalksToTheRoughnessThatPredictsBest) {
+  for (const double best : constants::kRoughnessLevels) {
+    const auto found = SearchRoughness(Errors(1.1), [&](double roughness) {
+      return Errors(1 + std::abs(std::log(roughness / best)));
+    });
+    EXPECT_EQ(found, best);
+  }
+}
+
+TEST(RoughnessSearch, NothingIsTriedWhereNonePredictsBetter) {
+  int tried = 0;
+  const auto found = SearchRoughness(Errors(1), [&](double roughness) {
+    ++tried;
+    return Errors(1 + roughness);
+  });
+  EXPECT_FALSE(found);
+  EXPECT_EQ(tried, 3);  // the first and its neighbours
 }
 
 TEST(AnisotropySearch, WalksToTheDirectionAndRatioThatPredictBest) {

@@ -177,6 +177,20 @@ std::vector<SubstanceSample> MixedSamples(const std::vector<float>& shares,
   return samples;
 }
 
+TEST(UpdateMeans, RoughnessThatIsHeldStaysAndAllElseIsFound) {
+  const std::vector<float> shares =
+      Substances(Looks(Stripes(1000)), 2, true).SharesOf(Looks(Stripes(1000)));
+  SubstanceMeans means;
+  means.diffuse_spread = constants::kDiffuseSd;
+  means.holds_roughness = true;
+  means.mean.assign(2, {0.1, 0.1, 0.1, 0.5, 0.2, 0.2, 0.2});
+  for (int round = 0; round < 12; ++round)
+    UpdateMeans(Samples(shares, 0.02, means), {1, 1}, &means);
+  for (const SharedValues& mean : means.mean) EXPECT_EQ(mean[kSharedRoughness], 0.5);
+  EXPECT_NEAR(means.Of(shares.data())[4], 0.1, 0.06);
+  EXPECT_NEAR(means.Of(shares.data() + 2 * 5)[4], 0.5, 0.06);
+}
+
 TEST(UpdateMeans, WhereOneIsHeldAtItsBoundTheOtherMakesUpForIt) {
   std::vector<float> shares;
   for (int t = 0; t < 1000; ++t) {
