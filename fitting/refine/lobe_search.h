@@ -25,8 +25,8 @@ bool AskForShortTails(const HeldOutErrors& short_tails, const HeldOutErrors& ggx
 // tells a direction, cross-validation still reaches 4.4 (log odds 5).
 bool AskForAnisotropy(const HeldOutErrors& anisotropic, const HeldOutErrors& isotropic);
 
-// The same of one roughness of all substances in place of those of the greatest likelihood, about
-// every second time (log odds 1).
+// The same of one roughness of all substances, the best of four, in place of those of the greatest
+// likelihood (log odds 1).
 bool AskForOneRoughness(const HeldOutErrors& one, const HeldOutErrors& as_found);
 
 // The roughness on kRoughnessLevels that predicts best, on the way from the second of them to the

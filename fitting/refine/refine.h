@@ -77,7 +77,8 @@ struct RefineOptions {
   int neighbour_passes = constants::kNeighbourPasses;
   // At most, that share their roughness and albedos.
   int substances = constants::kSubstances;
-  // Of variances and substances, on sampled texels, up to three times.
+  // Of variances and substances, on sampled texels: twice from each beginning, and up to twice at
+  // the end.
   int estimation_rounds = constants::kEstimationRounds;
   // Texels along the longer side among which those are sampled, at most; the sample as a whole is
   // estimated from no others. A million texels: the few thousand that are solved are picked of
@@ -103,9 +104,10 @@ struct RefineOptions {
   double flash_beam = 0, distance_power = 0;
   // Likewise of their curve (characteristic_curve.h): its toe, radiance, and its shoulder.
   double toe = 0, shoulder = 0;
-  bool second_lobe = true;  // of the whole sample, where held-out photographs ask for it
-  bool anisotropy = true;   // of its lobes, likewise
-  bool lobe_tails = false;  // look for shorter ones than GGX's too, likewise
+  bool second_lobe = true;    // of the whole sample, where held-out photographs ask for it
+  bool anisotropy = true;     // of its lobes, likewise
+  bool one_roughness = true;  // of all its substances, likewise
+  bool lobe_tails = false;    // look for shorter ones than GGX's too, likewise
   double prior = constants::kPriorWeight;  // factor on the priors' weight; 0: none
   // Standard deviation by which lens, pixel, demosaicking and resampling spread a point of the
   // picture, pixels (point_spread.h), of views whose blur is not known, or of all. 0: not at all.

@@ -31,6 +31,11 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
            "look for specular lobes of the whole sample that are wider in one direction (wood, "
            "cloth, brushed metal); they are accepted only if they predict held-out photographs "
            "clearly better, which requires at least five photographs");
+  set->Add("one-roughness", &refine->one_roughness,
+           "also begin from one roughness of all substances under a rough relief (leather, foil, "
+           "foam); what follows is accepted only if it predicts held-out photographs better, which "
+           "requires at least five photographs; without it refinement takes about three quarters "
+           "of the time");
   set->Add("lobe-tails", &refine->lobe_tails,
            "look for specular lobes of the whole sample whose tails are shorter than GGX's "
            "(plastics, print, varnish); they are accepted only if they predict held-out "

@@ -93,8 +93,9 @@ std::optional<double> SampleModel::RoughnessToTry(const Sampling& sampling,
   });
 }
 
-// With all that it asks for: lobes of another shape are rougher or smoother, what their tails leave
-// over is another lobe's, and an estimate stays in the valley that it is in.
+// With all that it asks for: lobes of another shape are rougher or smoother (but where one
+// roughness is held), what their tails leave over is another lobe's, and an estimate stays in the
+// valley that it is in.
 bool SampleModel::TryFrom(const SampleModel& beginning, const Asks& asks, const SamplePart* other,
                           const SpreadPowers& powers, const Sampling& blocks, Sampling* sampling) {
   SampleModel model(beginning);
@@ -120,7 +121,8 @@ void SampleModel::ChooseShape(SampleModel beginning, const SamplePart* other,
   const SpreadPowers powers = ChooseLobesAndSpreads(blocks, {});
   nominal.lobes_ = lobes_;
   std::optional<double> roughness;
-  if (TellsLobesApart()) roughness = nominal.RoughnessToTry(*sampling, blocks);
+  if (TellsLobesApart() && options_.one_roughness)
+    roughness = nominal.RoughnessToTry(*sampling, blocks);
   if (roughness) {
     SampleModel held(beginning);
     held.HoldRoughness(*roughness);
@@ -137,7 +139,6 @@ void SampleModel::ChooseShape(SampleModel beginning, const SamplePart* other,
     TryFrom(beginning, AskForShortTails, other, powers, blocks, sampling);
   }
   sampling->solver->reflect(lobes_);
-  sampling->solver->deviate(deviations_);
 }
 
 }  // namespace glint

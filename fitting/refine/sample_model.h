@@ -155,7 +155,8 @@ class SampleModel {
   // and diffuse albedo is shared too, from what was found of it without.
   void FreezeViews(double diffuse_spread, const Sampling& sampling);
   SampleWorth WorthOf(const Sampling& sampling) const;
-  // Fit with normals' scatter too, from what is believed before any round.
+  // Fit with normals' scatter too, unless roughness is held, from what is believed before any
+  // round.
   void FitNormalsToo(Sampling* sampling);
   void FitAsChosen(Sampling* sampling);
   void HoldCurve(bool hold, const Sampling& sampling);
@@ -203,8 +204,8 @@ class SampleModel {
   using Asks = std::function<bool(const HeldOutErrors& with, const HeldOutErrors& without)>;
   bool TryFrom(const SampleModel& beginning, const Asks& asks, const SamplePart* other,
                const SpreadPowers& powers, const Sampling& blocks, Sampling* sampling);
-  // What Choose() does with the lobes' roughness and shape chosen too; `beginning`: before anything
-  // was fitted.
+  // What Choose() does with one roughness and other shapes of lobes tried too; `beginning`: before
+  // anything was fitted.
   void ChooseShape(SampleModel beginning, const SamplePart* other, const Sampling& blocks,
                    Sampling* sampling);
 

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/cpu/vector_clones.h"
+#include "base/model/estimate.h"
 #include "base/model/solver.h"
 #include "base/model/substances.h"
 #include "base/parallel/parallel.h"
@@ -92,6 +94,38 @@ void AddKinds(const SubstanceMeans& means, Eigen::MatrixXd* information,
     gradient->segment<kSpecularValues>(kN * k) +=
         kinds.gradient.segment<kSpecularValues>(kSpecularValues * k);
   }
+}
+
+// Of their errors, row-major by substance and value. A roughness that all share is off by as much
+// as the levels among which it was chosen leave open, and other means follow it.
+Eigen::MatrixXd CovarianceOfMeans(Eigen::MatrixXd information, const SubstanceMeans& means) {
+  const Eigen::Index count = information.rows();
+  Eigen::VectorXd common = Eigen::VectorXd::Zero(count);
+  if (means.holds_roughness) {
+    const auto values = static_cast<Eigen::Index>(kShared);
+    for (Eigen::Index i = kSharedRoughness; i < count; i += values) {
+      common[i] = constants::kRoughnessLevelSd *
+                  means.mean[static_cast<size_t>(i / values)][kSharedRoughness];
+    }
+    const Eigen::VectorXd pull = information * common;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (common[i] == 0) {
+        common[i] = -pull[i];
+        continue;
+      }
+      information.row(i).setZero();
+      information.col(i).setZero();
+      information(i, i) = 1;
+    }
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> solver(information);
+  Eigen::MatrixXd covariance = solver.solve(Eigen::MatrixXd::Identity(count, count));
+  if (!means.holds_roughness) return covariance;
+  for (Eigen::Index i = kSharedRoughness; i < count; i += static_cast<Eigen::Index>(kShared)) {
+    covariance(i, i) = 0;
+  }
+  const Eigen::VectorXd followed = solver.solve(common);
+  return covariance + followed * followed.transpose();
 }
 
 }  // namespace
@@ -263,8 +297,7 @@ void UpdateMeans(const std::vector<SubstanceSample>& samples, const SampleWorth&
     means->mean[static_cast<size_t>(i / kN)][static_cast<size_t>(i % kN)] += step[i];
   }
   information += (worth.shared_by_view - worth.shared_by_half_vector) * of_samples;
-  const Eigen::MatrixXd covariance =
-      information.ldlt().solve(Eigen::MatrixXd::Identity(kN * count, kN * count));
+  const Eigen::MatrixXd covariance = CovarianceOfMeans(std::move(information), *means);
   means->covariance.assign(covariance.data(), covariance.data() + covariance.size());
 }
 

@@ -3,7 +3,8 @@
 //
 // A texel belongs to a few substances, by its colour and its gloss. Its roughness and albedos are
 // those of its substances, in the mean, and depart from them by a spread that all substances share.
-// Means are found from sampled texels by type-II maximum likelihood.
+// Means are found from sampled texels by type-II maximum likelihood, but for a roughness that
+// cross-validation chose.
 #pragma once
 
 #include <array>
@@ -71,7 +72,8 @@ struct SubstanceMeans {
   // relative to mean + kSpecularOffset.
   double roughness_spread = constants::kRoughnessSd, specular_spread = constants::kSpecularSd;
   double diffuse_spread = kUnknownSpread;
-  bool holds_roughness = false;  // means of roughness stay as they are
+  // Means of roughness stay as they are, which is one for all; nor is normals' scatter estimated.
+  bool holds_roughness = false;
   KindsPriorOptions kinds;
 
   // The light's power by what substances reflect (KindsPrior::log_power), as far as diffuse albedo

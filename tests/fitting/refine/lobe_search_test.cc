@@ -132,7 +132,7 @@ TEST(RoughnessSearch, WalksToTheRoughnessThatPredictsBest) {
   }
 }
 
-TEST(RoughnessSearch, NothingIsTriedWhereNonePredictsBetter) {
+TEST(RoughnessSearch, NoneIsTakenWhereNonePredictsBetter) {
   int tried = 0;
   const auto found = SearchRoughness(Errors(1), [&](double roughness) {
     ++tried;

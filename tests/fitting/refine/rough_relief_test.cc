@@ -81,6 +81,20 @@ TEST(Refine, GrainOfRoughReliefIsNotTakenForThatOfALevelSurface) {
   // 0.11; by means of the greatest likelihood 0.20.
   EXPECT_LT(RmsDifference(found.maps, truth, kNormalX), 0.5 * slope);
   EXPECT_GT(found.summary.one_roughness, 0);
+  EXPECT_LT(RmsDifference(found.maps, truth, kRoughness), 0.2);
+}
+
+TEST(Refine, SubstancesOfTwoRoughnessesKeepTheirOwn) {
+  SvbrdfMaps truth = LevelSubstance(32, 0.2f);
+  for (size_t t = 0; t < truth.texels(); ++t) {
+    if (t % 32 < 16) continue;
+    truth.plane(kRoughness)[t] = 0.5f;
+    truth.plane(kDiffuseR)[t] *= 3;
+  }
+  const SyntheticScene scene = Photograph(truth, 7, 8);
+  const RefineResult found = Refine(scene.Problem(), DisturbedMaps(truth, 0.3f, 33), {}, 2);
+  EXPECT_EQ(found.summary.one_roughness, 0);
+  EXPECT_LT(RmsDifference(found.maps, truth, kRoughness), 0.02);
 }
 
 }  // namespace

@@ -187,6 +187,13 @@ TEST(UpdateMeans, RoughnessThatIsHeldStaysAndAllElseIsFound) {
   for (int round = 0; round < 12; ++round)
     UpdateMeans(Samples(shares, 0.02, means), {1, 1}, &means);
   for (const SharedValues& mean : means.mean) EXPECT_EQ(mean[kSharedRoughness], 0.5);
+  // Off by half of what the levels are apart, over √12, all alike.
+  const auto covariance = [&](size_t a, size_t b) {
+    return means.covariance[(kShared * a + kSharedRoughness) * 2 * kShared + kShared * b +
+                            kSharedRoughness];
+  };
+  EXPECT_NEAR(std::sqrt(covariance(0, 0)), 0.5 * std::log(2) / 2 / std::sqrt(12), 1e-3);
+  EXPECT_NEAR(covariance(0, 1), covariance(0, 0), 1e-9);
   EXPECT_NEAR(means.Of(shares.data())[4], 0.1, 0.06);
   EXPECT_NEAR(means.Of(shares.data() + 2 * 5)[4], 0.5, 0.06);
 }
