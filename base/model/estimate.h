@@ -90,9 +90,9 @@ inline constexpr ModelConstant kEstimateRows[] = {
         "ln 2/2 over √12"),
     Row("kRoughNormalSd", {kRoughNormalSd}, "1", "θ_n beside such a roughness, until it is scaled",
         "0.05, 0.1, 0.2: leather with 02 and 06 held out .45, .44, .44, with 01 and 05 .48, .41, "
-        ".41; a gift bag .40 with all three"),
+        ".41"),
     Row("kRoughnessLogOdds", {kRoughnessLogOdds}, "log odds", "against such a roughness",
-        "it is the best of four; 18 of 42 real fits ask for it, by 1.5 to 100"),
+        "it is the best of four; 15 of 42 real fits ask for it"),
     Row("kAnisotropyStep", {kAnisotropyStep}, "ln α", "of the search for anisotropic lobes",
         "a walnut held out: .274, .266, .263 and .261 with ratios 1.16, 1.22, 1.25 and 1.45"),
     Row("kAnisotropyLogOdds", {kAnisotropyLogOdds}, "log odds", "against anisotropic lobes",

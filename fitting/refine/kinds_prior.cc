@@ -100,6 +100,10 @@ KindsPrior PriorOfKinds(const std::vector<SpecularMean>& means, const KindsPrior
 
   KindsPrior prior{Eigen::MatrixXd::Zero(3 * count, 3 * count), Eigen::VectorXd::Zero(3 * count),
                    log_power};
+  for (const Look& look : looks) {
+    const Probabilities is(look, log_power, options.metal_share);
+    prior.metal_share += (1 - is.of_dielectric) / static_cast<double>(count);
+  }
   const Eigen::Matrix3d chroma = Eigen::Matrix3d::Identity() - Eigen::Matrix3d::Constant(1.0 / 3);
   const auto slope = [&](Eigen::Index k) {  // of the logarithm by each channel
     return 1 / (3 * (looks[static_cast<size_t>(k)].grey + kBlackSpecular));

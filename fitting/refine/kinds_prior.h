@@ -28,6 +28,7 @@ struct KindsPrior {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;  // of the log prior
   double log_power = 0;      // of the light, most probable: what all substances are off by
+  double metal_share = 0;    // of substances, as probably as they are metals
 };
 
 // Expectation maximisation of which kind each substance is and of the light's power, which is then

@@ -32,7 +32,7 @@ void AddRefineOptions(OptionSet* set, RefineStageOptions* options) {
            "cloth, brushed metal); they are accepted only if they predict held-out photographs "
            "clearly better, which requires at least five photographs");
   set->Add("one-roughness", &refine->one_roughness,
-           "also begin from one roughness of all substances under a rough relief (leather, foil, "
+           "also begin from one roughness of all substances under a rough relief (leather, "
            "foam); what follows is accepted only if it predicts held-out photographs better, which "
            "requires at least five photographs; without it refinement takes about three quarters "
            "of the time");

@@ -68,6 +68,12 @@ Anisotropy SampleModel::AnisotropyToTry(const Sampling& sampling) const {
   });
 }
 
+// Highlights are all that metals show. Under a light of unknown power a wider lobe makes weak
+// dielectrics of them, and one roughness is that of neither foil nor of what it is printed on.
+bool SampleModel::MayHaveOneRoughness() const {
+  return options_.one_roughness && TellsLobesApart() && means_.MetalShare() < 0.5;
+}
+
 // Normals' scatter is held too, until it is scaled: by likelihood it would shrink to what a level
 // surface of varying albedo leaves of it.
 void SampleModel::HoldRoughness(double roughness) {
@@ -121,8 +127,7 @@ void SampleModel::ChooseShape(SampleModel beginning, const SamplePart* other,
   const SpreadPowers powers = ChooseLobesAndSpreads(blocks, {});
   nominal.lobes_ = lobes_;
   std::optional<double> roughness;
-  if (TellsLobesApart() && options_.one_roughness)
-    roughness = nominal.RoughnessToTry(*sampling, blocks);
+  if (nominal.MayHaveOneRoughness()) roughness = nominal.RoughnessToTry(*sampling, blocks);
   if (roughness) {
     SampleModel held(beginning);
     held.HoldRoughness(*roughness);

@@ -196,6 +196,7 @@ class SampleModel {
   // Whether photographs are enough to tell one shape, roughness or number of lobes from another.
   bool TellsLobesApart() const;
   Anisotropy AnisotropyToTry(const Sampling& sampling) const;
+  bool MayHaveOneRoughness() const;  // not of what is mostly metals
   // With one lobe, if better than as found.
   std::optional<double> RoughnessToTry(const Sampling& sampling, const Sampling& blocks) const;
   // From now on all substances have that one, under a rough relief.

@@ -209,6 +209,8 @@ double SubstanceMeans::LightPower() const {
   return std::max(std::exp(KindsOf(*this).log_power), most / constants::kMostDiffuse);
 }
 
+double SubstanceMeans::MetalShare() const { return KindsOf(*this).metal_share; }
+
 SharedValues SubstanceMeans::Variances(const SharedValues& of) const {
   SharedValues variances;
   for (size_t p = 0; p < 3; ++p) {

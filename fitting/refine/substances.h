@@ -80,6 +80,9 @@ struct SubstanceMeans {
   // lets it be weaker.
   double LightPower() const;
 
+  // Of substances, those that are metals, as probably as they are.
+  double MetalShare() const;
+
   // Covariance of all means' errors, row-major by substance and value; empty: they are certain.
   std::vector<double> covariance;
 

@@ -61,6 +61,12 @@ TEST(KindsPrior, WhereTheLightsPowerIsNotKnownSubstancesAreOffTogether) {
   EXPECT_GT(pull_on_first(0.04, 1.0), 0.7 * pull_on_first(0.04, 0.05));
 }
 
+TEST(KindsPrior, CountsSubstancesThatAreProbablyMetals) {
+  EXPECT_NEAR(PriorOfKinds({Grey(0.04), Grey(0.03), Grey(0.7), SpecularMean(0.9, 0.6, 0.3)}, {})
+                  .metal_share,
+              0.5, 0.02);
+}
+
 TEST(KindsPrior, BetweenTheKindsTheShareOfMetalsDecides) {
   const auto found = [](double metal_share) {
     return MostProbable({Grey(0.12)}, {.metal_share = metal_share})[0].mean();

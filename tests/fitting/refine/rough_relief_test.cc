@@ -61,9 +61,8 @@ double RmsDifference(const SvbrdfMaps& a, const SvbrdfMaps& b, SvbrdfPlane plane
 }
 
 // Photographs are off by what no maps explain, as where they are displaced by a texel.
-TEST(Refine, GrainOfRoughReliefIsNotTakenForThatOfALevelSurface) {
-  const double slope = 0.3;
-  const SvbrdfMaps truth = Leather(slope);
+// Photographs that are off by what no maps explain, as where they are displaced by a texel.
+SyntheticScene PhotographedBadly(const SvbrdfMaps& truth) {
   SyntheticScene scene = Photograph(truth, 7, 8);
   std::mt19937 random(31);
   std::normal_distribution<float> log_radiance(0.0f, 0.3f);
@@ -73,10 +72,17 @@ TEST(Refine, GrainOfRoughReliefIsNotTakenForThatOfALevelSurface) {
       for (size_t c = 0; c < 3; ++c) photograph[c * truth.texels() + t] *= factor;
     }
   }
+  return scene;
+}
+
+TEST(Refine, GrainOfRoughReliefIsNotTakenForThatOfALevelSurface) {
+  const double slope = 0.3;
+  const SvbrdfMaps truth = Leather(slope);
   SvbrdfMaps start = LevelSubstance(kLeatherSize, 0.15f);
   for (int c = 0; c < 3; ++c) {
     std::ranges::fill(start.plane(kDiffuseR + c), c == 2 ? 0.03f : 0.01f);
   }
+  const SyntheticScene scene = PhotographedBadly(truth);
   const RefineResult found = Refine(scene.Problem(), start, {}, 2);
   // 0.11; by means of the greatest likelihood 0.20.
   EXPECT_LT(RmsDifference(found.maps, truth, kNormalX), 0.5 * slope);
