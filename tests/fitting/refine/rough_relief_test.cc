@@ -30,8 +30,8 @@ SvbrdfMaps Leather(double slope) {
     const double length_texel = 4 + 4 * std::abs(normal(random)), phase = 6 * normal(random);
     const double x = std::cos(turn), y = std::sin(turn);
     for (size_t t = 0; t < maps.texels(); ++t) {
-      const double along =
-          x * static_cast<double>(t % kLeatherSize) + y * static_cast<double>(t / kLeatherSize);
+      const size_t column = t % kLeatherSize, row = t / kLeatherSize;
+      const double along = x * static_cast<double>(column) + y * static_cast<double>(row);
       const double of_wave = slope * std::sqrt(4.0 / kWaves) *
                              std::cos(2 * std::numbers::pi * along / length_texel + phase);
       p[t] += of_wave * x;
