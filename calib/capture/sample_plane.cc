@@ -27,7 +27,8 @@ class PlaneFinder {
     for (const ModelPoint& point : model_.points) all.push_back({point.position, point.weight});
     if (all.empty()) {
       throw UserError(model_.source, "points3D", "no points",
-                      "give a model with points, or a [board]");
+                      "give the model with its points; where every photograph shows the [board], "
+                      "leave out [poses]");
     }
     const std::vector<CloudPoint> inside = PointsInside();
     constexpr size_t kEnough = 50;

@@ -335,6 +335,14 @@ TEST_F(ColmapPoses, NoPlaneNoScaleAndWrongCornersSayWhatToDo) {
   const test::Outcome scattered = Calibrate(Toml("height_mm = 240\n"));
   EXPECT_EQ(scattered.code, 2);
   EXPECT_THAT(scattered.err, HasSubstr("points3D: found the points scattered"));
+
+  ColmapModel without_points = ModelOf();
+  without_points.points.clear();
+  for (ColmapImage& image : without_points.images) image.observations.clear();
+  WriteColmapModel(model(), without_points, ColmapFormat::kBinary);
+  const test::Outcome bare = Calibrate(Toml("height_mm = 240\n"));
+  EXPECT_EQ(bare.code, 2);
+  EXPECT_THAT(bare.err, HasSubstr("points3D: found no points; give the model with its points"));
 }
 
 TEST_F(ColmapPoses, BadModelFilesAreNamed) {

@@ -9,6 +9,8 @@
 
 #include "base/formats/calibration.h"
 #include "base/formats/manifest.h"
+#include "calib/colmap/colmap_camera.h"
+#include "calib/colmap/colmap_model.h"
 #include "calib/registration/sample_place.h"
 #include "tests/calib/testing/synthetic_capture.h"
 
@@ -82,6 +84,39 @@ class SamplesPlace : public testing::SyntheticCapture {
       test::WriteAll(capture_ / "capture.toml", toml);
     }
     return test::RunProgram({testing::Program("glint-calib"), capture_.string()});
+  }
+
+  // With the poses that COLMAP would find, of a static sample at least, and the board's scale.
+  test::Outcome CalibrateFromColmap() const {
+    const Calibration truth = ReadCalibration(Shared() / "truth/calib/manifest.json");
+    ColmapModel model;
+    model.cameras = {ToColmapCamera(truth.cameras.front(), 1)};
+    for (const CalibratedPhoto& photo : truth.photos) {
+      ColmapImage& image = model.images.emplace_back();
+      image.id = static_cast<std::uint32_t>(model.images.size());
+      image.camera_id = 1;
+      image.name = std::filesystem::path(photo.photo).filename().string();
+      image.set_camera_from_model(photo.camera_from_sample);
+    }
+    for (std::uint64_t k = 0; k < 100; ++k) {
+      ColmapPoint& point = model.points.emplace_back();
+      point.id = k + 1;
+      point.position = {10.0 * static_cast<double>(k % 10) - 45.0,
+                        10.0 * static_cast<double>(k / 10) - 45.0, 0};
+      for (size_t i = 0; i < truth.photos.size(); ++i) {
+        auto& observations = model.images[i].observations;
+        point.track.push_back(
+            {model.images[i].id, static_cast<std::uint32_t>(observations.size())});
+        observations.push_back(
+            {ImageFromCamera(truth.cameras.front(),
+                             truth.photos[i].camera_from_sample * point.position),
+             point.id});
+      }
+    }
+    std::filesystem::create_directories(capture_ / "model");
+    WriteColmapModel(capture_ / "model", model, ColmapFormat::kBinary);
+    return test::RunProgram({testing::Program("glint-calib"), capture_.string(), "--poses",
+                             "colmap:" + (capture_ / "model").string()});
   }
 
   Json Plane() const {
@@ -178,6 +213,20 @@ TEST_F(SamplesPlace, PhotographsOfAnotherSampleAreLeftOutByName) {
   EXPECT_THAT(outcome.err, HasSubstr("photo_007.jpg is left out: shows another sample than"));
   EXPECT_THAT(outcome.err, HasSubstr("photo_008.jpg is left out: shows another sample than"));
   EXPECT_EQ(ReadCalibration(capture_ / "glint/calib/manifest.json").photos.size(), 7u);
+}
+
+// Nothing else tells them apart there: they stay, and are named.
+TEST_F(SamplesPlace, PhotographsOfAnotherSampleAreNamedWherePosesAreGiven) {
+  const test::Outcome alike = CalibrateFromColmap();
+  ASSERT_EQ(alike.code, 0) << alike.err;
+  EXPECT_THAT(alike.err, ::testing::Not(HasSubstr("another sample")));
+  Lay({0, 0, 0}, false, {.from = 7, .move = {}, .another = true});
+  const test::Outcome outcome = CalibrateFromColmap();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("is seen in photos/photo_007.jpg, photos/photo_008.jpg:"));
+  EXPECT_THAT(outcome.err, HasSubstr("Name them in [photos] left_out"));
+  const Calibration found = ReadCalibration(capture_ / "glint/calib/manifest.json");
+  EXPECT_EQ(found.photos.size(), 9u);
 }
 
 TEST_F(SamplesPlace, PlainSamplesStayWhereTheyAreSaidToBe) {
