@@ -10,7 +10,6 @@
 namespace glint {
 namespace {
 
-namespace fs = std::filesystem;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -94,6 +93,7 @@ class PlaneFinder {
     Vector3d middle;
     for (int k = 0; k < 3; ++k) {
       std::vector<double> values;
+      values.reserve(candidates.size());
       for (const CloudPoint& point : candidates) values.push_back(point.position[k]);
       middle[k] = MedianOf(values);
     }

@@ -62,7 +62,7 @@ ColmapModel ModelOf(double scattered_share = 0.33) {
     const bool off = unit() < 2 * scattered_share - 1;
     const Vector3d at_mm(120 * unit(), 90 * unit(), off ? 60 * unit() : 0.03 * unit());
     ColmapPoint point;
-    point.id = static_cast<std::uint64_t>(k + 1);
+    point.id = static_cast<std::uint64_t>(k) + 1;
     point.position = ModelFromSample() * at_mm;
     for (int i = 0; i < kPhotos; ++i) {
       const Vector2d seen = ImageFromCamera(kCamera, Pose(i) * at_mm);

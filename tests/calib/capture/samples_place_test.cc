@@ -98,11 +98,11 @@ class SamplesPlace : public testing::SyntheticCapture {
       image.name = std::filesystem::path(photo.photo).filename().string();
       image.set_camera_from_model(photo.camera_from_sample);
     }
-    for (std::uint64_t k = 0; k < 100; ++k) {
+    for (int k = 0; k < 100; ++k) {
+      const int column = k % 10, row = k / 10;
       ColmapPoint& point = model.points.emplace_back();
-      point.id = k + 1;
-      point.position = {10.0 * static_cast<double>(k % 10) - 45.0,
-                        10.0 * static_cast<double>(k / 10) - 45.0, 0};
+      point.id = static_cast<std::uint64_t>(k) + 1;
+      point.position = {10 * column - 45.0, 10 * row - 45.0, 0};
       for (size_t i = 0; i < truth.photos.size(); ++i) {
         auto& observations = model.images[i].observations;
         point.track.push_back(
