@@ -86,7 +86,7 @@ class SamplesPlace : public testing::SyntheticCapture {
     return test::RunProgram({testing::Program("glint-calib"), capture_.string()});
   }
 
-  // With the poses that COLMAP would find, of a static sample at least, and the board's scale.
+  // With the true poses as COLMAP's, and the board's scale.
   test::Outcome CalibrateFromColmap() const {
     const Calibration truth = ReadCalibration(Shared() / "truth/calib/manifest.json");
     ColmapModel model;

@@ -60,7 +60,6 @@ double RmsDifference(const SvbrdfMaps& a, const SvbrdfMaps& b, SvbrdfPlane plane
   return std::sqrt(squares);
 }
 
-// Photographs are off by what no maps explain, as where they are displaced by a texel.
 // Photographs that are off by what no maps explain, as where they are displaced by a texel.
 SyntheticScene PhotographedBadly(const SvbrdfMaps& truth) {
   SyntheticScene scene = Photograph(truth, 7, 8);
